@@ -1,12 +1,13 @@
 # make demo   one screen: five goals, the searches beside the optimum; more of it is left in demo/
 # make docs   the documentation as a site, in site/html, with a reference made from the program
-# make test   the tests, in less than three minutes; make test-slow for the long ones
+# make test   the tests, in two minutes; make test-slow and make test-nightly for the long ones
 # make test-lowest   the tests with the lowest versions of our dependencies that pyproject.toml allows
 # make coverage  which lines of the package the tests reach: from Python 3.12 little slower than the tests
-# make mutants   changes the code on purpose, to see whether a test notices: hours, or with SAMPLE=600 ten minutes
+# make mutants   changes the code on purpose, to see whether a test notices: hours, or with SAMPLE=600 ten minutes;
+#                with SINCE=REVISION only the files that differ from it, with the tests of their rooms
 # make lint   style and types
 # make tables  after a change of the grammar of FOON text: the tables that are read in its place
-# make bench  the benchmarks, in a few minutes, into docs/performance.md; make bench-full the large ones, which
+# make bench  the benchmarks, in a few minutes, into docs/dev/performance.md; make bench-full the large ones, which
 #             take about an hour and a half (with DATA=DIR also on the network in a folder)
 # Each makes .venv and installs what it needs when run first. With PYTHON=python3.13 VENV=.venv-3.13 it is another
 # Python in a folder of its own.
@@ -16,17 +17,17 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 VENV ?= .venv
 BIN := $(VENV)/bin
 CORES := -n auto --dist worksteal
-PAGE := --page docs/performance.md
+PAGE := --page docs/dev/performance.md
 # hundreds of processes are started by the tests: each would compile everything anew
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: demo docs man test test-slow test-lowest coverage mutants tables lint bench bench-full clean
+.PHONY: demo docs man test test-slow test-nightly test-lowest coverage mutants tables lint bench bench-full clean
 
 demo: $(VENV)/installed
 	@mkdir -p demo
 	@$(BIN)/foon-asp compare --chart demo/searches.svg --chart demo/searches.png > demo/compare.txt 2>&1
-	@$(BIN)/foon-asp optima > demo/optima.txt
-	@$(BIN)/foon-asp draw --goal macaroni -o demo/macaroni.svg
+	@$(BIN)/foon-asp solve --all-goals --objective units --objective inputs --objective success > demo/optima.txt
+	@$(BIN)/foon-asp view --goal macaroni -o demo/macaroni.svg
 	@$(BIN)/foon-asp view --goal macaroni -o demo/macaroni.html
 	@$(BIN)/python benchmarks/one_screen.py
 
@@ -42,13 +43,16 @@ test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest $(CORES)
 
 test-slow: $(VENV)/installed-dev
-	$(BIN)/python -m pytest $(CORES) -m slow
+	$(BIN)/python -m pytest $(CORES) -m 'slow and not nightly'
+
+test-nightly: $(VENV)/installed-dev
+	$(BIN)/python -m pytest $(CORES) -m nightly
 
 coverage: $(VENV)/installed-dev
 	COVERAGE_CORE=sysmon $(BIN)/python -m pytest $(CORES) --cov --cov-report=term:skip-covered
 
 mutants: $(VENV)/installed-dev
-	$(BIN)/python -m tests.mutation $(if $(SAMPLE),--seconds $(SAMPLE))
+	$(BIN)/python -m tests.mutation $(if $(SAMPLE),--seconds $(SAMPLE)) $(if $(SINCE),--changed-since $(SINCE))
 
 test-lowest:
 	PYTHON="$(PYTHON)" .ci/lowest $(CORES)
@@ -82,7 +86,7 @@ clean:
 
 $(VENV)/bin/python:
 	@test -n "$(PYTHON)" || { echo "foon-asp needs Python 3.11 or newer"; exit 1; }
-	$(PYTHON) -m venv $(VENV)
+	"$(PYTHON)" -m venv $(VENV)
 
 $(VENV)/installed: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[pictures]'

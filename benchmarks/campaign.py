@@ -1,11 +1,11 @@
-"""The campaign (``tests/campaign.py``) at length: ``python -m benchmarks.campaign 2000 [FIRST SEED]``."""
+"""The campaign of the tests at length: ``python -m benchmarks.campaign 2000 [FIRST SEED]``."""
 
 import sys
 import time
 from collections import Counter
 from collections.abc import Sequence
 
-from tests.campaign import campaign
+from tests.oracle.campaign import campaign
 
 _AT_ONCE = 50  # networks between two lines
 

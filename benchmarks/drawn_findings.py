@@ -11,8 +11,8 @@ import argparse
 import random
 from pathlib import Path
 
-from foon_asp.lint.linted_files import with_tables
-from foon_asp.lint.linter import lint
+from foon_asp.linting.linted_files import with_tables
+from foon_asp.linting.linter import lint
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
 

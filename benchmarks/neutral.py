@@ -7,8 +7,8 @@
     foon-asp solve --data DIR --objective price --goal ...
 
 The folder gets ``network.jsonl``, ``kitchen.json`` and ``goal_nodes.json``; all its goals belong together. A
-task is read by the program's own reader of PDDL (``foon-asp relax``), or from what the translator of Fast
-Downward wrote, a program of its own (``pip install fast-downward-translate``, GPL) that is not needed here.
+task in PDDL is read as by ``foon-asp relax``, by the translator of Fast Downward (``pip install
+'foon-asp[pddl]'``, GPL); what that wrote is read without it.
 Where an e-graph has negative costs, its extraction costs less than the tree by the figure that is printed.
 """
 

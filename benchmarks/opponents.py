@@ -43,7 +43,7 @@ from generate import Family, generate
 
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.assembly import CLINGO_OPTIONS
-from foon_asp.compare.many import makeable
+from foon_asp.comparison.many import makeable
 from foon_asp.deadline import Deadline
 from foon_asp.engines import EngineAnswer, agree
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, executable_order, levels

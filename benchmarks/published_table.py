@@ -16,10 +16,10 @@ from pathlib import Path
 
 import clingo
 
+from foon_asp.comparison.published_table import read_published
 from foon_asp.problem import ContainerRule, Problem
-from foon_asp.report.published_table import read_published
 from foon_asp.resources import published_table
-from foon_asp.search import SEARCHES, Count, SearchSettings, Ties
+from foon_asp.searches import SEARCHES, Count, SearchSettings, Ties
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.goal_name import find_goal
 

@@ -100,7 +100,7 @@ def our_work(task: StripsTask, offset: Fraction, limit: float) -> Work:
             "proved": found.proved,
             "cost": "" if found.cost is None else str(found.cost - offset),
             "bound": "" if found.lower_bound is None else str(found.lower_bound - offset),
-            "plan": found.plan,
+            "plan": found.plan and [str(action) for action in found.plan],
         }
         return said | (certified(found, limit) if found.proved else {})
 
@@ -111,13 +111,13 @@ def certified(found: Relaxed, limit: float) -> dict[str, Any]:
     """Give the certificate of an answer, and whether it is right."""
     answer, problem = found.answer, found.problem
     deadline = Deadline(limit)
-    if answer.units is None:
+    if answer.ids is None:
         return {}
     certificate = certify(
-        *(problem, answer.objectives, answer.units),
+        *(problem, answer.objectives, answer.ids),
         expired=lambda: deadline.passed,
-        cuts=answer.cuts,
-        cases=answer.cases,
+        cuts=answer.outcome.cuts,
+        cases=answer.outcome.cases,
     )
     if certificate is None:
         return {"certified": False}

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.certificate import certify_outcome
-from foon_asp.compare.many import makeable
+from foon_asp.comparison.many import makeable
 from foon_asp.deadline import Deadline
 from foon_asp.network import UnitPrices
 from foon_asp.problem import Objective, Problem, levels

@@ -339,7 +339,7 @@ def _timed(
     if store is None:
         outcome = solve(problem, objectives, settings)
     else:
-        outcome = answered_under(opened(store, problem), objectives, settings)
+        outcome = answered_under(opened(store, problem), objectives, settings).outcome
     return _spent() - began, outcome
 
 

@@ -32,10 +32,7 @@ def cases(foon: foon_asp.Foon, lists: int, rules: Sequence[str]) -> Iterator[Cas
             problem = foon.problem(goal, containers=rule)
             for o in needed(problem):
                 found = foon_asp.shopping_list(problem.vary(without=problem.network.objects[o]), lists=lists)
-                named = tuple(
-                    tuple(str(found.problem.network.objects[item]) for item in each.items)
-                    for each in found.lists
-                )
+                named = tuple(tuple(map(str, each.items)) for each in found.lists)
                 item = str(problem.network.objects[o])
                 place = next((n for n, each in enumerate(named, 1) if item in each), None)
                 yield Case(str(goal), rule, item, place, named)
@@ -43,7 +40,7 @@ def cases(foon: foon_asp.Foon, lists: int, rules: Sequence[str]) -> Iterator[Cas
 
 def needed(problem: Problem) -> list[int]:
     """Give the kitchen items without which there is no tree: every tree takes all of them."""
-    units = foon_asp.solve(problem).units or ()
+    units = foon_asp.solve(problem).ids or ()
     taken = sorted({o for unit in units for o in problem.needs[unit] if o in problem.kitchen})
     return [o for o in taken if not makeable(replace(problem, kitchen=problem.kitchen - {o}))]
 

@@ -21,7 +21,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.lint.linter import lint
+from foon_asp.linting.linter import lint
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.diagnostics import Diagnostic
 
@@ -661,7 +661,7 @@ def measure_tables(source: Path, often: int, folder: Path) -> Iterator[Case]:
 
 def linted(folder: Path) -> list[Path]:
     """Give the files that are linted when a folder is named."""
-    from foon_asp.lint.linted_files import with_tables  # noqa: PLC0415
+    from foon_asp.linting.linted_files import with_tables  # noqa: PLC0415
     from foon_asp.text.folder_files import foon_files  # noqa: PLC0415
 
     return with_tables([folder], (file for file, _ in foon_files([folder])))

@@ -6,7 +6,7 @@ answer in both. Every figure is of whole processes, each new, in turn: medians o
 start to end, seconds of processor (which other work on the machine disturbs less), peak memory as the system
 counts it. Files are in the page cache. Answers are compared.
 
-*read*: the text is read and its units dropped, with nothing merged; *import*: ``foon-asp import``;
+*read*: the text is read and its units dropped, with nothing merged; *import*: ``foon-asp merge --store``;
 *solve*: ``foon-asp solve --network STORE --goal NAME``, for each goal with a cone of up to ``--cone`` units.
 
     python benchmarks/store.py                                 10,000 units and 100,000
@@ -133,7 +133,7 @@ def measure_import(folder: Path, store: Path, units: int, runs: int) -> Medians:
     reads, imports = [], []
     for _ in range(runs):
         reads.append(run("-c", READ, folder / "FOON.txt"))
-        imports.append(run("-m", "foon_asp", "import", "--data", folder, "--store", store))
+        imports.append(run("-m", "foon_asp", "merge", "--data", folder, "--store", store))
     read, imported = medians(reads), medians(imports)
     for task, found, file in (("read", read, folder / "FOON.txt"), ("import", imported, store)):
         print(

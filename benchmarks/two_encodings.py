@@ -15,7 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from foon_asp.asp import Settings, solve
-from foon_asp.compare.many import makeable
+from foon_asp.comparison.many import makeable
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.text.data_folder import find_data, read_data
 

@@ -20,25 +20,36 @@ from foon_asp.document.schema import schema
 from foon_asp.text.json_value import json_text
 
 ROOT = Path(__file__).resolve().parents[1]
-MIRRORED = ("*.md", "docs/*.md", "docs/pictures/*", "encodings/**/*", "data/**/*", ".ci/*", "benchmarks/*.py")
+MIRRORED = (
+    "*.md",
+    "docs/*.md",
+    "docs/dev/*.md",
+    "docs/pictures/*",
+    "encodings/**/*",
+    "data/**/*",
+    ".ci/*",
+    "benchmarks/*.py",
+)
 SITE = ROOT / "site"
 
 PAGES = {
     "Start": ("README", "docs/guide"),
-    "Tutorials": ("docs/tutorial-robot", "docs/tutorial-logic", "docs/tutorial-planning"),
+    "Tutorials": (
+        "docs/tutorial-robot",
+        "docs/tutorial-logic",
+        "docs/tutorial-planning",
+        "docs/tutorial-frame",
+    ),
     "How to": (
         "docs/questions",
         "docs/writing-constraints",
         "docs/writing-objectives",
         "docs/plans",
-        "docs/schedules",
         "docs/view",
         "docs/editor",
-        "docs/drawing",
         "docs/batch",
         "docs/store",
         "docs/pddl",
-        "docs/programs",
         "docs/entry-points",
         "docs/api",
     ),
@@ -50,19 +61,25 @@ PAGES = {
         "reference/schemas",
         "docs/formats",
         "docs/lint",
-        "docs/lint-judged",
-        "docs/levels",
     ),
-    "Why it is right": (
-        "docs/proofs",
-        "docs/reductions",
-        "docs/exact-success",
-        "docs/testing",
-        "docs/performance",
-        "docs/published-table",
-        "docs/sources",
+    "Why it is right": ("docs/proofs", "SECURITY"),
+    "Working on it": (
+        "CONTRIBUTING",
+        "docs/dev/architecture",
+        "docs/dev/reductions",
+        "docs/dev/questions",
+        "docs/dev/certificates",
+        "docs/dev/exact-success",
+        "docs/dev/store",
+        "docs/dev/testing",
+        "docs/dev/performance",
+        "docs/dev/measured",
+        "docs/dev/published-table",
+        "docs/dev/lint-judged",
+        "docs/dev/sources",
+        "CHANGELOG",
+        "data/kitchen/README",
     ),
-    "Working on it": ("CONTRIBUTING", "docs/architecture", "SECURITY", "CHANGELOG", "data/kitchen/README"),
 }
 
 SETTINGS = """

@@ -8,18 +8,21 @@ import signal
 import sys
 import threading
 import time
+import weakref
 from collections.abc import Iterator
 from contextvars import ContextVar
 from pathlib import Path
+from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import Self
 
+from foon_asp.aside import Aside
 from foon_asp.errors import UserError
 
 _STATM = Path("/proc/self/statm")
 _PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 _ADVICE = {
-    "reading": "raise the limit, or if the network is text, make a store of it once: foon-asp import",
+    "reading": "raise the limit, or if the network is text, make a store of it once: foon-asp merge --store",
     "grounding": "rules that were added may be endless, as in p(f(X)) :- p(X), or have too many instances: "
     "check them, or raise the limit",
 }
@@ -31,7 +34,7 @@ _PROVED, _INTERRUPTED = "a proof", "ctrl-C"
 _STRIKES, _BETWEEN = 5, 3.0  # interrupts, and seconds between them
 _WAITS = 50  # looks until an interrupt is taken for lost
 _LOOKS = 0.02  # seconds between two looks at the memory
-_STRIKE = threading.Lock()  # of who strikes, or cannot be struck
+_MOMENT = 0.001  # seconds, in which who is about to strike does so
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 
 
@@ -307,13 +310,20 @@ def none_lost() -> Iterator[None]:
     Nothing comes out of a destructor, so what strikes in one strikes again a moment later.
     """
     before = sys.unraisablehook
+    main = threading.main_thread().ident or 0
+
+    def strike_again() -> None:
+        time.sleep(_LOOKS)
+        signal.pthread_kill(main, signal.SIGINT)
 
     def again(lost: "sys.UnraisableHookArgs") -> None:
+        destroyed = getattr(lost.object, "__name__", "") == "__del__"
+        if destroyed and issubclass(lost.exc_type, AttributeError):
+            return  # an interrupt left the object half made
         if not issubclass(lost.exc_type, KeyboardInterrupt):
             before(lost)
-        elif hasattr(signal, "pthread_kill"):
-            main = threading.main_thread().ident
-            threading.Timer(_LOOKS, signal.pthread_kill, (main, signal.SIGINT)).start()
+        elif threading.get_ident() == main and hasattr(signal, "pthread_kill"):
+            Aside(strike_again)
 
     sys.unraisablehook = again
     try:
@@ -329,18 +339,35 @@ def uninterrupted() -> Iterator[None]:
     C libraries make an ``ImportError`` of one that strikes while they are imported, and stay broken.
     """
     came: list[int] = []
+    shield, here = object(), threading.get_ident()
     before = signal.getsignal(signal.SIGINT)
-    here = threading.current_thread() is threading.main_thread() and callable(before)
-    with _STRIKE:
-        if here:
+    is_main = threading.current_thread() is threading.main_thread() and callable(before)
+    try:
+        if is_main:
             signal.signal(signal.SIGINT, lambda number, _: came.append(number))
-        try:
-            yield
-        finally:
-            if here:
-                signal.signal(signal.SIGINT, before)
-    if came:
-        signal.raise_signal(signal.SIGINT)
+        _shields[shield] = here
+        while here in _aims:  # one is on its way
+            time.sleep(_MOMENT)
+        yield
+    finally:
+        while True:  # ctrl-C may strike as soon as it is let through again
+            try:
+                if is_main:
+                    signal.signal(signal.SIGINT, before)
+                _shields.pop(shield, None)
+                break
+            except KeyboardInterrupt:
+                came.append(signal.SIGINT)
+        if came:
+            signal.raise_signal(signal.SIGINT)
+
+
+# Who strikes first says at whom, and then looks whether it may; who may not be struck first says so, and then
+# looks whether somebody is about to. So neither needs a lock, in which an interrupt could land.
+_aims: list[int] = []  # threads about to be struck
+_shields: dict[object, int] = {}  # threads that may not be
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_aims.clear)  # those who were about to are not here
 
 
 class Watch:
@@ -350,85 +377,91 @@ class Watch:
     """
 
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
-        self._deadline, self._doing = deadline, doing
-        self._striker = _Striker(deadline, late, time.monotonic() + _GRACE if grace else -math.inf)
+        self._deadline, self._doing, self._late = deadline, doing, late
+        self._earliest = time.monotonic() + _GRACE if grace else -math.inf
         self._begins = grace  # whatever has passed
+        self._thread = threading.get_ident()
+        self._over = self._struck = False
+        self._wake: SimpleQueue[None] = SimpleQueue()
 
     def __enter__(self) -> Self:
         deadline = self._deadline
         deadline.doing = self._doing
-        if self._striker.due or (deadline.passed and deadline.full and not self._begins):
+        if self._due or (deadline.passed and deadline.full and not self._begins):
             raise LimitError(deadline)
         if deadline.limited:
-            threading.Thread(target=self._striker.watch, daemon=True, name="foon-asp limits").start()
+            try:
+                if not self._is_woken_by_signals:
+                    import ctypes  # noqa: F401, PLC0415 (to have it when it strikes)
+                Aside(_watch, weakref.ref(self), self._wake)
+            except BaseException:
+                self._end()
+                raise
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         came = kind is not None and issubclass(kind, KeyboardInterrupt)
-        struck: bool | None = None
-        while struck is None:  # an interrupt may strike in the middle of this
+        while True:  # an interrupt may strike in the middle of this, which can be done again
             try:
-                struck = self._striker.end(came)
+                self._end()
+                if self._struck and not came:
+                    for _ in range(_WAITS):
+                        time.sleep(_LOOKS)
+                break
             except KeyboardInterrupt:
                 came = True
-        if struck:
+        if self._struck:
             raise LimitError(self._deadline) from None
         if came:
             self._deadline.interrupt()
             if kind is None:
                 raise KeyboardInterrupt
 
-    def __del__(self) -> None:
-        self._striker.over.set()
-
-
-class _Striker:
-    """What watches, until its watch is over."""
-
-    def __init__(self, deadline: Deadline, late: bool, earliest: float) -> None:
-        self._deadline, self._late, self._earliest = deadline, late, earliest
-        self._thread = threading.get_ident()
-        self._lock = threading.Lock()
-        self._struck = False
-        self.over = threading.Event()
+    def _end(self) -> None:
+        """Let nothing strike any more."""
+        self._over = True
+        self._wake.put(None)
+        while self._thread in _aims:  # who is about to strike does so now
+            time.sleep(_MOMENT)
 
     @property
-    def due(self) -> bool:
+    def _due(self) -> bool:
         due = self._deadline.overdue if self._late else self._deadline.passed
         return due and time.monotonic() >= self._earliest
 
-    def watch(self) -> None:
-        """Interrupt the other thread when it is time; again and again, for one in a destructor is lost."""
-        while not self.over.wait(max(_LOOKS, self._deadline.slice())):
-            if self.due:
-                break
-        for _ in range(_STRIKES):
-            with _STRIKE, self._lock:
-                if self.over.is_set():
-                    return
-                self._struck = True
-                self._strike()
-            if self.over.wait(_BETWEEN):
-                return
+    def next_look(self, strikes: int) -> tuple[float, int] | None:
+        """Strike when it is time, again and again, for one in a destructor is lost; ``None`` after the last.
 
-    def end(self, came: bool) -> bool:
-        """End it, and say whether it has struck; waits for an interrupt that is still on its way."""
-        self.over.set()
-        with self._lock:  # who is about to strike does so now
-            struck = self._struck
-        if struck and not came:
-            for _ in range(_WAITS):
-                time.sleep(_LOOKS)
-        return struck
+        Returns the seconds until the next look, and how often it has struck.
+        """
+        if self._over or strikes == _STRIKES:
+            return None
+        if not self._due:
+            return max(_LOOKS, self._deadline.slice()), strikes
+        _aims.append(self._thread)
+        try:
+            if self._over:
+                return None
+            if self._thread in _shields.values():
+                return _LOOKS, strikes
+            self._struck = True
+            self._strike()
+        finally:
+            _aims.remove(self._thread)
+        return _BETWEEN, strikes + 1
 
-    def _strike(self) -> None:
-        if (
+    @property
+    def _is_woken_by_signals(self) -> bool:
+        return (
             self._thread == threading.main_thread().ident
             and hasattr(signal, "pthread_kill")
             and signal.getsignal(signal.SIGINT) is signal.default_int_handler
-        ):
+        )
+
+    def _strike(self) -> None:
+        if self._is_woken_by_signals:
             signal.pthread_kill(self._thread, signal.SIGINT)  # wakes it from waiting for a file, too
             return
         import ctypes  # noqa: PLC0415 (seldom needed)
@@ -436,6 +469,21 @@ class _Striker:
         ctypes.pythonapi.PyThreadState_SetAsyncExc(
             ctypes.c_ulong(self._thread), ctypes.py_object(KeyboardInterrupt)
         )
+
+
+def _watch(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
+    """Look at a watch until it is over, or was left by an interrupt that came before it could be ended."""
+    pause, strikes = _LOOKS, 0
+    while True:
+        with contextlib.suppress(Empty):
+            wake.get(timeout=pause)
+            return
+        watch = watching()
+        told = None if watch is None else watch.next_look(strikes)
+        del watch
+        if told is None:
+            return
+        pause, strikes = told
 
 
 def _resident(statm: Path) -> int:

@@ -20,7 +20,7 @@ from foon_asp.network import (
     ObjectNode,
     Source,
     UnitPrices,
-    starting_nodes,
+    starting_kitchen,
 )
 from foon_asp.problem import Changes, Names, Number, Problem, UnitPricesNamed
 from foon_asp.problem.progress import OnProgress, Progress
@@ -61,7 +61,7 @@ def load(
         source: A folder with all files; or a network (FOON text or JSON), several networks to merge, or a
             store. Without it, the bundled kitchen is loaded.
         kitchen: The file with the object nodes at hand, instead of that of the folder; or ``"@starting"``
-            for what no unit makes out of other things, which is also at hand where there is no kitchen.
+            for what makes the units of each file run, which is also assumed where there is no kitchen.
         rates: The file with the success rates of motions, instead of that of the folder.
         utensils: The file with the labels of utensils, instead of that of the folder.
         goals: The file with goals, instead of that of the folder.
@@ -157,7 +157,7 @@ def build(
             keys ``motion``, ``inputs`` and ``outputs``; or a :class:`FunctionalUnit`. Or a network, made by a
             :class:`NetworkBuilder`.
         kitchen: The object nodes at hand, by label, in one-line notation, or as :class:`ObjectNode`. Without
-            it, or as ``"@starting"``, what no unit makes is at hand; ``()`` is nothing.
+            it, or as ``"@starting"``, it is what makes all units run; ``()`` is nothing.
         goals: What is to be made, in the same way. Without it, what the last unit makes and no unit needs.
         rates: The success rates of motions, above 0 and at most 1.
         utensils: The labels of the utensils that the container rule ``implied`` is about.
@@ -196,7 +196,7 @@ def build(
         last = {making[-1]: Source("the units", making[-1] + 1)} if making else {}
         entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
         starting = kitchen is None or kitchen == str(STARTING)
-        at_hand = starting_nodes(network) if starting else frozenset[int]()
+        at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
         data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(goals_from=LAST if goals is None else "")
         dataset = Dataset(data, 0.0, has_kitchen=kitchen is not None).measured(read_measures(measures))
@@ -442,6 +442,6 @@ class Foon:
 
 
 _NO_KITCHEN = (
-    "no kitchen is given, so what no unit makes is at hand (Foon.kitchen, for one question: "
-    "Answer.json()['starting_kitchen']): load(..., kitchen=FILE) says what is"
+    "No kitchen given: assuming what the recipe does not make is available (Foon.kitchen, for one question: "
+    "Answer.json()['starting_kitchen']); load(..., kitchen=FILE) takes another"
 )

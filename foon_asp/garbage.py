@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 _VERY_MANY = 1_000_000  # new objects, to walk over which takes a tenth of a second or more
+_FEW = 10_000  # frozen objects, to walk over which is nothing: Python 3.12 itself begins with some hundreds
 
 
 @contextmanager
@@ -20,7 +21,7 @@ def uncollected() -> Iterator[None]:
         yield
     finally:
         if collecting:
-            if gc.get_count()[0] > _VERY_MANY and not gc.get_freeze_count():
+            if gc.get_count()[0] > _VERY_MANY and gc.get_freeze_count() < _FEW:
                 gc.freeze()
                 gc.unfreeze()  # to the oldest generation
             gc.enable()

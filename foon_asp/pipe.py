@@ -6,10 +6,11 @@ import queue
 import signal
 import struct
 import sys
-import threading
 from collections.abc import Callable
 from io import FileIO, RawIOBase
 from typing import Any, TypeVar
+
+from foon_asp.aside import Aside
 
 T = TypeVar("T")
 
@@ -65,7 +66,7 @@ def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], Fil
             except EOFError:  # nobody asks any more
                 os._exit(0)
 
-    threading.Thread(target=listen, daemon=True).start()
+    Aside(listen)
     return asked, answers
 
 

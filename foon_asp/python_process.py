@@ -5,15 +5,17 @@ import contextlib
 import os
 import subprocess
 import sys
-import threading
 import weakref
 from collections.abc import Callable
 from io import RawIOBase
 from pathlib import Path
 from typing import Any, cast
 
+from foon_asp.aside import Aside
+from foon_asp.deadline import uninterrupted
 from foon_asp.errors import UserError
 
+_PATIENCE = 5.0  # seconds until what follows from the end of a process has happened
 _PACKAGES = str(Path(__file__).resolve().parents[1])
 
 # A process group of its own: ctrl-C at a terminal is for this process, which ends the other.
@@ -49,27 +51,34 @@ class PythonProcess:
         )
         self._out = cast("RawIOBase", self._process.stdin)
         self._in = cast("RawIOBase", self._process.stdout)
-        self._thread: threading.Thread | None = None
+        self._beside: Aside | None = None
         _all.add(self)
 
     @property
     def alive(self) -> bool:
         """Whether it runs."""
-        return self._process.poll() is None
+        with uninterrupted():  # a process has a lock, and so in what follows
+            return self._process.poll() is None
 
     def beside(self, target: Callable[..., None], *arguments: object) -> None:
         """Let a thread speak with the process, or listen to it, until it ends."""
-        self._thread = threading.Thread(target=target, args=arguments, daemon=True)
-        self._thread.start()
+        self._beside = Aside(target, *arguments)
 
     def end(self) -> int:
         """End it, whatever it is at; give what it ended with."""
-        self._process.kill()
-        code = self._process.wait()
-        if self._thread is not None:
-            self._thread.join(5)  # before another file gets the number that it reads from
+        with uninterrupted():
+            self._process.kill()
+            code = self._process.wait()
+        if self._beside is not None:
+            self._beside.ended(_PATIENCE)  # before another file gets the number that it reads from
         self._close()
         return code
+
+    def died(self) -> int:
+        """Wait a while for the end of a process that writes no more; give what it ended with."""
+        with uninterrupted(), contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(_PATIENCE)
+        return self.end()
 
     def abandon(self) -> None:
         """Let go of a process that belongs to another: this one is a copy of that one."""

@@ -21,7 +21,7 @@ _WORDS = {
     "Path": "a path",
     "Mapping": "a dictionary",
     "Callable": "a function",
-    "Problem": "a problem: foon_asp.load().problem('macaroni')",
+    "Problem": "a path, data or a problem: 'eggs.txt', foon_asp.load(), foon_asp.load().problem('macaroni')",
     "Foon": "data: foon_asp.load()",
     "ObjectNode": "an object node",
     "FunctionalUnit": "a functional unit",
@@ -42,19 +42,22 @@ def typed(ask: Callable[P, T]) -> Callable[P, T]:
     return checked
 
 
-def checker(ask: Callable[..., object]) -> Callable[[tuple[object, ...], Mapping[str, object]], None]:
+def checker(
+    ask: Callable[..., object], signature: inspect.Signature | None = None
+) -> Callable[[tuple[object, ...], Mapping[str, object]], None]:
     """Make what raises :class:`UserError` for arguments that the annotations of a function do not allow.
 
-    What can be read only once is not looked into, and annotations that are texts allow everything.
+    What can be read only once is not looked into, and annotations that are texts allow everything. The
+    ``signature`` is by default that of the function.
     """
-    asked = inspect.signature(ask)
+    asked = signature or inspect.signature(ask)
     kinds = {name: parameter.annotation for name, parameter in asked.parameters.items()}
 
     def check(given: tuple[object, ...], named: Mapping[str, object]) -> None:
         try:
             bound = asked.bind(*given, **named)
         except TypeError as error:
-            raise TypeError(f"{ask.__name__}: {error}") from None
+            raise TypeError(f"{ask.__name__}: {error}; it takes {', '.join(kinds)}") from None
         for name, value in bound.arguments.items():
             many = asked.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL
             for each in value if many else (value,):
@@ -68,8 +71,9 @@ def checker(ask: Callable[..., object]) -> Callable[[tuple[object, ...], Mapping
 def _fits(kind: Any, value: object) -> bool:
     """Whether an annotation allows a value, as far as it says something that can be told."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
-    if origin in {typing.Union, types.UnionType}:
-        return any(_fits(each, value) for each in arguments)
+    if origin in {typing.Union, types.UnionType, typing.Annotated}:
+        several = arguments[:1] if origin is typing.Annotated else arguments
+        return any(_fits(each, value) for each in several)
     if _is_several(origin):
         if isinstance(value, str | bytes) or not isinstance(value, Iterable):
             return False
@@ -90,7 +94,9 @@ def _is_several(origin: Any) -> bool:
 def _words(kind: Any) -> Iterator[str]:
     """Say what an annotation allows."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
-    if origin in {typing.Union, types.UnionType}:
+    if origin is typing.Annotated:
+        yield from _words(arguments[0])
+    elif origin in {typing.Union, types.UnionType}:
         for each in arguments:
             yield from _words(each)
     elif _is_several(origin):

@@ -43,15 +43,10 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Make slow tests of all cases of a test but each ``sampled``-th."""
-    cases: dict[str, int] = {}
+    """Make slow tests of the cases that ``default_cases`` does not name."""
     for item in items:
-        sampled = item.get_closest_marker("sampled")
-        if sampled is None or item.get_closest_marker("slow"):
-            continue
-        test = item.nodeid.partition("[")[0]
-        cases[test] = cases.get(test, -1) + 1
-        if cases[test] % sampled.args[0]:
+        named = item.get_closest_marker("default_cases")
+        if named is not None and item.name.partition("[")[2].removesuffix("]") not in named.args:
             item.add_marker(pytest.mark.slow)
 
 

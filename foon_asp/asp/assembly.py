@@ -21,7 +21,7 @@ if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
     from foon_asp.rules.ready_made import ReadyMade
     from foon_asp.rules.rules import Rules
 
-# Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
+# Core-guided search with shrunk cores did best on every objective measured; see docs/dev/measured.md.
 SHRINKING = "--opt-usc-shrink=min"
 CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", SHRINKING)
 
@@ -50,14 +50,17 @@ _RESERVED = (
 # Facts that are there where rates are known, and of costs by what is asked.
 _OF_SOME_QUESTIONS = {("rate", 2), ("risk", 2), ("cost", 3)}
 
-# A predicate of a search and not of its question: programs that are kept have it otherwise.
-_OF_ONE_SEARCH = ("optimize", 2)
 
-
-def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = False) -> Program:
+def assemble(
+    settings: Settings,
+    warn: Callable[[str], None],
+    used_up: bool = False,
+    problem: Problem | None = None,
+) -> Program:
     """Find and check the encodings that the settings ask for.
 
-    ``used_up`` asks for those of plans in which items are used up.
+    ``used_up`` asks for those of plans in which items are used up. ``problem`` is the question, whose network
+    has the names that rules look for: what nothing in it matches is warned of.
     Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that
     no encoding has and for clingo options that would change what an answer means.
     """
@@ -76,14 +79,13 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
     if bounded is not None:
         questions += bounded.files
         rules += bounded.rules
-    constants: list[str] = []
     looked_at: frozenset[tuple[str, int]] = frozenset()
-    text, is_open, named = "", False, frozenset[str]()
+    text, named = "", frozenset[str]()
     understood: Rules | None = None
     replaced = not all(map(is_own, base))
     endless = replaced or not all(map(_is_own, added))
     files: dict[Constraint, Loaded] = {}
-    theirs: list[Encoding] = []
+    extra, theirs, constants = list["Encoding"](), list["Encoding"](), list[str]()
     encodings = folder if settings.encodings is None and replaced else settings.encodings
     if added or encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out for what every file of ours agrees with
@@ -99,26 +101,19 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         asked = [encoding.read_encoding(file) for file in questions]
         files = stating.loaded(added)
         extra = [encoding.read_encoding(files[each]) for each in added]
-        for diagnostic in encoding.check_encodings(extra, parsed, asked):
-            warn(str(diagnostic))
-        for message in encoding.unset_constants(extra, settings.constants):
+        faults = map(str, encoding.check_encodings(extra, parsed, asked))
+        for message in (*faults, *encoding.unset_constants(extra, settings.constants)):
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
         theirs = [*extra, *(each for file, each in zip(base, parsed, strict=False) if not is_own(file))]
         looked_at = frozenset(signature for each in theirs for signature in each.used)
         named = frozenset(name for each in (*parsed, *extra) for name in each.constants)
         text = "\n".join(each.text for each in (*parsed, *asked, *extra))
-        is_open = (
-            encodings is None
-            and relaxed is None
-            and bounded is None
-            and _OF_ONE_SEARCH not in looked_at
-            and not any(each.assigns for each in extra)
-        )
         if extra and not encodings and relaxed is None:
             from foon_asp.rules import rules as user_rules  # noqa: PLC0415
 
             understood = user_rules.Rules(extra, constants[1::2], endless)
+    _warn_of_names(problem, settings, extra, constants[1::2], warn)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
     if settings.clingo_options:  # looked at now, since clingo may have nothing to do
         from foon_asp.encoding.search import check  # noqa: PLC0415
@@ -134,7 +129,6 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         bounded=bounded is not None,
         looked_at=looked_at,
         text=text,
-        open=is_open,
         endless=endless,
         constants=tuple(constants),
         encodings=encodings,
@@ -145,6 +139,11 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
     )
 
 
+def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program:
+    """Assemble the encodings of a question as :func:`assemble` does, without clingo where that can be."""
+    return ready_made(problem, settings, warn) or assemble(settings, warn, problem=problem)
+
+
 def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
     """Give the program of a small question, or to a store, whose rules are all ready-made, without clingo.
 
@@ -153,10 +152,15 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
     rules = _known(settings)
     if rules is None or problem.items is not None:
         return None
+    from foon_asp.rules.fact_values import FactValues  # noqa: PLC0415 (only of use with constraints)
+    from foon_asp.rules.parameter_names import unknown_parameters  # noqa: PLC0415
+
     network = problem.network  # to read a part of a store takes longer than to look through it
     if (len(network) > _SMALL and not network.object_numbers) or not rules.fit(problem):
         return None
-    plain = assemble(settings._replace(constraints=(), constants=()), warn)
+    for message in unknown_parameters(settings.constraints, settings.constants, FactValues(problem)):
+        warn(message)
+    plain = assemble(settings._replace(constraints=(), constants=()), warn, problem=problem)
     constants = [word for setting in rules.constants.items() for word in ("-c", "=".join(setting))]
     whole = plain._replace(
         files=(*plain.files, *rules.files),
@@ -165,6 +169,42 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
         looked_at=rules.looked_at,
     )
     return plain._replace(own=False, ready_made=rules, whole=whole)
+
+
+def _warn_of_names(
+    problem: Problem | None,
+    settings: Settings,
+    added: "Sequence[Encoding]",
+    constants: Sequence[str],
+    warn: Callable[[str], None],
+) -> None:
+    """Warn of names in rules, measures and parameters that nothing in the network of a problem has."""
+    if problem is None or not (added or problem.measures):
+        return
+    from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (which takes clingo along)
+    from foon_asp.rules.fact_values import FactValues  # noqa: PLC0415 (only of use with constraints)
+    from foon_asp.rules.unmatched import unmatched  # noqa: PLC0415
+
+    values = FactValues(problem)
+    theirs = [each for each in added if not _is_ours(each)]
+    ours = [each for each in added if _is_ours(each)]
+    if ours:
+        from foon_asp.rules.parameter_names import unknown_parameters  # noqa: PLC0415
+
+        relaxed = settings.relaxed.constraints if settings.relaxed is not None else ()
+        for message in unknown_parameters((*settings.constraints, *relaxed), settings.constants, values):
+            warn(message)
+    for diagnostic in unmatched(theirs, ours, constants, values):
+        warn(str(diagnostic))
+    for place, text in {(each.place, each.text): None for each in problem.measures.values()}:
+        for diagnostic in unmatched([read_encoding(Stated(place, text))], [], (), values):
+            warn(str(diagnostic))
+
+
+def _is_ours(encoding: "Encoding") -> bool:
+    rules = encoding.rules
+    file = rules.file if isinstance(rules, Stated) else rules
+    return file is not None and is_own(file)
 
 
 def _known(settings: Settings) -> "ReadyMade | None":
@@ -182,9 +222,7 @@ def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
     """Give what rules of the user's own read and not every question has facts of, with the first argument."""
     found: set[tuple[str, str]] = set()
     for encoding in encodings:
-        rules = encoding.rules
-        file = rules.file if isinstance(rules, Stated) else rules
-        if (file is None or not is_own(file)) and not _OF_SOME_QUESTIONS.isdisjoint(encoding.used):
+        if not _is_ours(encoding) and not _OF_SOME_QUESTIONS.isdisjoint(encoding.used):
             found.update(encoding.first_names(_OF_SOME_QUESTIONS))
     return frozenset(found)
 
@@ -262,14 +300,16 @@ def asks_of_all(problem: Problem, settings: Settings) -> bool:
     return not part or reach_of_rules(settings) is not ReachOfRules.NEEDED
 
 
-def rules_digest(settings: Settings, warn: Callable[[str], None] = lambda _: None) -> dict[str, str]:
-    """Give a digest of the rules that are added, if there are any, under ``rules``.
+def rules_digest(
+    settings: Settings, warn: Callable[[str], None] = lambda _: None, problem: Problem | None = None
+) -> dict[str, str]:
+    """Return a digest of the rules that are added, if there are any, under ``rules``.
 
-    Rows of results have it in common. Raises as :func:`assemble` does.
+    Rows of results have it in common. Warns and raises as :func:`assemble` does.
     """
     if not (settings.constraints or settings.constants or settings.encodings):
         return {}
-    program = assemble(settings, warn)
+    program = assemble(settings, warn, problem=problem)
     said = json_line([program.text, program.constants])
     return {"rules": hashlib.sha256(said.encode()).hexdigest()[:16]}
 

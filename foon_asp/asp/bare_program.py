@@ -50,7 +50,7 @@ def bare_program(
     """
     penalty = ""
     # how long and how we would search is nothing to bare clingo
-    settings = settings._replace(deadline=None, session=None)
+    settings = settings._replace(deadline=None)
     if soft:
         from foon_asp.asp.soft import soft_rules  # noqa: PLC0415 (takes clingo along)
 
@@ -91,7 +91,7 @@ def bare_plans(
     Beside the program, which does not say how often units are executed, gives for each unit its number and
     how often any plan executes it that is as good by the first objective; no program where nothing says so.
     """
-    settings = settings._replace(deadline=None, session=None)
+    settings = settings._replace(deadline=None)
     most = executions_as_good(outcome, settings)
     if most is None:
         return None, {}

@@ -35,7 +35,7 @@ class Breaking:
         self.local = program.understood is not None and program.understood.local
         weights = dict.fromkeys(settings.constraints, 1)
         self._rules, _, self._relaxed = soft_rules(settings._replace(constraints=()), weights)
-        self._settings = settings._replace(constraints=(), relaxed=self._relaxed, session=None)
+        self._settings = settings._replace(constraints=(), relaxed=self._relaxed)
         self._program = assemble(self._settings, lambda _: None, used_up)
 
     def broken(self, problem: Problem, tree: Collection[int]) -> tuple[IntegrityConstraint, ...]:

@@ -15,6 +15,7 @@ from foon_asp.encoding.search import ground
 from foon_asp.grounding.parsing import nodes, parse
 from foon_asp.grounding.stated import Loaded
 from foon_asp.network import Source
+from foon_asp.results.values import ListedConstraint
 from foon_asp.rules.clause import place, variables, written
 from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.rules.stating import loaded
@@ -35,6 +36,11 @@ class IntegrityConstraint(NamedTuple):
     source: Source
     text: str
     constants: tuple[str, ...]
+
+    @property
+    def listed(self) -> ListedConstraint:
+        """The rule as a value of results."""
+        return ListedConstraint(self.number, *self.source[:2], self.text, self.constants)
 
     def __str__(self) -> str:
         return f"{self.source}: {self.text}" + "".join(f" -c {setting}" for setting in self.constants)

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from foon_asp.asp import solver
 from foon_asp.asp.outcome import Outcome
+from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
-from foon_asp.asp.solver import Reporter
 from foon_asp.problem import Objective, Problem
 
 

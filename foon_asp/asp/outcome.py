@@ -32,7 +32,7 @@ class Proof(StrEnum):
     """What proves a claim.
 
     ``solver``: an exhausted search. ``cuts``: landmark cuts that leave nothing to search, at once or case by
-    case; see docs/reductions.md. ``counts``: where items are used up, no whole counts of executions cost
+    case; see docs/dev/reductions.md. ``counts``: where items are used up, no whole counts of executions cost
     less; see docs/plans.md. ``certificate``: a certificate that was verified without either.
     """
 
@@ -59,7 +59,7 @@ class Outcome(NamedTuple):
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
-        >>> isinstance(answer, foon_asp.Outcome), answer.proof
+        >>> isinstance(answer.outcome, foon_asp.Outcome), answer.proof
         (True, <Proof.CUTS: 'cuts'>)
     """
 

@@ -11,6 +11,7 @@ from foon_asp.asp.settings import Settings
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Costs, Objective, Problem, executable_order, multiplies
 from foon_asp.proof.simulation import Verdict, simulate_for
+from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.reduce import ExactCosts, Reduced
 from foon_asp.rules.constraint import RuleText
 
@@ -34,9 +35,10 @@ class Postconditions:
             raise BugError(f"{otherwise()}\n{self._question()}")
 
     def tree(self, units: Collection[int]) -> tuple[int, ...]:
-        """Require that units execute and make the goals; gives them in such an order.
+        """Require that units execute and make the goals; returns them in such an order.
 
-        Raises :class:`UserError` where they do not by rules of the user's.
+        It is one in which each item can be used up, where there is one. Raises :class:`UserError` where they
+        do not execute by rules of the user's.
         """
         problem = self.problem
         order = executable_order(problem, units)
@@ -52,7 +54,8 @@ class Postconditions:
             if not self._own:
                 raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
             self.require(False, lambda: message)
-        return listed
+        run = used_up_run(problem, problem.tree(listed))
+        return listed if run.order is None else tuple(listed[position] for position in run.order)
 
     def no_tree(self) -> None:
         """Require that nothing makes all goals, going through all that could lead to them.
@@ -227,7 +230,6 @@ class Postconditions:
             if how.bounded
             else "",
             "time limit": "" if how.begun.seconds is None else f"{how.begun.seconds} s",
-            "session": "yes" if how.session is not None else "",
         }
         return "\n".join(
             [

@@ -178,6 +178,10 @@ def prepare(
             f"found #const {objective} in a constraint or an encoding, but that is the name of a measure: "
             "give one of them another name"
         )
+    if sum(not each.row.whole for each in asked) > 1:
+        from foon_asp.encoding.scales import require_one_rounded  # noqa: PLC0415 (few questions have two)
+
+        require_one_rounded(problem, asked)
     deadline = settings.begun
     first = Prepared(problem, asked, settings, deadline, program)
     try:

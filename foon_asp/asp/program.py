@@ -22,8 +22,7 @@ class Program(NamedTuple):
     says that not all of the first three files say what ours say. ``own`` says that every rule is ours, so
     that what the goals do not need cannot matter. ``bounded`` says that a tree of the unbounded question need
     not be one. ``looked_at`` are the predicates, by name and arity, that rules of the user's look at.
-    ``text`` is all that the files said when they were looked over. ``open`` says that the program means the
-    same when facts are left open (:mod:`foon_asp.asp.session`). ``endless`` says that nobody knows whether
+    ``text`` is all that the files said when they were looked over. ``endless`` says that nobody knows whether
     its grounding comes to an end. ``encodings`` is the folder whose encodings are used in place of ours.
     ``ours`` are the files but for those that the user added. ``understood`` are the rules that are added,
     looked into: ``None`` where there are none, where encodings are replaced, and where some of the rules may
@@ -42,7 +41,6 @@ class Program(NamedTuple):
     bounded: bool = False
     looked_at: frozenset[tuple[str, int]] = frozenset()
     text: str = ""
-    open: bool = False
     endless: bool = False
     constants: tuple[str, ...] = ()
     encodings: Path | None = None
@@ -83,7 +81,6 @@ class Program(NamedTuple):
             own=True,
             looked_at=frozenset(),
             text="",
-            open=False,
             endless=False,
             understood=None,
             ready_made=None,

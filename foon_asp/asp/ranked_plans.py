@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from foon_asp.asp.outcome import Status
+from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Bounded, Settings
-from foon_asp.asp.solver import Reporter
 from foon_asp.asp.used_up import Plan, solve_used_up
 from foon_asp.problem import Costs, Objective, Problem
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.prepared import prepare
+from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
-from foon_asp.asp.solver import Reporter
 from foon_asp.encoding.facts import write_avoided, write_objectives
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
@@ -41,7 +41,7 @@ class Ranked:
         settings: Settings,
         reporter: Reporter | None = None,
     ) -> None:
-        self._program = assemble(settings, (reporter or Reporter()).warning)
+        self._program = assemble(settings, (reporter or Reporter()).warning, problem=problem)
         self._first = prepare(problem, objectives, settings, self._program)
         self._holds = self._first.holds
         self._given: tuple[int | Fraction, ...] = ()  # what the tree given last costs
@@ -54,7 +54,7 @@ class Ranked:
 
         clingo gives them in the order of rounded costs. A tree is given out when no tree that clingo may
         still find can come before it: where costs are rounded, one may whose weight is higher by less than
-        there are units that weigh less than they cost (docs/exact-success.md).
+        there are units that weigh less than they cost (docs/dev/exact-success.md).
         """
         if self.complete or self._first.stopped:
             return

@@ -3,19 +3,17 @@
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.own_encodings import ENCODING_FILES, is_own
+from foon_asp.grounding.run import asks_for_statistics
 from foon_asp.grounding.stated import Loaded
 from foon_asp.network import Source
 from foon_asp.problem import Objective
-from foon_asp.reduce import ALL, Reduction
+from foon_asp.reduce.reductions import ALL, Reduction
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import Constraint
-
-if TYPE_CHECKING:  # clingo, which often is not needed
-    from foon_asp.asp.session import Session
 
 
 class Relaxed(NamedTuple):
@@ -55,9 +53,8 @@ class Settings(NamedTuple):
     ``constraints`` are added to the encodings; ``encodings`` is a folder whose files replace ours;
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
     ``reductions`` come before the search as far as constraints allow, and not with bounds or other encodings.
-    ``relaxed`` are constraints in other words. Trees keep to what is ``bounded``. ``session`` keeps ground
-    programs for the next question. ``deadline`` is for everything from the cut to the last proof, and has
-    begun.
+    ``relaxed`` are constraints in other words. Trees keep to what is ``bounded``. ``deadline`` is for
+    everything from the cut to the last proof, and has begun.
     """
 
     constraints: tuple[Constraint, ...] = ()
@@ -67,7 +64,6 @@ class Settings(NamedTuple):
     reductions: frozenset[Reduction] = ALL
     relaxed: Relaxed | None = None
     bounded: Bounded | None = None
-    session: "Session | None" = None
     deadline: Deadline | None = None
 
     @property
@@ -77,6 +73,11 @@ class Settings(NamedTuple):
             ours = encodings_folder()
             return None if all(is_own(ours / name) for name in ENCODING_FILES) else ours
         return self.encodings
+
+    @property
+    def asks_for_statistics(self) -> bool:
+        """Whether clingo's statistics are asked for."""
+        return asks_for_statistics(self.clingo_options)
 
     @property
     def begun(self) -> Deadline:

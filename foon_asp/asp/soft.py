@@ -7,8 +7,9 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.outcome import Outcome, Status
 from foon_asp.asp.prepared import prepare
+from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Relaxed, Settings
-from foon_asp.asp.solver import Reporter, solve_prepared
+from foon_asp.asp.solver import solve_prepared
 from foon_asp.encoding.facts import write_greatest_penalty, write_least_penalty, write_soft, write_tree
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
@@ -72,7 +73,7 @@ def solve_soft(
     settings = settings._replace(deadline=settings.begun)
     constraints, by_number, relaxed = soft_rules(settings, weights)
     settings = settings._replace(relaxed=relaxed)
-    program = assemble(settings, (reporter or Reporter()).warning)
+    program = assemble(settings, (reporter or Reporter()).warning, problem=problem)
     first = prepare(problem, objectives, settings, program)
     holds = first.holds
     spent: dict[str, float] = {}

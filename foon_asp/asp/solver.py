@@ -2,29 +2,34 @@
 
 import itertools
 import time
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from foon_asp.asp.assembly import CLINGO_OPTIONS, SHRINKING, assemble, ready_made
+from foon_asp.asp.assembly import CLINGO_OPTIONS, SHRINKING, program_of
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
+from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
+from foon_asp.bounds.landmark_cuts import Cuts
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.reduce import ExactCosts, Listener, Reduced, Reduction, Wide
 
 if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
-    from foon_asp.asp.session import OpenProgram
     from foon_asp.encoding.scales import Scales
     from foon_asp.grounding.grounded import Grounded
     from foon_asp.grounding.run import Run
 
+_MOST_CUT_OBJECTS = 200_000  # of the cuts that a certificate tries first; it finds others by itself
 _NEAR = 200  # units nearest to the goals, among which a tree that keeps to all rules is looked for first
 _LOOSE = 12  # times that trees with loose ends are looked for, with ever fewer of these
+NOT_ASKED = (
+    "clingo has no statistics: the question was settled without its search; --reduce none leaves it to clingo"
+)
 _FEWEST: tuple[Objective, ...] = (Objective.UNITS,)
 _GROWN = 1.5  # times as many of them are known each time, if that is what leads to what they need
 _MANY = 5000  # units that are known then, at most about, beside those that were before
@@ -32,49 +37,6 @@ _QUICK = "--configuration=frumpy", "--opt-strategy=usc,pmres,4"  # what clingo h
 _MORE = 4  # times as many, where there is none
 
 Units = frozenset[int]
-
-
-class Reporter:
-    """Receives progress during a search; override the methods you need.
-
-    Example:
-        >>> class Printer(foon_asp.Reporter):
-        ...     def tree(self, costs):
-        ...         print("found", costs.units, "units")
-        >>> answer = foon_asp.solve(foon_asp.load().problem("ice"), reporter=Printer())
-        found 2 units
-    """
-
-    def warning(self, message: str) -> None:
-        """Receive a warning about a constraint or an encoding.
-
-        Parameters:
-            message: The text of the warning.
-        """
-
-    def tree(self, costs: Costs) -> None:
-        """Receive a tree that was found, the best so far.
-
-        Parameters:
-            costs: What the tree costs.
-        """
-
-    def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Receive a proved bound.
-
-        Parameters:
-            objective: The objective that is being optimized.
-            bound: The best value that any tree can still have.
-        """
-
-    def step(self, word: str, done: int, total: int) -> None:
-        """Receive how many answers of several are found: once at the start, then after each.
-
-        Parameters:
-            word: What is being done.
-            done: The number of answers found.
-            total: The number of answers asked for.
-        """
 
 
 def solve(
@@ -92,12 +54,15 @@ def solve(
     encodings and options, and where ``success`` is asked for and no rates are known.
     """
     settings, reporter = settings or Settings(), reporter or Reporter()
-    program = ready_made(problem, settings, reporter.warning) or assemble(settings, reporter.warning)
+    program = program_of(problem, settings, reporter.warning)
     began = time.perf_counter()
     heard = _Heard(problem, objectives, reporter)
     first = prepare(problem, objectives, settings, program, heard, brief=bool(known))
     seconds = {"cut": time.perf_counter() - began}
-    return _Solver(first, objectives, heard, seconds, known=known).solve()
+    outcome = _Solver(first, objectives, heard, seconds, known=known).solve()
+    if settings.asks_for_statistics and not heard.asked:
+        reporter.statistics(NOT_ASKED)
+    return outcome
 
 
 def solve_prepared(first: Prepared, objectives: Sequence[Objective], rules: str = "") -> Outcome:
@@ -111,6 +76,7 @@ class _Heard(Listener):
     def __init__(self, problem: Problem, objectives: Sequence[Objective], reporter: Reporter) -> None:
         self.problem, self.levels, self.reporter = problem, levels(tuple(objectives)), reporter
         self.best: tuple[Units, Costs] | None = None
+        self.asked = False  # clingo, so that there are statistics
         self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
 
     def tree(self, units: Units) -> None:
@@ -121,6 +87,12 @@ class _Heard(Listener):
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
         self.reporter.bound(self.levels[0], costs.first(bound))
+
+    def ended(self, run: "Run") -> None:
+        """Pass on the statistics of a run of clingo."""
+        if run.statistics:
+            self.asked = True
+            self.reporter.statistics(run.statistics)
 
     def costs(self, units: Units) -> Costs:
         """Give what units cost, worked out once for a tree in hand."""
@@ -146,7 +118,6 @@ class _Solver:
         self.problem, self.levels, self.deadline = first.problem, first.levels, first.deadline
         self.program, self.holds = first.program, first.holds
         self._scales: Scales | None = None  # before clingo is asked anything
-        self._open: OpenProgram | None = None
         self._ground: tuple[object, Grounded] | None = None  # what was asked last
         self._loose = False  # whether what is found may have loose ends
         self._known = set() if known is None else known  # units, by number, with which loose ends begin
@@ -341,12 +312,14 @@ class _Solver:
             asked = replace(self.first, program=program)
             text = required + write_known(map(number, sorted(known)))
             ended = asked.run(text + write_objectives(by))
+            self.heard.ended(ended)
             if by != self.levels and ended.exhausted and ended.units is not None:
                 tree = self._ids(ended.units)
                 if tree <= known:  # one that keeps to all rules: what is best is no worse
                     by, fewest = self.levels, len(tree)
                     worst = self._scaled().weight(by[0], tree)
                     ended = asked.run(text + write_objectives(by), f"opt,{worst}")
+                    self.heard.ended(ended)
             if not ended.exhausted or ended.units is None:
                 return ended if ended.exhausted else None
             ended.units = self._ids(ended.units)
@@ -472,23 +445,16 @@ class _Solver:
 
         self._ask_clingo()
         try:
-            if (
-                self.first.settings.session is not None
-                and self.program.open
-                and self._kept
-                and not self.first.rest
-            ):
-                ended = self._run_open(objectives, products, wanted, opt_mode, on_tree, on_bound)
-            else:
-                ended = self._grounded(objectives, products, wanted, fewer or {}).search(
-                    self.deadline, opt_mode, on_tree, on_bound
-                )
+            ended = self._grounded(objectives, products, wanted, fewer or {}).search(
+                self.deadline, opt_mode, on_tree, on_bound
+            )
         except KeyboardInterrupt:  # before it came to a search
             self.deadline.interrupt()
             from foon_asp.grounding.run import Run  # noqa: PLC0415
 
             ended = Run()
         self.seconds["solve"] = self.seconds.get("solve", 0.0) + ended.solve_seconds
+        self.heard.ended(ended)
         if ended.units is not None:
             ended.units = self._ids(ended.units)
         return ended
@@ -537,50 +503,6 @@ class _Solver:
             self._scales = self.first.scales
         return self._scales
 
-    @property
-    def _kept(self) -> bool:
-        """Whether programs are kept for questions of this kind: one program settles one objective only."""
-        return all(objective.row.whole or multiplies(objective) for objective in self.levels)
-
-    def _run_open(
-        self,
-        objectives: Sequence[Objective],
-        products: Sequence[Mapping[int, int]],
-        wanted: int | None,
-        opt_mode: str,
-        on_tree: Callable[[Units], None] | None,
-        on_bound: Callable[[list[int]], None] | None,
-    ) -> "Run":
-        """Ask a program that is kept from question to question."""
-        session = self.first.settings.session
-        assert session is not None
-        began = time.perf_counter()
-        if self._open is None:
-            self._open = session.program(
-                self.program, self.problem, self.first.units, self.levels, self.deadline
-            )
-            self._scales = self._open.scales.of(self.problem)
-        self._spent("ground", began)
-        try:
-            ended = self._open.run(
-                self.problem,
-                self.first.units,
-                self.levels,
-                objectives,
-                products,
-                wanted,
-                self.deadline,
-                opt_mode,
-                on_tree,
-                on_bound,
-            )
-        except BaseException:  # ctrl-C too: nobody knows what was set and what was not
-            session.forget(self._open)
-            raise
-        if not ended.exhausted:  # what a search that was stopped leaves behind can make the next one endless
-            session.forget(self._open)
-        return ended
-
     def _ids(self, numbers: Units) -> Units:
         """Give the ids of units in an answer, whose numbers come from encodings, which may be the user's."""
         units: set[int] = set()
@@ -594,7 +516,7 @@ class _Solver:
         return Units(units)
 
     def _settle(self, best: Units, fewest: int = 0) -> tuple[Units, bool]:
-        """Examine every total that rounding may have hidden; see docs/exact-success.md.
+        """Examine every total that rounding may have hidden; see docs/dev/exact-success.md.
 
         No tree has fewer units than ``fewest``. Returns the tree that is best exactly, and whether the search
         came to its end.
@@ -769,8 +691,19 @@ def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
     """
     if reduced is None:
         return []
-    best = [cut.objects for cut in reduced.cuts.cuts] if reduced.cuts else []
+    best = _few_objects(reduced.cuts)
     if reduced.shared:
         best = [objects for objects, _ in reduced.shared.cuts]
-    first = [cut.objects for cut in reduced.wide.cuts.cuts] if reduced.wide else []
+    first = _few_objects(reduced.wide.cuts if reduced.wide else None)
     return [*dict.fromkeys([*best, *first, *reduced.tight])]
+
+
+def _few_objects(cuts: Cuts | None) -> list[frozenset[int]]:
+    """Return the objects of cuts, of the first ones only where they have very many together."""
+    found, total = list[frozenset[int]](), 0
+    for cut in cuts.cuts if cuts else ():
+        if total > _MOST_CUT_OBJECTS:
+            break
+        found.append(cut.objects)
+        total += len(found[-1])
+    return found

@@ -13,8 +13,9 @@ from pathlib import Path
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.program import Program
+from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Bounded, Settings
-from foon_asp.asp.solver import Reporter
+from foon_asp.asp.solver import NOT_ASKED
 from foon_asp.asp.solver import solve as solve_lasting
 from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure
 from foon_asp.bounds.whole_program import Stopped
@@ -40,7 +41,7 @@ from foon_asp.rules.limit import Limit
 Plan = tuple[int, ...]
 """Units by id in the order of execution, with repeats."""
 
-_LARGEST = 10**9  # a cost that is not rounded
+_LARGEST = 10**12  # a cost that is not rounded
 _FINE = 10**6  # steps of the greatest cost, where costs are rounded
 # Constraints of ours about what is available before something else, or that count units and not executions,
 # and predicates of the first kind.
@@ -61,7 +62,11 @@ def solve_used_up(
 
     Raises :class:`UserError` for what is not built for items that are used up, by name.
     """
-    return _solver(problem, tuple(objectives), settings or Settings(), reporter or Reporter()).solve()
+    solver = _solver(problem, tuple(objectives), settings or Settings(), reporter or Reporter())
+    outcome = solver.solve()
+    if solver.settings.asks_for_statistics and not solver.searched:
+        solver.reporter.statistics(NOT_ASKED)
+    return outcome
 
 
 def _solver(
@@ -218,7 +223,7 @@ class _Solver:
     ) -> None:
         self.problem, self.objectives, self.levels = problem, objectives, asked
         self.settings, self.deadline, self.reporter = settings, settings.begun, reporter
-        self.program = assemble(settings, reporter.warning, used_up=True)
+        self.program = assemble(settings, reporter.warning, used_up=True, problem=problem)
         self.program.require_facts(problem, asked)
         require_rules_of_plans(self.program)
         self.removed: Callable[[int], bool] = lambda _: False
@@ -232,6 +237,7 @@ class _Solver:
         self.tree: frozenset[int] = frozenset()  # some that makes the goals if nothing is used up
         self.seconds: dict[str, float] = {}
         self.best: tuple[Plan, Costs] | None = None
+        self.searched = False  # by clingo, so that there are statistics
         self.bounds: dict[Objective, int | Fraction] = {}
 
     def solve(self) -> Outcome:
@@ -312,6 +318,7 @@ class _Solver:
             return self._outcome(Status.INFEASIBLE, Proof.COUNTS)
         if plan is not None and self._take(plan):
             counting.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
+            counting = self._below_cutoff(counting, plan)
         elif self._none_lasts():
             return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
         elif counting.none_is_left():
@@ -328,6 +335,19 @@ class _Solver:
                 self.bounds = counting.proved()
                 self._spent("bound", began)
 
+    def _below_cutoff(self, counting: "_Counting", plan: Plan) -> "_Counting":
+        """Leave out units that alone cost more than a plan, where costs are too large to count unrounded."""
+        objective = self.levels[0]
+        if multiplies(objective) or counting.measure(objective).exact is None:
+            return counting
+        cutoff = self.problem.costs(plan).measure(objective)
+        units = [unit for unit in counting.units if self.problem.figure(objective, unit) <= cutoff]
+        if not units or len(units) == len(counting.units):
+            return counting
+        fewer = _Counting(self, units)
+        fewer.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
+        return fewer
+
     def _none_lasts(self) -> bool:
         """Whether it is proved that rules allow no tree even if items last: a plan executes a tree."""
         rules, problem = self.program.understood, self.problem
@@ -335,7 +355,7 @@ class _Solver:
             return False
         there = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
         lasting = replace(problem, kitchen=there, items=None)
-        settings = self.settings._replace(session=None, bounded=None)
+        settings = self.settings._replace(bounded=None)
         return solve_lasting(lasting, (Objective.UNITS,), settings).status is Status.INFEASIBLE
 
     def _take(self, plan: Plan) -> bool:
@@ -399,8 +419,9 @@ class _Counting:
     """Counts of the units of a question, by place, and the orders that they can be executed in."""
 
     def __init__(self, solver: _Solver, units: list[int]) -> None:
-        self._solver, self._problem, self._units = solver, solver.problem, units
+        self._solver, self._problem, self.units = solver, solver.problem, units
         self._measures: dict[Objective, Measure] = {}
+        self._step = Fraction(1)  # of what is counted by the first objective
         self._asked = -math.inf  # orders that were asked for in vain, where they are counted
         problem = solver.problem
         places = {unit: a for a, unit in enumerate(units)}
@@ -447,12 +468,12 @@ class _Counting:
         return Measure(costs, 0, total, _classes(figures, Fraction(0)))
 
     def _figures(self, objective: Objective) -> list[Fraction]:
-        return [Fraction(self._problem.figure(objective, unit)) for unit in self._units]
+        return [Fraction(self._problem.figure(objective, unit)) for unit in self.units]
 
     @cached_property
     def _rates(self) -> RateScale:
         try:
-            return rate_scale(self._problem.different_rates(self._units))
+            return rate_scale(self._problem.different_rates(self.units))
         except ValueError:
             raise UserError(
                 "a success rate is 0, for which plans with items that are used up cannot be compared"
@@ -488,8 +509,17 @@ class _Counting:
     def prove(self) -> None:
         """Prove that no plan is better than the best so far; raises :class:`BetterError` if one is."""
         assert self._solver.best is not None
-        costs = self._solver.best[1]
-        levels = [self.level(objective, costs) for objective in self._solver.levels]
+        plan, costs = self._solver.best
+        levels: list[Level] = []
+        self._step = 1 / self._scale(self._solver.levels[0])
+        for objective in self._solver.levels:
+            split = self._split(objective, plan)
+            if split is None:
+                levels.append(self.level(objective, costs))
+                continue
+            if not levels:
+                self._step = split[0]
+            levels += split[1]
         self._asked = 0
         try:
             self.bound.prove(levels, self._is_better)
@@ -497,6 +527,30 @@ class _Counting:
             if not self._best_within_caps(levels[0]):
                 self._asked = -math.inf
                 self.bound.prove(levels, self._is_better)
+
+    def _split(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
+        """Split costs too large to count unrounded into two levels: large ones in steps, and all others.
+
+        Plans that differ in the large costs differ by a step at least. Where what a plan in hand costs by
+        all others is less, no plan is better that costs a step more. Returns the step, too; ``None`` where
+        costs need no such levels, or have none.
+        """
+        if multiplies(objective) or objective.row.item or self.measure(objective).exact is None:
+            return None
+        figures = self._figures(objective)
+        common = math.lcm(*(figure.denominator for figure in figures))
+        costs = [int(common * figure) for figure in figures]
+        step = math.gcd(*(cost for cost in costs if cost > _LARGEST))
+        counts = Counter(plan)
+        executed = [counts[unit] for unit in self.units]
+        levels = []
+        for large in (True, False):
+            of_level = [(cost // step if large else cost) * ((cost > _LARGEST) is large) for cost in costs]
+            total = sum(cost * n for cost, n in zip(of_level, executed, strict=True))
+            if max(of_level) > _LARGEST or (not large and total >= step):
+                return None
+            levels.append(Level(Measure(of_level), Fraction(total), total))
+        return Fraction(step, common), levels
 
     def none_is_left(self) -> bool:
         """Prove that no counts are those of a plan, where there are not too many; whether that is so.
@@ -510,11 +564,14 @@ class _Counting:
         return True
 
     def proved(self) -> dict[Objective, int | Fraction]:
-        """Give what the first objective costs at least, where that is not rounded and something is proved."""
+        """Return what the first objective costs at least, where something is proved and no rates multiply.
+
+        Rounded costs are rounded down, so what they come to at least is a bound, too.
+        """
         objective = self._solver.levels[0]
-        if self.bound.proved <= 0 or self.measure(objective).exact is not None:
+        if self.bound.proved <= 0 or multiplies(objective):
             return {}
-        least = Fraction(math.ceil(self.bound.proved)) / self._scale(objective)
+        least = math.ceil(self.bound.proved) * self._step
         return {objective: int(least) if objective.row.whole else least}
 
     def _best_within_caps(self, level: Level) -> bool:
@@ -523,7 +580,7 @@ class _Counting:
         Whether that is proved. Raises :class:`BetterError` if one is.
         """
         caps = [cap for cap in self.bound.caps(level) if cap is not None]
-        if len(caps) < len(self._units) or sum(caps) > _MOST_AT_ONCE:
+        if len(caps) < len(self.units) or sum(caps) > _MOST_AT_ONCE:
             return False
         if not all(each.row.whole for each in self._solver.levels):
             return False
@@ -547,7 +604,7 @@ class _Counting:
         """Ask clingo for a good plan that executes units not much more often than counts say."""
         extra = 1
         while extra <= _MOST_COPIES:
-            plan = self._plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self._units))}, True)
+            plan = self._plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self.units))}, True)
             if plan is not None:
                 return plan
             extra *= 2
@@ -569,14 +626,14 @@ class _Counting:
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
         solver, problem = self._solver, self._problem
-        units = [self._units[a] for a in times]
+        units = [self.units[a] for a in times]
         number = problem.network.unit_number
         # within fixed counts only the copies that are taken of a stock are left to choose
         wanted = solver.levels if best else [each for each in solver.levels if each is Objective.KITCHEN]
         looked_at = None if solver.program.own else solver.program.looked_at
         scales = Scales(problem, units, wanted) if best or looked_at is not None else None
         text = facts.write_facts(problem, units, scales, looked_at)
-        text += facts.write_times({number(self._units[a]): each for a, each in times.items()})
+        text += facts.write_times({number(self.units[a]): each for a, each in times.items()})
         text += facts.write_objectives(wanted)
         files = solver.program.files
         if best and scales is not None and (solver.below or solver.beside):
@@ -593,6 +650,9 @@ class _Counting:
             predicates=[("times", 2), ("_after", 4)],
             endless=solver.program.endless,
         )
+        if ended.statistics:
+            solver.searched = True
+            solver.reporter.statistics(ended.statistics)
         solver.seconds["ground"] = solver.seconds.get("ground", 0.0) + ended.ground_seconds
         solver.seconds["solve"] = solver.seconds.get("solve", 0.0) + ended.solve_seconds
         return ended

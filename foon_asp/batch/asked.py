@@ -1,53 +1,45 @@
 """One of many questions, and who turns it into a problem."""
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import Annotated, Protocol
 
-from foon_asp.problem import Problem
-from foon_asp.text.json_value import json_line
+from msgspec import Meta, Struct
+
+from foon_asp.problem import ContainerRule, Problem
+
+Name = Annotated[str, Meta(min_length=1)]
+Goals = Name | Annotated[tuple[Name, ...], Meta(min_length=1)]
+Seconds = Annotated[float, Meta(ge=0, le=1e9)]  # at most some thirty years
 
 
-class Asked(NamedTuple):
-    """One question of a batch, by names.
+class Asked(Struct, frozen=True):
+    """One question of a batch, by names, as a line of JSON has it.
 
-    ``goals`` are made by one tree. ``kitchen`` is a file, ``@starting``, or ``None`` for that of the
+    Several goals are made by one tree. ``kitchen`` is a file, ``@starting``, or ``None`` for that of the
     data. ``objective`` is a list by commas of which the first counts most. ``time_limit`` is in seconds.
     ``items`` may be used up, with files for what is in ``stock`` and what ``stays``.
     """
 
-    goals: tuple[str, ...]
-    objective: str = "units"
-    containers: str = "strict"
-    kitchen: Path | None = None
-    time_limit: float | None = None
-    items: str = "lasting"
-    stock: Path | None = None
-    stays: Path | None = None
+    goal: Goals
+    objective: Name = "units"
+    containers: ContainerRule = ContainerRule.STRICT
+    items: Name = "lasting"
+    kitchen: Name | None = None
+    stock: Name | None = None
+    stays: Name | None = None
+    time_limit: Seconds | None = None
 
     @property
-    def key(self) -> str:
-        """The question as text, the same in every run: it identifies a row of results."""
-        return json_line(self.shown())
-
-    def shown(self) -> dict[str, object]:
-        """Give what was asked, in plain values."""
-        files = {"kitchen": self.kitchen, "stock": self.stock, "stays": self.stays}
-        return {
-            "goal": self.goals[0] if len(self.goals) == 1 else list(self.goals),
-            "objective": self.objective,
-            "containers": self.containers,
-            "items": self.items,
-            **{key: None if file is None else str(file) for key, file in files.items()},
-            "time_limit": self.time_limit,
-        }
+    def goals(self) -> tuple[str, ...]:
+        """The goals that one tree makes."""
+        return (self.goal,) if isinstance(self.goal, str) else self.goal
 
 
 class Asker(Protocol):
     """Data that is open, and may be asked again and again."""
 
-    def named(self, word: str, containers: str, kitchen: Path | None) -> Sequence[str]:
-        """Give the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
+    def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
+        """Return the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
 
     def problem(self, asked: Asked) -> Problem:
         """Pose a question; raises :class:`UserError` where a goal or a kitchen is not there."""

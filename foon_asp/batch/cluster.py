@@ -3,22 +3,19 @@
 import functools
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import Final
 
 from foon_asp.asp import Settings
-from foon_asp.batch.answer_row import Row, answer_row, failed_row
+from foon_asp.batch.answer_row import AnswerRow, answer_row, failed_row
 from foon_asp.batch.asked import Asked, Asker, Opener
 from foon_asp.errors import UserError
 
-if TYPE_CHECKING:
-    from distributed import Client
-
 _PATIENCE = "10s"  # until there has to be an answer from the scheduler
-_AHEAD = 2  # tasks on their way for each thread of the cluster, so that none waits for the next
-_SECONDS = 0.5  # after which a task begins with no further question; the others go into another task
-_MOST = 256  # questions of a task
+_TASKS_AHEAD: Final = 2  # on their way for each thread of the cluster, so that none waits for the next
+_QUESTIONS: Final = 32  # of a task: Dask takes some milliseconds for each task
+_TASK_SECONDS: Final = 0.5  # after which a task begins with no further question
 
 
 def answer_on_cluster(
@@ -27,13 +24,14 @@ def answer_on_cluster(
     address: str,
     memory_limit: int | None = None,
     how: Settings | None = None,
-) -> Iterator[tuple[Asked, Row]]:
-    """Answer questions on the workers of a scheduler, as ``how`` says, and give rows as they come.
+) -> Iterator[AnswerRow]:
+    """Answer questions on the workers of a scheduler, as ``how`` says; return rows as they come.
 
     A worker opens the data once, and keeps them until others are asked for. The files have to be there under
-    the same names as here. A task has as many questions as take half a second; where its worker dies, another
-    one answers them. A question whose worker dies again and again is a row that says so. Raises
-    :class:`UserError` where there is no scheduler, or Dask is not installed.
+    the same names as here. What a task leaves or dies of is asked in tasks of one question each. A question
+    whose worker dies again and again is asked with nothing else on the cluster, since what was on the same
+    worker may be at fault, and then is a row that says so. Raises :class:`UserError` where there is no
+    scheduler, or Dask is not installed.
     """
     try:
         from distributed import Client, KilledWorker, as_completed  # noqa: PLC0415 (an extra, slow to import)
@@ -44,82 +42,54 @@ def answer_on_cluster(
     except (OSError, ValueError, TypeError) as error:  # TypeError: an address of TLS without certificates
         raise UserError(f"no scheduler at {address}: {error}") from None
     with client:
-        chunks = _Chunks(questions)
-        asked_of: dict[str, Sequence[Asked]] = {}
-        alone: deque[Sequence[Asked]] = deque()  # asked again with nothing else on the cluster
+        waiting = iter(questions)
+        again: deque[tuple[Asked, ...]] = deque()
+        suspects: deque[tuple[Asked, ...]] = deque()
+        asked_of: dict[str, tuple[Asked, ...]] = {}
         is_alone = False
         running = as_completed()
 
-        def submit(some: Iterable[Sequence[Asked]]) -> None:
-            for chunk in some:
-                future = client.submit(_answer_some, opener, chunk, memory_limit, how, pure=False)
-                asked_of[future.key] = chunk
-                running.add(future)
+        def submit(chunk: tuple[Asked, ...]) -> None:
+            future = client.submit(_answer_some, opener, chunk, memory_limit, how, pure=False)
+            asked_of[future.key] = chunk
+            running.add(future)
 
-        ahead = _AHEAD * max(1, _threads(client))
-        submit(islice(chunks, ahead))
+        def submit_ahead() -> None:
+            while len(asked_of) < ahead:
+                chunk = again.popleft() if again else tuple(islice(waiting, _QUESTIONS))
+                if not chunk:
+                    break
+                submit(chunk)
+
+        threads: dict[str, int] = client.nthreads()
+        ahead = _TASKS_AHEAD * max(1, sum(threads.values()))
+        submit_ahead()
         for future in running:
             chunk = asked_of.pop(future.key)
-            rows: list[Row] = []
-            if future.status == "finished":
-                rows, seconds = future.result()
-                chunks.took(chunk, len(rows), seconds)
-            elif len(chunk) > 1:  # one of them is at fault, and only that one fails
-                chunks.again += ((asked,) for asked in chunk)
+            rows: list[AnswerRow] = future.result() if future.status == "finished" else []
+            if rows or len(chunk) > 1:
+                again += ((asked,) for asked in chunk[len(rows) :])
             elif isinstance(future.exception(), KilledWorker) and not is_alone:
-                alone.append(chunk)  # what was beside it on the worker may be at fault
+                suspects.append(chunk)
             else:
                 rows = [failed_row(chunk[0], f"on the cluster: {future.exception()}")]
-            submit(islice(chunks, ahead - len(asked_of)))
+            submit_ahead()
             is_alone = not asked_of
-            if is_alone and alone:
-                submit([alone.popleft()])
-            yield from zip(chunk, rows, strict=False)
-
-
-class _Chunks:
-    """Questions for one task each: as many as take half a second, going by those answered before.
-
-    ``again`` are those that come first, since a task has left them.
-    """
-
-    def __init__(self, questions: Iterable[Asked]) -> None:
-        self.again: deque[Sequence[Asked]] = deque()
-        self._waiting = iter(questions)
-        self._size = 1
-
-    def __iter__(self) -> Iterator[Sequence[Asked]]:
-        while chunk := self.again.popleft() if self.again else tuple(islice(self._waiting, self._size)):
-            yield chunk
-
-    def took(self, chunk: Sequence[Asked], answered: int, seconds: float) -> None:
-        """Learn how long a task took for the first questions of its chunk; the others are asked again."""
-        if answered < len(chunk):
-            self.again.append(chunk[answered:])
-        fit = int(_SECONDS * answered / max(seconds, 1e-6))
-        self._size = max(1, min(fit, 4 * self._size, _MOST))
-
-
-def _threads(client: "Client") -> int:
-    threads: dict[str, int] = client.nthreads()
-    return sum(threads.values())
+            if is_alone and suspects:
+                submit(suspects.popleft())
+            yield from rows
 
 
 def _answer_some(
-    opener: Opener, chunk: Sequence[Asked], memory_limit: int | None, how: Settings | None
-) -> tuple[list[Row], float]:
-    """Answer the first questions of a chunk, at least one, and give their rows and the seconds they took.
-
-    So no row waits longer than half a second for others, but for the one after it.
-    """
+    opener: Opener, chunk: tuple[Asked, ...], memory_limit: int | None, how: Settings | None
+) -> list[AnswerRow]:
+    """Return the rows of the first questions of a chunk, at least one, after half a second."""
     asker = _open(opener)
     began = time.monotonic()
-    rows: list[Row] = []
-    for asked in chunk:
-        rows.append(answer_row(asker, asked, memory_limit, how))
-        if time.monotonic() - began >= _SECONDS:
-            break
-    return rows, time.monotonic() - began
+    rows = [answer_row(asker, chunk[0], memory_limit, how)]
+    while len(rows) < len(chunk) and time.monotonic() - began < _TASK_SECONDS:
+        rows.append(answer_row(asker, chunk[len(rows)], memory_limit, how))
+    return rows
 
 
 @functools.lru_cache(maxsize=1)

@@ -1,9 +1,9 @@
 """A run of HiGHS, which ends when time is up."""
 
-import threading
 from collections.abc import Callable
 from typing import Any, Final
 
+from foon_asp.aside import Aside
 from foon_asp.deadline import uninterrupted
 
 _SMALL: Final = 6000  # columns and rows, with which so many steps take at most about a second
@@ -65,7 +65,6 @@ class _Run:
     def __init__(self, highs: Any, expired: Callable[[], bool]) -> None:
         self._highs, self._expired = highs, expired
         self._stopped = False
-        self._ended = threading.Event()
 
     def wait(self) -> bool:
         import highspy  # noqa: PLC0415 (slow to import, so only when it is there already)
@@ -75,25 +74,16 @@ class _Run:
         self._highs.setCallback(self._look, None)
         for name in ("kCallbackSimplexInterrupt", "kCallbackIpmInterrupt", "kCallbackMipInterrupt"):
             self._highs.startCallback(getattr(kinds, name))
-        threading.Thread(target=self._run, daemon=True, name="HiGHS").start()
+        beside = Aside(self._highs.run)
         try:
-            while not self._ended.wait(_LOOKS):
-                if self._expired():
-                    break
-        except KeyboardInterrupt:
-            self._stopped = True
-            self._ended.wait(_LATE)
-            raise
-        self._stopped = not self._ended.is_set()
-        if not self._ended.wait(_LATE):
+            while not beside.ended(_LOOKS) and not self._expired():
+                pass
+        finally:
+            self._stopped = not beside.ended(0)
+            ended = beside.ended(_LATE)
+        if not ended:
             raise KeyboardInterrupt
         return bool(self._highs.getModelStatus() != highspy.HighsModelStatus.kInterrupt)
-
-    def _run(self) -> None:
-        try:
-            self._highs.run()
-        finally:
-            self._ended.set()
 
     def _look(self, _: object, __: object, ___: object, answer: Any, ____: object) -> None:
         if self._stopped:

@@ -89,6 +89,14 @@ def in_parts(costs: Sequence[int]) -> Any:
     return np.array(costs, dtype=np.int64 if sum(costs) * PARTS < _LARGE else object) * PARTS
 
 
+def _quotient(a: int, b: int) -> float:
+    """Return ``a / b``, or infinity where no float is so large."""
+    try:
+        return a / b
+    except OverflowError:
+        return math.inf
+
+
 def shared_out(
     told: Iterable[tuple[int, float]], of_1: int, rows: Sequence[Any], left: Any
 ) -> dict[int, int]:
@@ -162,7 +170,7 @@ class _Sharing:
             last = found
             values.append(found.value)
             above = 100 * enough - 99  # hundredths: costs are whole, and so are bounds
-            lacks = above / (100 * self._dearest) - found.value
+            lacks = _quotient(above, 100 * self._dearest) - found.value
             ends = lacks <= 0 or stalled(values, lacks)
             if ends or not self._separate(found.x, expired):
                 if self._inside and not ends:

@@ -114,7 +114,8 @@ class WholeProgram:
         highs = self._run(objective)
         if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
             solution = highs.getSolution()
-            weights = list(solution.row_dual)
+            # of very large costs it may have none
+            weights = list(solution.row_dual) if solution.dual_valid else [0.0] * len(self._rows)
             return Solved(list(solution.col_value), self._bound(objective, weights, cutoff))
         ray = [abs(weight) for weight in highs.getDualRay()[2]]
         largest = max(ray, default=0.0)

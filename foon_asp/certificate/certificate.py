@@ -1,6 +1,7 @@
 """Certificates: JSON that proves a tree optimal, a bound on all trees, or that there is none.
 
-docs/proofs.md describes the format. Nothing is given out that ``foon_asp.proof.verify`` does not accept.
+docs/dev/certificates.md describes the format. Nothing is given out that ``foon_asp.proof.verify`` does not
+accept.
 """
 
 import hashlib

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from foon_asp.asp import Settings
 from foon_asp.bounds.exact_optimum import Limit
+from foon_asp.encoding.encoding_file import string_constant
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.problem import Problem
 from foon_asp.proof.constraint import LIBRARY, OWN, Rule, meaning
@@ -80,7 +81,7 @@ def coverage(settings: Settings) -> Coverage:
     facts: dict[str, set[str]] = {name: set() for name in LISTED if name in read}
     for stem, given in uses:  # what one use lists, the others read
         for name in facts.keys() & LIBRARY[stem].values.keys():
-            facts[name] |= {_text(given.get(LISTED[name], ""))} - {""}
+            facts[name] |= {string_constant(given.get(LISTED[name], ""))} - {""}
     if "heats" in facts:  # which begins with motions of ours
         facts["heats"] |= _facts(find_constraint(Path("never_heated")), among_others=True)["heats"]
     named: list[str] = []
@@ -114,14 +115,6 @@ def _value(written: str, kind: type) -> Any:
     """Give a value of a constraint, ``None`` where it is not set."""
     if kind is int:
         return None if written in _UNSET else int(written)
-    return _text(written)
-
-
-def _text(written: str) -> str:
-    if not written.startswith('"'):
-        return written
-    from foon_asp.encoding.encoding import string_constant  # noqa: PLC0415 - it loads clingo
-
     return string_constant(written)
 
 
@@ -134,7 +127,7 @@ def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[
     for line in encoding.read_encoding(stating.loaded((constraint,))[constraint]).text.splitlines():
         fact = _FACT.fullmatch(line)
         if fact is not None:
-            found.setdefault(fact[1], set()).update(map(_text, _TEXT.findall(fact[2])))
+            found.setdefault(fact[1], set()).update(map(string_constant, _TEXT.findall(fact[2])))
         elif not among_others and line != "#program base." and not line.startswith("% "):
             return {}
     return found

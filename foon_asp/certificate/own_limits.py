@@ -42,7 +42,7 @@ class OwnLimits:
         shrinking = {rule.source for rule in rules.rules if rule.kind is Kind.SHRINKING}
         theirs = {c.number: 1 for c in numbered if c.constraint in own and c.source in shrinking}
         relaxed = relaxed._replace(rules=relaxed.rules + write_soft(theirs))
-        self._settings = settings._replace(constraints=(), relaxed=relaxed, session=None)
+        self._settings = settings._replace(constraints=(), relaxed=relaxed)
         program = assemble(self._settings, lambda _: None)
         others = program.files[len(ENCODING_FILES) :]
         self._program = program._replace(files=(question_encoding("breaking_units.lp"), *others))

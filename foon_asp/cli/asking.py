@@ -1,10 +1,8 @@
 """How a command asks a question: it reads the data, makes the problem, and asks."""
 
 import importlib
-import shlex
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,17 +11,21 @@ import click
 from click.core import ParameterSource
 
 from foon_asp.cli import options
-from foon_asp.cli.held import session_here
+from foon_asp.cli.output import say
 from foon_asp.cli.progress import Progress
 from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
+from foon_asp.network import ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Part, Question, question_of
+from foon_asp.questions.each import Each
 from foon_asp.questions.index import module_name, question_name
-from foon_asp.questions.posing import DATA, no_data, one_problem, one_problem_or_nearby
+from foon_asp.questions.posing import no_data, one_problem, one_problem_or_each
+from foon_asp.questions.posing_plan import a_plan, a_tree, settle_data
 from foon_asp.questions.result import Result
+from foon_asp.questions.tree import read_answer
 
 
 def find_question(verb: str) -> Question:
@@ -39,22 +41,19 @@ def parameters(question: Question, given: Mapping[str, Any], parts: Part) -> dic
 
 
 def ask(
-    question: Question,
-    given: Mapping[str, Any],
-    deadline: Deadline | None,
-    command_of: Callable[[str], click.Command],
+    question: Question, given: Mapping[str, Any], deadline: Deadline | None, form: str | None = None
 ) -> Result:
-    """Ask a question with the parameters of a command.
+    """Ask a question with the parameters of a command, whose ``deadline`` it has.
 
-    ``deadline`` is that of the command. ``command_of`` gives the commands of other questions, which a
-    question may ask.
+    ``form`` is the format of the result, if one is chosen.
     """
     own = {option.name for option in question.options}
-    command = _Command({name: value for name, value in given.items() if name not in own}, command_of)
+    command = _Command({name: value for name, value in given.items() if name not in own})
     with Progress(deadline) as progress:
-        who = Caller(progress, session_here(), deadline, lenient=bool(given.get("lenient")))
+        who = Caller(progress, deadline=deadline, lenient=bool(given.get("lenient")), form=form)
         with asked_by(who):
             posed = _posed(question, command, given)
+        _warn_of_measures(command, given)
         if question.pose is not no_data or "time_limit" in {option.name for option in question.options}:
             progress.begin()  # there is a tree to wait for
         with asked_by(who._replace(read_seconds=command.read_seconds)):
@@ -62,17 +61,40 @@ def ask(
             found = [question.command(*about, **how) for about in posed]
     if len(found) == 1:
         return found[0]
-    from foon_asp.questions.each import Each
-
     return Each(found)
+
+
+def _warn_of_measures(command: "_Command", given: Mapping[str, Any]) -> None:
+    """Warn of files of measures none of which is an objective of the question."""
+    chosen = given.get("objectives")
+    if not command.measures_named or chosen is None:
+        return
+    named = {word.strip() for words in chosen for word in words.split(",")}
+    files: dict[str, list[str]] = {}
+    for measure in command.dataset.measures.values():
+        files.setdefault(measure.place, []).append(measure.name)
+    for place, names in files.items():
+        if named.isdisjoint(names):
+            listed = " or ".join(f"--objective {name}" for name in names)
+            click.echo(
+                f"{place}: warning: no objective is its measure, so it has no effect; add {listed}", err=True
+            )
 
 
 def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """Pose a question: once, or for each of several goals that were assumed. What is assumed is said."""
     asked = parameters(question, given, Part.PROBLEM)
-    unnamed = question.pose is not no_data and asked.get("goals_named") == ()
-    each_alone = unnamed and question.pose in {one_problem, one_problem_or_nearby}
-    goals = command.dataset.assumed_goals() if each_alone else []
+    tree = given.get("tree")
+    if question.pose not in {a_plan, a_tree} and tree is not None and tree.is_file():  # a pipe is read once
+        listed = read_answer(tree)
+        settle_data(command, {tree: listed})
+        if asked.get("goals_named") == ():
+            asked["goals_named"] = tuple(map(str, listed.goals))
+    says_goals = question.pose in {no_data, a_plan, a_tree}  # itself, where there are any
+    unnamed = not says_goals and asked.get("goals_named") == ()
+    alone = question.pose in {one_problem, one_problem_or_each} and not asked.get("all_goals")
+    each_alone = unnamed and alone
+    goals = command.unnamed_goals() if each_alone else []
     if len(goals) < 2:
         posed = [question.pose(command, **asked)]
     else:
@@ -80,23 +102,23 @@ def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) ->
         posed = [question.pose(command, **asked | {"goals_named": [goal]}) for goal in goals]
     problems = [each for about in posed for each in about if isinstance(each, Problem)]
     if problems and unnamed:  # what is about no problem may need no data
-        goals = command.dataset.assumed_goals()
+        goals = goals or command.dataset.assumed_goals()
     if {goal for problem in problems for goal in problem.goal_nodes} != set(goals):
         goals = []  # it is about others
     if problems and (goals or not command.dataset.has_kitchen):
         from foon_asp.dataset.assumed import goal_lines, kitchen_lines
 
-        lines = [*goal_lines(command.dataset, goals)] if goals else []
-        if not command.dataset.has_kitchen and session_here() is None:
-            wanted = dict.fromkeys(goal for problem in problems for goal in problem.goals)
-            lines += kitchen_lines(replace(problems[0], goals=tuple(wanted)))
-        click.echo("\n".join(lines), err=True, nl=bool(lines))
+        lines = [*goal_lines(command.dataset, goals, options.is_verbose())] if goals else []
+        if not command.dataset.has_kitchen:
+            lines += kitchen_lines(command.dataset, problems, options.is_verbose())
+        if lines:
+            say("\n".join(lines))
     return posed
 
 
 def _refuse_one_file(question: Question, given: Mapping[str, Any]) -> None:
     """Raise :class:`UserError` if the answers for several goals would be written into one file."""
-    files = [given.get("output"), given.get("certificate_file")]
+    files = [given.get("output"), given.get("certificate")]
     if question.suffixes or any(files):
         raise UserError(
             "no goal is named, and there are several, which one file cannot hold: name one (--goal)"
@@ -104,10 +126,10 @@ def _refuse_one_file(question: Question, given: Mapping[str, Any]) -> None:
 
 
 class _Command:
-    """What a question may use of its command: the data, other questions, and the limits of reading."""
+    """What a question may use of its command: the data, and the limits of reading."""
 
-    def __init__(self, data: dict[str, Any], command_of: Callable[[str], click.Command]) -> None:
-        self._data, self._command_of = data, command_of
+    def __init__(self, data: dict[str, Any]) -> None:
+        self._data = data
         self._context = click.get_current_context()
 
     @cached_property
@@ -120,45 +142,39 @@ class _Command:
         """How long reading took; ``None`` if nothing was read."""
         return self.dataset.read_seconds if "dataset" in self.__dict__ else None
 
+    def unnamed_goals(self) -> list[ObjectNode]:
+        """Return the goals that are answered one by one where none is named: of data that are named, all."""
+        if self.names_data:
+            listed = self.dataset.listed
+            return self.dataset.listed_goals() if len(listed) > 1 else self.dataset.assumed_goals()
+        return self.dataset.assumed_goals()
+
+    @property
+    def names_data(self) -> bool:
+        """Whether a network is named."""
+        return any(self._data.get(option) for option in ("sources", "folder", "network"))
+
+    @property
+    def level(self) -> int:
+        """The level at which object nodes are compared."""
+        found: int = self._data["level"]
+        return found
+
+    @property
+    def measures_named(self) -> bool:
+        """Whether files of measures are named."""
+        return bool(self._data.get("measures"))
+
     def given(self, option: str) -> bool:
-        """Whether an option was given in the command itself, and not by the session or by default."""
-        return _is_given(self._context, option)
+        """Whether an option was given in the command itself, and not by default."""
+        return self._context.get_parameter_source(option) is ParameterSource.COMMANDLINE
 
     def add_sources(self, sources: Sequence[Path]) -> None:
-        """Add networks that are named without an option, before the data are read."""
+        """Add networks that are named without an option; the data are read anew."""
         if sources:
             self._data["sources"] = (*self._data.get("sources", ()), *sources)
+            self.__dict__.pop("dataset", None)
 
     def reading(self) -> AbstractContextManager[object]:
         """Stop what is read in a ``with`` block at the limits of the command."""
         return options.reading()
-
-    def ask(self, words: str, without: Sequence[str]) -> Result:
-        """Ask a question that is written as a command; ``without`` names options that it must not have."""
-        here = self._context
-        try:
-            verb, *rest = shlex.split(words)
-        except ValueError as error:
-            raise UserError(f"found {words!r}, expected the words of a command: {error}") from None
-        question, command = find_question(verb), self._command_of(verb)
-        name = f"{here.info_name} '{words}'"
-        own = command.make_context(name, list(rest), obj=here.obj)
-        if any(_is_given(own, option) for option in without):
-            flags = sorted(each.opts[0] for each in command.params if each.name in without)
-            raise UserError(f"found {words!r}, expected a question without {', '.join(flags)}")
-        beside = {option: value for option, value in here.params.items() if _is_given(here, option)}
-        if any(own.params.get(option) for option in DATA):
-            beside = {option: value for option, value in beside.items() if option not in DATA}
-        defaults = {**(here.default_map or {}), **beside}  # a session has something to say, too
-        asked = command.make_context(name, rest, default_map=defaults, obj=here.obj)
-        here.call_on_close(asked.close)
-        if beside.get("sources"):  # a default is for options
-            asked.params["sources"] = beside["sources"]
-        given = {name: value for name, value in asked.params.items() if name not in {"format_", "output"}}
-        with asked.scope(cleanup=False):
-            deadline = options.begin(given.pop("time_limit", None), given.pop("memory_limit", None))
-            return ask(question, given, deadline, self._command_of)
-
-
-def _is_given(context: click.Context, option: str) -> bool:
-    return context.get_parameter_source(option) is ParameterSource.COMMANDLINE

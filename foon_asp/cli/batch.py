@@ -1,6 +1,8 @@
 """``foon-asp batch``: thousands of questions in one run, each answer a row."""
 
+import statistics
 import time
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -9,25 +11,28 @@ import click
 
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import rules_digest
-from foon_asp.batch.answer_row import Row
+from foon_asp.batch.answer_row import ANSWERS, AnswerRow
+from foon_asp.batch.answer_table import FORMATS, check_table, write_table
 from foon_asp.batch.asked import Asked
 from foon_asp.batch.cluster import answer_on_cluster
-from foon_asp.batch.question_file import each_question, read_questions
-from foon_asp.batch.results import open_results
-from foon_asp.batch.tally import Tally
-from foon_asp.batch.workers import Work, answer_all
+from foon_asp.batch.question_file import each_question, named_files, read_questions
+from foon_asp.batch.workers import answer_all
 from foon_asp.cli import options
 from foon_asp.cli.batch_data import Opening, digest, measured
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.cli.named_path import NamedPath
-from foon_asp.cli.output_file import check_outputs
+from foon_asp.cli.named_path import NamedPath, WrittenPath
+from foon_asp.cli.output_file import check_outputs, refuse_inputs
 from foon_asp.cli.progress import Progress
+from foon_asp.comparison.rows_file import RowsFile
 from foon_asp.document.json_document import document
 from foon_asp.network import counted
+from foon_asp.problem import Objective
 from foon_asp.questions.options import EACH_LIMITS, JOBS, RULES
 from foon_asp.rules.constraint import Constraint
 from foon_asp.text.json_value import Json, json_text
+
+_SHOWN = 3  # errors, of possibly thousands
 
 
 @click.command("batch")
@@ -37,9 +42,9 @@ from foon_asp.text.json_value import Json, json_text
     "--results",
     "results_file",
     required=True,
-    type=click.Path(path_type=NamedPath),
+    type=WrittenPath(),
     metavar="FILE",
-    help="A file for the rows, as JSON Lines; if its name ends in .parquet, a folder of Parquet files.",
+    help="A file for the rows, as JSON Lines; if its name ends in .csv or .parquet, a table of them.",
 )
 @click_options(JOBS)
 @click.option("--scheduler", metavar="ADDRESS", help="Use the workers of a Dask cluster: tcp://HOST:PORT.")
@@ -77,7 +82,7 @@ def command(
 
     @goals stands for the goals file, @makeable for everything that can be made; a list within the list is one
     tree for several goals; kitchens, stocks and what stays are files in the folder of the questions;
-    the kitchen @starting is what no unit makes.
+    the kitchen @starting is what makes the units of each file run.
     --time-limit is for each question without a limit of its own, --memory-limit for each process that
     answers, and rules hold for all questions.
 
@@ -88,73 +93,100 @@ def command(
     check_outputs()
     given = options.with_sources(sources, data["folder"], data["network"])
     data["folder"], data["network"] = given
-    lines = read_questions(questions, time_limit, measured(data))
-    opening = Opening(tuple(data.items()), digest(data, [file for line in lines for file in line.files]))
-    asked = list(each_question(lines, opening(quiet=False)))
+    measures = measured(data)
+    lines = read_questions(questions, time_limit, measures)
+    files = named_files(lines)
+    refuse_inputs(results_file, files)
+    opening = Opening(tuple(data.items()), digest(data, files))
+    opened = opening(quiet=False)
+    asked = list(each_question(lines, opened))
 
     def warn(message: str) -> None:
         click.echo(message, err=True)
 
     how = Settings(constraints, encodings, constants)
-    common = {"data": opening.digest, "level": data["level"], **rules_digest(how, warn)}
+    common = {"data": opening.digest, "level": data["level"], **rules_digest(how, warn, opened.example)}
+    rows_file = results_file
+    if results_file.suffix in FORMATS:
+        rows_file = results_file.with_name(f"{results_file.name}.jsonl")
+        check_table(results_file, rows_file)
+    answered: list[AnswerRow] = []
     interrupted = False
     began = time.monotonic()
-    with open_results(results_file, common) as results:
-        left = [one for one in asked if one.key not in results.done]
-        tally = Tally(results.done[one.key] for one in asked if one.key in results.done)
-        before = len(asked) - len(left)
+    with RowsFile(rows_file, ANSWERS, common) as results:
+        for text in results.twice:
+            warn(text)
+        before = [results.done[one] for one in asked if one in results.done]
+        left = [one for one in asked if one not in results.done]
         with Progress() as progress:
-            progress.step("answering", before, len(asked))
+            progress.step("answering", len(before), len(asked))
             progress.begin()
             try:
-                rows = _rows(Work(opening, memory_limit, how=how), left, jobs, scheduler)
-                for number, (one, row) in enumerate(rows, 1):
-                    results.add(one, row)
-                    tally.add(row)
-                    progress.step("answering", before + number, len(asked))
+                rows = (
+                    answer_all(opening, left, min(jobs, max(1, len(left))), memory_limit, how)
+                    if scheduler is None
+                    else answer_on_cluster(opening, left, scheduler, memory_limit, how)
+                )
+                for row in rows:
+                    results.add(row)
+                    answered.append(row)
+                    progress.step("answering", len(before) + len(answered), len(asked))
             except KeyboardInterrupt:
                 interrupted = True
-    seconds = round(time.monotonic() - began, 3)
-    summary = document("batch", questions=len(asked)) | tally.summary() | {"seconds": seconds}
+        if rows_file is not results_file:
+            objectives = (*Objective, *map(Objective.of_measure, measures))
+            write_table(results_file, results.done.values(), objectives)
+    found = _summary(asked, before, answered) | {"seconds": round(time.monotonic() - began, 3)}
     if format_ == "json":
-        click.echo(json_text(summary), nl=False)
+        click.echo(json_text(found), nl=False)
     else:
-        for line in _in_words(summary, tally):
+        for line in _in_words(found, [row for row in answered if row.error is not None]):
             click.echo(line)
         click.echo(f"results: {results_file}")
     if interrupted:
         click.echo("interrupted: run the same command again to continue", err=True)
-    return _exit_code(tally, interrupted)
+    return _exit_code(found["statuses"], interrupted)
 
 
-def _rows(
-    work: Work, asked: Sequence[Asked], jobs: int, scheduler: str | None
-) -> Iterator[tuple[Asked, Row]]:
-    if scheduler is not None:
-        return answer_on_cluster(work.opener, asked, scheduler, work.memory_limit, work.how)
-    return answer_all(work, asked, min(jobs, max(1, len(asked))))
+def _summary(asked: Sequence[Asked], before: Sequence[AnswerRow], answered: Sequence[AnswerRow]) -> Json:
+    """Count rows by status and by proof, and return the median and greatest seconds of those answered now."""
+    seconds = [row.seconds for row in answered if row.seconds is not None]
+    return document(
+        "batch",
+        questions=len(asked),
+        answered_before=len(before),
+        answered=len(answered),
+        statuses=dict(sorted(Counter(row.status for row in (*before, *answered)).items())),
+        proofs=dict(sorted(Counter(row.proof for row in answered if row.proof is not None).items())),
+        seconds_median=statistics.median(seconds) if seconds else None,
+        seconds_worst=max(seconds, default=None),
+    )
 
 
-def _in_words(summary: Json, tally: Tally) -> Iterator[str]:
-    before = tally.before.total()
-    yield counted(summary["questions"], "question", ",") + (
+def _in_words(found: Json, without_answer: Sequence[AnswerRow]) -> Iterator[str]:
+    """Describe what was found, with the first of the rows that have an error."""
+    before, answered = found["answered_before"], found["answered"]
+    yield counted(found["questions"], "question", ",") + (
         f", {before:,} of them answered before" if before else ""
     )
-    counts = tally.statuses + tally.before
-    yield "in total: " + (", ".join(f"{n:,} {status}" for status, n in sorted(counts.items())) or "none")
-    if tally.statuses:
-        yield f"answered {tally.statuses.total():,} in {summary['seconds']:.1f} s"
-        proofs = ", ".join(f"{count:,} by {proof}" for proof, count in sorted(tally.proofs.items()))
-        yield f"proved: {proofs or 'none'}"
-    if summary["seconds_median"] is not None:
-        yield f"seconds for one: median {summary['seconds_median']:.3f}, worst {summary['seconds_worst']:.3f}"
-    yield from (f"failed: {error}" for error in tally.errors)
-    if tally.statuses["failed"] > len(tally.errors):
-        yield f"... and {tally.statuses['failed'] - len(tally.errors)} more failed: see their rows"
+    yield f"in total: {_counts(found['statuses'], '') or 'none'}"
+    if answered:
+        yield f"answered {answered:,} in {found['seconds']:.1f} s"
+        yield f"proved: {_counts(found['proofs'], 'by ') or 'none'}"
+    if found["seconds_median"] is not None:
+        yield f"seconds for one: median {found['seconds_median']:.3f}, worst {found['seconds_worst']:.3f}"
+    shown = without_answer[:_SHOWN]
+    yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in shown)
+    failed = sum(row.status == "failed" for row in without_answer)
+    if failed > len(shown):
+        yield f"... and {failed - len(shown)} more failed: see their rows"
 
 
-def _exit_code(tally: Tally, interrupted: bool) -> ExitCode:
-    counts = tally.statuses + tally.before
-    if interrupted or counts["feasible"] or counts["unknown"]:
+def _counts(counts: dict[str, int], by: str) -> str:
+    return ", ".join(f"{count:,} {by}{name}" for name, count in counts.items())
+
+
+def _exit_code(statuses: Json, interrupted: bool) -> ExitCode:
+    if interrupted or statuses.keys() & {"feasible", "unknown"}:
         return ExitCode.LIMIT
-    return ExitCode.NEGATIVE if counts["failed"] else ExitCode.DONE
+    return ExitCode.NEGATIVE if "failed" in statuses else ExitCode.DONE

@@ -10,12 +10,13 @@ from typing import Any
 
 from foon_asp.batch.asked import Asked
 from foon_asp.cli import options
-from foon_asp.compare.many import makeable
+from foon_asp.cli.named_path import NamedPath
+from foon_asp.comparison.many import makeable
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.items import items_of
 from foon_asp.errors import UserError
 from foon_asp.network import Network
-from foon_asp.problem import Problem
+from foon_asp.problem import ContainerRule, Problem
 from foon_asp.text.data_folder import STARTING, find_data
 from foon_asp.text.object_list import read_object_list
 
@@ -40,10 +41,10 @@ class BatchData:
     """The open data, and the kitchens read so far."""
 
     def __init__(self, dataset: Dataset) -> None:
-        self._datasets: dict[Path | None, Dataset] = {None: dataset}
+        self._datasets: dict[str | None, Dataset] = {None: dataset}
 
-    def named(self, word: str, containers: str, kitchen: Path | None) -> Sequence[str]:
-        """Give the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
+    def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
+        """Return the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
         dataset = self._with(kitchen)
         if word == "@makeable":
             problem = dataset.problem((0,), containers, everything=True)
@@ -54,27 +55,31 @@ class BatchData:
             return [str(names.objects[goal]) for goal in goals]
         return [str(names.node(goal)) for goal in goals]
 
+    @property
+    def example(self) -> Problem:
+        """A question of these data, by which rules for all of them are looked over."""
+        return self._datasets[None].problem((0,), "strict")
+
     def problem(self, asked: Asked) -> Problem:
         """Pose a question; what its goals can need of a large store is read when it is looked at."""
         dataset = self._with(asked.kitchen)
-        items = items_of(dataset, asked.items, asked.stock, asked.stays)
+        stock, stays = (None if file is None else NamedPath(file) for file in (asked.stock, asked.stays))
+        items = items_of(dataset, asked.items, stock, stays)
         return dataset.nearby(dataset.goals(asked.goals), asked.containers, items)
 
-    def _with(self, kitchen: Path | None) -> Dataset:
-        dataset = self._datasets.get(kitchen)
-        if dataset is None:
-            assert kitchen is not None
+    def _with(self, kitchen: str | None) -> Dataset:
+        if kitchen is not None and kitchen not in self._datasets:
             given = self._datasets[None]
-            if kitchen == STARTING:
-                dataset = given.with_starting_kitchen()
-            else:
-                dataset = given.with_kitchen(read_object_list(kitchen))
-            self._datasets[kitchen] = dataset
-        return dataset
+            self._datasets[kitchen] = (
+                given.with_starting_kitchen()
+                if kitchen == str(STARTING)
+                else given.with_kitchen(read_object_list(NamedPath(kitchen)))
+            )
+        return self._datasets[kitchen]
 
 
 def measured(named: dict[str, Any]) -> Collection[str]:
-    """Give the names of the measures in the files that the options name."""
+    """Return the names of the measures in the files that the options name."""
     files = named["measures"]
     if not files:
         return ()
@@ -84,7 +89,7 @@ def measured(named: dict[str, Any]) -> Collection[str]:
 
 
 def digest(named: dict[str, Any], beside: Iterable[Path]) -> str:
-    """Give a digest of all files that the options name, and of those that questions name."""
+    """Return a digest of all files that the options name, and of those that questions name."""
     measures = named["measures"]
     named = {key: value for key, value in named.items() if key not in {"level", "lenient", "measures"}}
     files = find_data(**named)

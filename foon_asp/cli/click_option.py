@@ -7,24 +7,32 @@ from typing import Any, TypeVar
 
 import click
 
-from foon_asp.cli import held
-from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.named_path import NamedPath, WrittenPath
 from foon_asp.deadline import memory_size, seconds
 from foon_asp.questions.contract import Kind, Option, Part
-from foon_asp.rules.constraint import Constraint, named_constraint
+from foon_asp.rules.constraint import Constraint, RuleText, named_constraint
 
 Command = TypeVar("Command", bound=Callable[..., object])
 
-_STANDING = {
-    "rules": held.rules_given,
-    "constraints": held.with_rules_that_stand,
-    "constants": held.with_constants_that_stand,
-    "encodings": held.encodings_that_stand,
-}
+_RULES = "foon_asp.rules"
+
+
+def _keep_rules(context: click.Context, _: click.Parameter, value: tuple[str, ...]) -> None:
+    """Keep the rules of a command until its constraints are read."""
+    context.meta[_RULES] = tuple(map(RuleText, value))
+
+
+def _with_rules(
+    context: click.Context, _: click.Parameter, value: tuple[Constraint, ...]
+) -> tuple[Constraint, ...]:
+    """Return constraints with the rules behind them, each once."""
+    return tuple(dict.fromkeys((*value, *context.meta.get(_RULES, ()))))
 
 
 def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> dict[Constraint, int]:
     """Read files with their weights."""
+    if not value:
+        return {}
     from foon_asp.cli.weighted_files import weighted_files
 
     return weighted_files(value, parameter.opts[0])
@@ -43,6 +51,17 @@ def _options_alone(
     return value[len(words) :]
 
 
+def _complete(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
+    """Complete a name from the data; what reads these is imported only then."""
+    from foon_asp.cli.completed_words import completed_words
+
+    return completed_words(context, parameter, begun)
+
+
+_NAMED_IN_DATA = frozenset({"goals_named", "objectives", "constraints", "constants"})
+_CALLBACKS = {"rules": _keep_rules, "constraints": _with_rules}
+
+
 def click_options(*options: Option) -> Callable[[Command], Command]:
     """Make parameters of click from several options, in that order."""
 
@@ -59,6 +78,7 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         Kind.TEXT: click.Choice(choices) if choices else None,
         Kind.WHOLE: int if option.least is None else click.IntRange(min=option.least),
         Kind.FILE: click.Path(path_type=NamedPath),
+        Kind.WRITTEN: WrittenPath(),
         Kind.SECONDS: seconds,
         Kind.SIZE: memory_size,
         Kind.WEIGHTS: None,
@@ -83,9 +103,10 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         multiple=option.many,
         default=option.default,
         show_default=option.default is not None,
-        metavar=option.metavar or ("FILE" if option.kind is Kind.FILE else None),
+        metavar=option.metavar or ("FILE" if option.kind in {Kind.FILE, Kind.WRITTEN} else None),
         expose_value=option.part is not Part.MORE,
         is_eager=option.part is Part.MORE,  # to be there when the other is read
-        callback=_weights if option.kind is Kind.WEIGHTS else _STANDING.get(option.name),
+        callback=_weights if option.kind is Kind.WEIGHTS else _CALLBACKS.get(option.name),
+        shell_complete=_complete if option.name in _NAMED_IN_DATA else None,
         help=f"{option.help[:-1]}; repeatable." if option.many else option.help,
     )

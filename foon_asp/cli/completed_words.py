@@ -1,68 +1,91 @@
-"""What a line of a shell that begins with ``foon-asp`` may go on with."""
+"""Words that shells complete: goals, objectives, constraints and their constants."""
 
-from collections.abc import Iterable, Sequence
-from functools import cached_property
-from itertools import islice, pairwise
-from typing import NamedTuple
+import os
+from collections.abc import Callable, Iterable, Mapping
+from itertools import chain
 
 import click
 
-from foon_asp.cli import options
-from foon_asp.cli.shell_completion import MOST, beginning, option_words
-from foon_asp.cli.shell_kitchen import ShellKitchen
-from foon_asp.cli.shell_line import take_apart
-from foon_asp.cli.verbs import VERBS, verb_command
-from foon_asp.errors import UserError
-from foon_asp.questions.posing import DATA
+from foon_asp.dataset import Dataset
+from foon_asp.foon import load
+from foon_asp.problem import Objective
+from foon_asp.rules.constraint_library import library_constraints
+from foon_asp.text.goal_name import entry_names, nodes_beginning
+
+_MAX_NAMES = 200
+
+# Constants whose values are names: those that end so are motions, or labels.
+_MOTIONS, _LABELS = "_motion", ("_object", "_intermediate", "_ingredient")
 
 
-class Completed(NamedTuple):
-    """Words for the place of the last one, of which there is the ``fragment``, ``quoted`` or not."""
-
-    words: tuple[str, ...]
-    fragment: str
-    quoted: bool
+def completed_words(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
+    """Return the values that begin like what is typed, for an option that names something in the data."""
+    return [*_COMPLETED[str(parameter.name)](context, begun)]
 
 
-def words_after(line: str) -> Completed:
-    """Give the words that may be meant; none where the data that the line names cannot be read."""
-    taken = take_apart(line)
-    words = [word.text for word in taken.words[1:]]
-    fragment = words.pop() if words and (taken.open_quote or not line[-1:].isspace()) else ""
-    try:
-        found = tuple(islice(dict.fromkeys(_words(words, fragment)), MOST))
-    except (UserError, OSError, click.ClickException):
-        found = ()
-    return Completed(found, fragment, bool(taken.open_quote))
+def _dataset(context: click.Context) -> Dataset:
+    """Return the data that the line names so far."""
+    given = context.params
+    # an option that lacks its value ends click's parsing before arguments have their names
+    sources = given.get("sources") or filter(os.path.exists, context.args)
+    networks = (*sources, *(given.get("network") or ()))
+    source = networks[0] if len(networks) == 1 else networks or given.get("folder")
+    tables = {name: given.get(name) for name in ("kitchen", "rates", "utensils", "goals", "unit_prices")}
+    measures, level = given.get("measures") or (), given.get("level") or 3
+    return load(source, **tables, measures=measures, level=level, lenient=True).dataset
 
 
-def _words(before: Sequence[str], fragment: str) -> Iterable[str]:
-    if not before:
-        return beginning(VERBS, fragment)
-    verb = before[0]
-    return option_words(verb, before[-1], fragment, _Data(before)) if verb in VERBS else ()
+def _goals(context: click.Context, begun: str) -> Iterable[str]:
+    """Return the labels of the goals file, then all other nodes."""
+    dataset = _dataset(context)
+    names = dataset.names
+    listed = _beginning(entry_names(dataset.listed, names), begun)
+    return chain(listed, (str(names.node(o)) for o in nodes_beginning(begun, names, _MAX_NAMES)))
 
 
-class _Data:
-    """The data that a line names, read when it is first looked at."""
+def _objectives(context: click.Context, begun: str) -> Iterable[str]:
+    """Return a list of objectives with one more at its end."""
+    done, comma, last = begun.rpartition(",")
+    others = [name for name in (*Objective, *_dataset(context).measures) if name not in done.split(",")]
+    return (f"{done}{comma}{objective}" for objective in _beginning(others, last))
 
-    def __init__(self, words: Sequence[str]) -> None:
-        self._verb, *rest = words
-        self._words = rest[:-1] if rest and rest[-1].startswith("-") else rest
 
-    @cached_property
-    def kitchen(self) -> ShellKitchen:
-        """What names are looked up in."""
-        command = verb_command(self._verb)
-        context = command.make_context(self._verb, [*self._words], resilient_parsing=True)
-        given = context.params
-        said = {name: given.get(name) for name in DATA}
-        said |= {name: given.get(name) or () for name in ("network", "sources", "measures")}
-        with context.scope():
-            level = given.get("level") or 3
-            return ShellKitchen(options.read_dataset(**said, lenient=True, level=level))  # type: ignore[arg-type]
+def _constraints(context: click.Context, begun: str) -> Iterable[str]:
+    """Return the names of ready-made constraints, or what may follow after one."""
+    name, colon, settings = begun.partition(":")
+    if not colon:
+        return _beginning((each.name for each in library_constraints()), begun)
+    done, comma, last = settings.rpartition(",")
+    return (f"{name}:{done}{comma}{each}" for each in _constants_of(name, context, last))
 
-    @property
-    def constraints(self) -> Sequence[str]:
-        """The names of the constraints that the line has so far."""
-        return [value.partition(":")[0] for flag, value in pairwise(self._words) if flag == "--constraint"]
+
+def _constants(context: click.Context, begun: str) -> Iterable[str]:
+    """Return the constants of the constraints that the line has so far."""
+    names = [each.name.partition(":")[0] for each in context.params.get("constraints") or ()]
+    return chain.from_iterable(_constants_of(name, context, begun) for name in names)
+
+
+def _constants_of(constraint: str, context: click.Context, begun: str) -> Iterable[str]:
+    """Return the constants of a ready-made constraint, or values of one that is a motion or a label."""
+    name, equals, value = begun.partition("=")
+    if not equals:
+        ours = {each.name: each.parameters for each in library_constraints()}
+        return _beginning((f"{parameter.name}=" for parameter in ours.get(constraint, ())), begun)
+    values: Iterable[str] = ()
+    if name.endswith(_MOTIONS):
+        values = _beginning(_dataset(context).motions, value)
+    elif name.endswith(_LABELS):
+        values = _dataset(context).names.beginning(value, _MAX_NAMES)
+    return (f"{name}={each}" for each in values)
+
+
+def _beginning(known: Iterable[str], begun: str) -> Iterable[str]:
+    return (each for each in known if each.startswith(begun))
+
+
+_COMPLETED: Mapping[str, Callable[[click.Context, str], Iterable[str]]] = {
+    "goals_named": _goals,
+    "objectives": _objectives,
+    "constraints": _constraints,
+    "constants": _constants,
+}

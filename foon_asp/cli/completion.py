@@ -1,46 +1,113 @@
-"""``foon-asp completion``: what a shell completes behind ``foon-asp``."""
+"""``foon-asp completion``: scripts for shells, which ask click what a line may continue with."""
 
+import os
 import re
 
 import click
+from click.shell_completion import (
+    CompletionItem,
+    ShellComplete,
+    add_completion_class,
+    shell_complete,
+    split_arg_string,
+)
 
 from foon_asp.cli import options
-from foon_asp.cli.completed_words import words_after
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.verbs import SHELL_REQUEST
+from foon_asp.errors import UserError
+from foon_asp.escapes import escaped
 
-# Bash completes what stands behind : and = as a word of its own, and quotes names of files where it has to.
-_BASH = """_foon_asp() {
+_MAX_WORDS = 200
+_LINE = "FOON_ASP_LINE"  # in the environment: the line up to the cursor
+
+
+class _Shell(ShellComplete):
+    """A shell that is sent words, one a line; where there are none, it completes names of files itself.
+
+    The scripts of click split words at commas or blanks, which names of object nodes have.
+    """
+
+    def get_completion_args(self) -> tuple[list[str], str]:
+        """Return the words after the name of the program, and the one that is typed."""
+        *words, typed = split_arg_string(f"{os.environ[_LINE]}x")  # x: the last word is begun even if empty
+        return words[1:], typed[:-1]
+
+    def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
+        """Return the words that may be meant; none where the data that the line names cannot be read."""
+        option, equals, _ = incomplete.partition("=") if incomplete.startswith("-") else ("", "", "")
+        try:
+            found = super().get_completions(args, incomplete)
+        except (UserError, OSError, click.ClickException):
+            return []
+        words = dict.fromkeys(
+            f"{option * bool(equals)}{equals}{item.value}" for item in found if item.type == "plain"
+        )
+        return [CompletionItem(word) for word in [*words][:_MAX_WORDS]]
+
+    def format_completion(self, item: CompletionItem[str]) -> str:
+        """Return a word as it is printed."""
+        return escaped(item.value)
+
+
+@add_completion_class
+class _Bash(_Shell):
+    """Bash completes what stands behind ``:`` and ``=`` as a word of its own, unless a quote is open."""
+
+    name = "bash"
+    source_template = """_foon_asp() {
     local word
     COMPREPLY=()
     while IFS= read -r word; do
-        COMPREPLY+=("$word")
-    done < <(foon-asp completion bash --line "${COMP_LINE:0:COMP_POINT}" 2>/dev/null)
+        [[ -n $word ]] && COMPREPLY+=("$word")
+    done < <(
+        FOON_ASP_LINE="${COMP_LINE:0:COMP_POINT}" %(complete_var)s=bash_complete %(prog_name)s 2>/dev/null
+    )
 }
-complete -o default -o filenames -F _foon_asp foon-asp
+complete -o default -o filenames -F _foon_asp %(prog_name)s
 """
-_ZSH = """#compdef foon-asp
+
+    def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
+        """Return what may follow the last ``:`` or ``=``."""
+        is_quoted = os.environ[_LINE].removesuffix(incomplete).endswith(("'", '"'))
+        begun = None if is_quoted else re.match(r".*[:=]", incomplete)
+        found = super().get_completions(args, incomplete)
+        return [CompletionItem(item.value[begun.end() :]) for item in found] if begun else found
+
+
+@add_completion_class
+class _Zsh(_Shell):
+    name = "zsh"
+    source_template = """#compdef %(prog_name)s
 _foon_asp() {
     local -a found
-    found=(${(f)"$(foon-asp completion zsh --line "$LBUFFER" 2>/dev/null)"})
+    found=(${(f)"$(FOON_ASP_LINE="$LBUFFER" %(complete_var)s=zsh_complete %(prog_name)s 2>/dev/null)"})
     if (( $#found )); then compadd -a found; else _files; fi
 }
-compdef _foon_asp foon-asp
+compdef _foon_asp %(prog_name)s
 """
-_FISH = """function __foon_asp
-    foon-asp completion fish --line (commandline -cp | string collect) 2>/dev/null
+
+
+@add_completion_class
+class _Fish(_Shell):
+    name = "fish"
+    source_template = """function __foon_asp
+    FOON_ASP_LINE=(commandline -cp | string collect) %(complete_var)s=fish_complete %(prog_name)s 2>/dev/null
 end
-complete -c foon-asp -a '(__foon_asp)'
+complete -c %(prog_name)s -a '(__foon_asp)'
 """
-_SCRIPTS = {"bash": _BASH, "zsh": _ZSH, "fish": _FISH}
+
+
+def answer_shell(program: click.Command, request: str) -> ExitCode:
+    """Print the script of a shell (``bash_source``), or the words that it asks for (``bash_complete``)."""
+    return ExitCode(shell_complete(program, {}, "foon-asp", SHELL_REQUEST, request))
 
 
 @click.command("completion")
-@click.argument("shell", type=click.Choice([*_SCRIPTS]))
-@click.option(
-    "--line", metavar="TEXT", help="What is typed so far: print what it may go on with, as the script asks."
-)
+@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 @options.debug_option
-def command(shell: str, line: str | None) -> ExitCode:
+@click.pass_context
+def command(context: click.Context, shell: str) -> ExitCode:
     """Print a script by which a shell completes verbs, options, goals, objects, motions and constraints.
 
     \b
@@ -48,13 +115,7 @@ def command(shell: str, line: str | None) -> ExitCode:
     foon-asp completion fish > ~/.config/fish/completions/foon-asp.fish
     source <(foon-asp completion zsh)            in ~/.zshrc, behind compinit
 
-    Names come from the data that the line names; for a large network, a store (foon-asp import) is quicker.
+    Names come from the data that the line names; for a large network, a store (foon-asp merge --store) is
+    quicker.
     """
-    if line is None:
-        click.echo(_SCRIPTS[shell], nl=False)
-        return ExitCode.DONE
-    found = words_after(line)
-    begun = re.match(r".*[:=]", found.fragment) if shell == "bash" and not found.quoted else None
-    for word in found.words:
-        click.echo(word[begun.end() :] if begun else word)
-    return ExitCode.DONE
+    return answer_shell(context.find_root().command, f"{shell}_source")

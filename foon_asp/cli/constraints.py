@@ -1,7 +1,5 @@
 """``foon-asp constraints``: the ready-made constraints and their parameters, and what any rules do."""
 
-from functools import partial
-
 import click
 
 from foon_asp.asp import Settings
@@ -9,12 +7,11 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.cli.held import held
-from foon_asp.cli.output import fitted
+from foon_asp.cli.output import write_parts
 from foon_asp.errors import UserError
 from foon_asp.questions.contract import TABLES, Part
 from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, RULE
-from foon_asp.report.constraint_list import constraints_json, constraints_text
+from foon_asp.report.constraint_list import constraint_lines, constraints_json
 from foon_asp.report.frame import document_text
 from foon_asp.rules.constraint import Constraint, RuleText
 from foon_asp.rules.constraint_library import library_constraints
@@ -37,7 +34,7 @@ def command(
 ) -> ExitCode:
     """List the ready-made constraints: what each demands, and how to use it.
 
-    Add the last line of an entry to solve, why-not, shopping-list or clash. A constraint is a file of a few
+    Add the last line of an entry to solve, why-not or shopping-list. A constraint is a file of a few
     lines; the docs (writing-constraints.md) teach writing one of your own.
 
     With --explain or --rule, say of each rule what it does to trees, and whether it looks at more than the
@@ -51,19 +48,16 @@ def command(
         raise UserError("-c sets a constant of what is explained: name that with --explain")
     listed = library_constraints()
     if format_ == "text":
-        click.echo(fitted(partial(constraints_text, listed)), nl=False)
+        write_parts(constraint_lines(listed))
     else:
         click.echo(document_text(constraints_json(listed), format_), nl=False)
     return ExitCode.DONE
 
 
 def _explain(asked: tuple[Constraint, ...], constants: tuple[str, ...], format_: str) -> ExitCode:
-    """Say what rules do; in a session they are looked at beside those that stand."""
+    """Print what rules do."""
     from foon_asp.report.rule_list import rules_json, rules_text
 
-    here = held()
-    if here is not None:
-        asked, constants = (*here.constraints, *asked), (*here.constants, *constants)
     rules = assemble(
         Settings(asked, constants=constants), lambda message: click.echo(message, err=True)
     ).understood

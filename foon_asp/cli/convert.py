@@ -9,7 +9,7 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
-from foon_asp.cli.output_file import same_file
+from foon_asp.cli.output_file import check_outputs
 from foon_asp.errors import UserError
 from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.conversion import Converted, Converter
@@ -27,7 +27,7 @@ class _Task(NamedTuple):
 
 
 @click.command("convert")
-@options.files_argument(required=True)
+@options.files_argument
 @click.option(
     "--to",
     "target",
@@ -66,6 +66,7 @@ def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: 
     """
     dialect = Dialect(target)
     tasks = _tasks(foon_files(paths), any(path.is_dir() for path in paths), output, dialect)
+    check_outputs((task.file for task in tasks), [task.to for task in tasks if task.to is not None])
     texts: list[str] = []
     errors: list[Diagnostic] = []
     converter = Converter(dialect, lenient)
@@ -86,13 +87,6 @@ def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: 
         raise InputError(errors)
     for warning in summarize(converter.diagnostics):
         click.echo(warning, err=True)
-    for task, result in zip(tasks, results, strict=True):
-        lost = list(result.lost) + ["lines that are in no unit"] * bool(converter.left_out)
-        if task.to is not None and lost and same_file(task.to, task.file):
-            raise UserError(
-                f"{task.to}: would be overwritten by a file without its {', '.join(lost)}; "
-                "write to another file"
-            )
     contents = [utf_8(result.text) for result in results]  # all of them, before one is written
     for task, content in zip(tasks, contents, strict=True):
         if task.to is None:
@@ -112,7 +106,7 @@ def _make_folder(folder: Path) -> None:
 
 
 def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target: Dialect) -> list[_Task]:
-    """Decide where each file is written: no two to the same place, and none over a file that is read."""
+    """Decide where each file is written: no two to the same place."""
     if len(files) == 1 and not is_folder:
         file = files[0].file
         if output is None or str(output) == "-":
@@ -129,21 +123,19 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
         place = None if to is None else to.resolve()
         if place in seen:
             raise UserError(f"{seen[place]} and {file} would both be written to {to}")
-        if to is not None and to.exists() and any(same_file(to, task.file) for task in tasks):
-            raise UserError(f"{to} would be overwritten: name another folder with -o")
         seen[place] = file
     return tasks
 
 
 def _suffix(file: Path, target: Dialect) -> str:
-    """Give the ending for what a file becomes; beside a neutral network, lists are a JSON list of names."""
+    """Return the ending for what a file becomes; beside a neutral network, lists are a JSON list of names."""
     if target is Dialect.NEUTRAL and is_object_list(read_plain_text(file)):
         return Dialect.JSON_LIST.suffix
     return target.suffix
 
 
 def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left_out: int) -> str:
-    """Give a summary: the dialects, and what was lost."""
+    """Return a summary: the dialects, and what was lost."""
     dialects = Counter(result.dialect for result in results)
     if len(tasks) == 1:
         head = f"{tasks[0].file}: {results[0].dialect} → {target}"

@@ -41,7 +41,7 @@ def command(copy: Path | None) -> ExitCode:
         click.echo(folder)
         return ExitCode.DONE
     if copy.exists() and (not copy.is_dir() or any(copy.iterdir())):
-        raise UserError(f"{copy}: is there already: name a new folder, or an empty one")
+        raise UserError(f"{copy} already exists: name a new folder, or an empty one")
     try:
         shutil.copytree(folder, copy, dirs_exist_ok=True, copy_function=shutil.copyfile)
     except (OSError, shutil.Error) as error:

@@ -27,7 +27,6 @@ from foon_asp.questions.options import (
     SOFT,
 )
 from foon_asp.rules.constraint import Constraint
-from foon_asp.text.goal_name import notation
 from foon_asp.text.json_value import json_text
 
 
@@ -77,11 +76,11 @@ def command(
     problem = dataset.problem(goals, containers, items=how)
     if dataset.goals_from and not goals_named:
         if len(goals) > 1:
-            named = "".join(f"\n  --goal {shlex.quote(notation(goal))}" for goal in dataset.assumed_goals())
+            named = "".join(f"\n  --goal {shlex.quote(str(goal))}" for goal in dataset.assumed_goals())
             raise UserError(f"name a goal with --goal; no file lists goals, and taken for them are{named}")
-        click.echo("\n".join(goal_lines(dataset, problem.goal_nodes)), err=True)
+        click.echo("\n".join(goal_lines(dataset, problem.goal_nodes, options.is_verbose())), err=True)
     if not dataset.has_kitchen:
-        click.echo("\n".join(kitchen_lines(problem)), err=True)
+        click.echo("\n".join(kitchen_lines(dataset, [problem], options.is_verbose())), err=True)
     facts = printed_program(problem, chosen, Settings(constraints, encodings), soft).text
     if format_ == "json":
         lines = facts.rstrip("\n").split("\n")  # a name may hold what other letters end a line

@@ -10,6 +10,7 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
+from foon_asp.network import starting_nodes
 from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.resources import starter_recipe
 from foon_asp.text.data_folder import DataFiles, network_files, read_data
@@ -37,32 +38,32 @@ def command(folder: Path, recipe: Path | None) -> ExitCode:
     \b
     foon-asp init my_foon                       a small recipe, to be replaced by yours
     foon-asp init my_foon --from recipe.txt     a recipe of yours
-    foon-asp optima --data my_foon
+    foon-asp solve --all-goals --data my_foon
 
-    Every file says in comments what it is for and how its lines are written. The kitchen has what no unit
-    makes, the rates have every motion, and the goals are those marked in the recipe, or what its last unit
-    makes. Files that are there already are not touched: then nothing is written.
+    Every file says in comments what it is for and how its lines are written. The kitchen has what makes
+    the units of the recipe run, the rates have every motion, and the goals are those marked in the recipe, or
+    what its last unit makes. Where one of the files exists already, nothing is written.
     """
     files = _files(recipe)
     for name in files:
         if (folder / name).exists():
-            raise UserError(f"{folder / name} is there already: name another folder, or remove it first")
+            raise UserError(f"{folder / name} already exists: name another folder, or remove it first")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UserError(f"{folder}: cannot be made: {error.strerror or error}") from None
+        raise UserError(f"{folder}: cannot be created: {error.strerror or error}") from None
     for name, text in files.items():
         write_whole(folder / name, utf_8(text))
         click.echo(f"wrote {folder / name}")
     name = shlex.quote(escaped(str(folder)))
-    click.echo(f"edit them, and ask: foon-asp optima --data {name}")
+    click.echo(f"edit them, and ask: foon-asp solve --all-goals --data {name}")
     if recipe is not None:
-        click.echo(f"what is worth a look in the recipe: foon-asp lint {name}")
+        click.echo(f"check the recipe: foon-asp lint {name}")
     return ExitCode.DONE
 
 
 def _files(recipe: Path | None) -> dict[str, str]:
-    """Give the texts of the files by name."""
+    """Return the texts of the files by name."""
     source = recipe or starter_recipe() / "FOON.txt"
     if is_store(source):
         raise UserError(f"{source}: expected a recipe, FOON text or JSON, found a store")
@@ -75,7 +76,8 @@ def _files(recipe: Path | None) -> dict[str, str]:
     text = "" if source.is_dir() else read_plain_text(source)
     recipe_text = write_units(map(network.unit, range(len(network))))
     if text and not is_json(text):
-        recipe_text = format_text(text, str(source)).text
+        recipe_text = format_text(text, str(source))
     rates = None if recipe else read_rates(starter_recipe() / "motion.txt")
     goals = [network.objects[o] for entry in data.goals for o in network.find(entry.pattern)]
-    return starter_files(recipe_text, network, data.kitchen, goals, rates)
+    kitchen = starting_nodes(network, [o for entry in data.goals for o in network.find(entry.pattern)])
+    return starter_files(recipe_text, network, kitchen, goals, rates)

@@ -4,7 +4,7 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.errors import UserError
+from foon_asp.editor.language_server import serve
 
 
 @click.command("lsp")
@@ -16,13 +16,6 @@ def command() -> ExitCode:
     units make and need a node, and whether it is at hand; the way to the unit that makes it; renaming; an
     outline of the units; folding and formatting. docs/editor.md says how to set up an editor.
 
-    Needs foon-asp[lsp]. Exits with 0 when the editor ends it.
+    Exits with 0 when the editor ends it.
     """
-    try:
-        from foon_asp.editor.server import serve
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in {"pygls", "lsprotocol"}:
-            raise
-        raise UserError("lsp needs pygls; what to do: pip install 'foon-asp[lsp]'") from None
-    serve()
-    return ExitCode.DONE
+    return ExitCode.DONE if serve() else ExitCode.NEGATIVE

@@ -4,17 +4,37 @@ import contextlib
 import os
 import sys
 import traceback
+import warnings
+from typing import TYPE_CHECKING
 
 import click
 
 from foon_asp import __version__
+from foon_asp.cli.ctrl_c import end_at_ctrl_c, raise_at_ctrl_c
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import drop_output, safe_streams, say_remarks
-from foon_asp.cli.verbs import GROUPS, VERBS, verb_command
+from foon_asp.cli.verbs import FIRST, FOR_PROGRAMS, SHELL_REQUEST, VERBS, verb_command, write_verbs
 from foon_asp.cli.whole_process import BEGAN, keep, leave
 from foon_asp.deadline import LimitError, none_lost
-from foon_asp.errors import UserError
+from foon_asp.errors import FoonWarning, UserError
 from foon_asp.escapes import escaped, note_line_end
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
+_INSTEAD = {
+    "certify": "type: foon-asp solve --certificate FILE, or foon-asp check TREE --certificate FILE",
+    "diff-network": "type: foon-asp diff A B (two networks, too)",
+    "clash": "type: foon-asp why-not --constraint A.lp --constraint B.lp (which clash, and what to drop)",
+    "optima": "type: foon-asp solve --all-goals --objective units --objective success",
+    "draw": "type: foon-asp view -o FILE.svg (or .png .pdf .dot .mmd .graphml)",
+    "menu": "type: foon-asp solve --goal A --goal B (what each costs alone, and what they share)",
+    "search": "type: foon-asp compare --search NAME --trees",
+    "shell": "ask with a command for each question, or in Python, where vary changes it",
+    "vocabulary": "type: foon-asp lint --learn FILES -o names.txt",
+    "import": "type: foon-asp merge FILES --store NAME.foon",
+    "units": "type: foon-asp stats --units",
+}
 
 
 class _Verbs(click.Group):
@@ -24,39 +44,55 @@ class _Verbs(click.Group):
         return list(VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        return verb_command(cmd_name) if cmd_name in VERBS else None
+        command = verb_command(cmd_name) if cmd_name in VERBS else None
+        raise_at_ctrl_c()  # what it needs is imported
+        return command
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         word = args[0]
-        if word not in VERBS and not word.startswith("-"):
+        if word not in VERBS and not word.startswith("-") and not ctx.resilient_parsing:
             from difflib import get_close_matches
 
             near = get_close_matches(word.lower().replace("_", "-"), VERBS, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else "foon-asp -h lists the verbs"
+            hint = f"did you mean {near[0]!r}?" if near else "foon-asp help lists the verbs"
+            hint = _INSTEAD.get(word, hint)
             ctx.fail(f"there is no verb {word!r}; {hint}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        for group in GROUPS:
-            with formatter.section(group):
-                formatter.write_dl([(verb, each.line) for verb, each in VERBS.items() if each.group == group])
+        write_verbs(formatter, "Verbs that most people need", FIRST)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> "list[CompletionItem[str]]":
+        from click.shell_completion import CompletionItem
+
+        verbs = [verb for verb, entry in VERBS.items() if entry.group != FOR_PROGRAMS]
+        found = [CompletionItem(verb) for verb in verbs if verb.startswith(incomplete)]
+        return found + click.Command.shell_complete(self, ctx, incomplete)
 
 
-@click.group(cls=_Verbs, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=_Verbs,
+    subcommand_metavar="VERB [ARGS]...",
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="'foon-asp help' lists all verbs, and 'foon-asp help VERB' explains one.",
+)
 @click.version_option(__version__, prog_name="foon-asp")
 def cli() -> None:
     """Provably optimal task trees for FOON, by answer set programming.
 
-    Every verb reads the bundled kitchen unless --data or --network names another.
+    The bundled kitchen is read only where no recipe, folder or store is named: a verb that got such a file
+    never falls back to it.
     """
 
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit with the documented code."""
     words = sys.argv[1:] if arguments is None else arguments
-    with safe_streams(), none_lost():
+    with safe_streams(), none_lost(), warnings.catch_warnings():
+        warnings.simplefilter("always", FoonWarning)
+        warnings.showwarning = _warned
         for word in words:
             note_line_end(word)
             note_line_end(word.partition("=")[2])
@@ -73,14 +109,26 @@ def main(arguments: list[str] | None = None) -> None:
     sys.exit(int(code))
 
 
+def _warned(message: Warning | str, *_: object, **__: object) -> None:
+    click.echo(f"warning: {message}", err=True)
+
+
 def _run(words: list[str], began: float | None) -> ExitCode:
     """Run a verb; report what went wrong, and give the exit code.
 
     Its limits count from when it ``began``, or from when they are made.
     """
     try:
-        ended = cli.main(args=words, prog_name="foon-asp", standalone_mode=False, obj=began)
-        return ExitCode(ended or 0)
+        try:
+            if SHELL_REQUEST in os.environ:
+                from foon_asp.cli.completion import answer_shell
+
+                return answer_shell(cli, os.environ[SHELL_REQUEST])
+            ended = cli.main(args=words, prog_name="foon-asp", standalone_mode=False, obj=began)
+            return ExitCode(ended or 0)
+        finally:
+            if began is not None:
+                end_at_ctrl_c()
     except Exception as error:
         return _ended(error, "--debug" in words)
     except KeyboardInterrupt as error:
@@ -88,7 +136,7 @@ def _run(words: list[str], began: float | None) -> ExitCode:
 
 
 def _ended(error: BaseException, debug: bool) -> ExitCode:
-    """Report on stderr how a command ended, and give its exit code."""
+    """Report on stderr how a command ended, and return its exit code."""
     keep(error)  # with all that was at hand where it was raised
     say_remarks(True)
     if debug and not isinstance(error, click.ClickException | click.Abort | KeyboardInterrupt):
@@ -96,44 +144,38 @@ def _ended(error: BaseException, debug: bool) -> ExitCode:
     if isinstance(error, BrokenPipeError):  # the reader of our output went away, as `head` does
         drop_output()
         return ExitCode.DONE
-    code = ExitCode.USAGE
+    nobody_to_tell = contextlib.suppress(OSError, UserError)
     if isinstance(error, click.ClickException):
-        text = _usage(error)
-    elif isinstance(error, click.Abort | KeyboardInterrupt):
-        limit = error.__cause__ if isinstance(error, click.Abort) else error
-        text, code = "interrupted before there was an answer", ExitCode.LIMIT
-        if isinstance(limit, LimitError):
-            text = (
-                f"unknown: stopped at {limit.stopped}, before there was an answer\nwhat to do: {limit.advice}"
-            )
-    elif isinstance(error, MemoryError):
-        text, code = "unknown: out of memory; --memory-limit stops before that", ExitCode.LIMIT
-    elif isinstance(error, UserError):
-        text = str(error) if ": error: " in str(error) else f"error: {error}"
-    elif isinstance(error, OSError):  # the world's: a full disk, no permission, a folder in place of a file
-        name = "" if error.filename is None else f"{escaped(os.fsdecode(error.filename))}: "
-        text = f"error: {name}{error.strerror or error}"
-    else:
-        code = ExitCode.BUG
-        text = (
-            f"foon-asp has a bug: {type(error).__name__}: {error}\n"
-            "please report it with the command and its input; --debug shows where it happened"
-        )
-    with contextlib.suppress(OSError, UserError):  # nobody to say it to
+        with nobody_to_tell:
+            error.show(sys.stderr)
+        return ExitCode.USAGE
+    code, text = _message(error)
+    with nobody_to_tell:
         click.echo(text, err=True)
     return code
 
 
-def _usage(error: click.ClickException) -> str:
-    """Give click's complaint about a command, with the words quoted; without a verb, the help."""
-    if isinstance(error, click.exceptions.NoArgsIsHelpError):
-        return error.format_message()
-    lines = []
-    if isinstance(error, click.UsageError) and error.ctx is not None:
-        lines = [error.ctx.get_usage()]
-        if error.ctx.command.get_help_option(error.ctx) is not None:
-            lines.append(f"Try '{error.ctx.command_path} {error.ctx.help_option_names[0]}' for help.\n")
-    message = error.format_message()
-    if isinstance(error, click.MissingParameter):  # lists choices in lines, and quotes no word of the user
-        message = " ".join(message.split())
-    return "\n".join([*lines, f"Error: {escaped(message)}"])
+def _message(error: BaseException) -> tuple[ExitCode, str]:
+    """Return the exit code of an error that is not click's, and what to say of it."""
+    match error:
+        case LimitError() | click.Abort(__cause__=LimitError()):
+            limit = error.__cause__ if isinstance(error, click.Abort) else error
+            assert isinstance(limit, LimitError)
+            text = (
+                f"unknown: stopped at {limit.stopped}, before there was an answer\nwhat to do: {limit.advice}"
+            )
+            return ExitCode.LIMIT, text
+        case click.Abort() | KeyboardInterrupt():
+            return ExitCode.LIMIT, "interrupted before there was an answer"
+        case MemoryError():
+            return ExitCode.LIMIT, "unknown: out of memory; --memory-limit stops before that"
+        case UserError():
+            text = str(error)
+            return ExitCode.USAGE, text if ": error: " in text else f"error: {text}"
+        case OSError():  # the world's: a full disk, no permission, a folder in place of a file
+            name = "" if error.filename is None else f"{escaped(os.fsdecode(error.filename))}: "
+            return ExitCode.USAGE, f"error: {name}{error.strerror or error}"
+    return ExitCode.BUG, (
+        f"foon-asp has a bug: {type(error).__name__}: {error}\n"
+        "please report it with the command and its input; --debug shows where it happened"
+    )

@@ -4,6 +4,8 @@ import os
 from pathlib import Path, PosixPath, WindowsPath
 from typing import TYPE_CHECKING
 
+import click
+
 from foon_asp.escapes import escaped
 
 if TYPE_CHECKING:
@@ -20,3 +22,10 @@ class NamedPath(_Base):
 
     def __format__(self, spec: str) -> str:
         return format(escaped(str(self)), spec)
+
+
+class WrittenPath(click.Path):
+    """The type of a parameter that names what is written: a file that the command does not read."""
+
+    def __init__(self, allow_dash: bool = False) -> None:
+        super().__init__(allow_dash=allow_dash, path_type=NamedPath)

@@ -8,8 +8,8 @@ import click
 
 from foon_asp.cli.click_option import Command, click_options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.cli.held import held
-from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.named_path import NamedPath, WrittenPath
+from foon_asp.cli.output import say
 from foon_asp.cli.progress import bytes_bar
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.reading import read_dataset as read_data
@@ -19,6 +19,7 @@ from foon_asp.questions.options import LIMITS
 from foon_asp.text.data_folder import find_data
 
 _DEADLINE = "foon_asp.deadline"
+_VERBOSE = "foon_asp.verbose"
 _PATH = click.Path(path_type=NamedPath)
 
 
@@ -73,6 +74,20 @@ _QUIET_OPTION = click.option(
     expose_value=False,
     help="Print no warnings, no advice and no progress; errors are printed.",
 )
+
+
+def _note_verbose(context: click.Context, _: click.Parameter, verbose: bool) -> None:
+    context.meta[_VERBOSE] = verbose
+
+
+_VERBOSE_OPTION = click.option(
+    "-v",
+    "--verbose",
+    is_flag=True,
+    expose_value=False,
+    callback=_note_verbose,
+    help="List the goals and the items that are assumed where none are given.",
+)
 _DEBUG_OPTION = click.option(
     "--debug", is_flag=True, expose_value=False, help="Show where in the code an error was raised."
 )
@@ -90,21 +105,23 @@ def format_option(*formats: str) -> Callable[[Command], Command]:
     )
 
 
-def files_argument(required: bool) -> Callable[[Command], Command]:
-    """Make an argument for files and folders, ``paths``."""
-    words = "FILE|DIR..." if required else "[FILE|DIR]..."
-    return click.argument("paths", nargs=-1, required=required, type=_PATH, metavar=words)
+files_argument = click.argument("paths", nargs=-1, required=True, type=_PATH, metavar="FILE|DIR...")
 
 
 def output_option(words: str, help_: str) -> Callable[[Command], Command]:
     """Make ``--output`` of a verb that writes FOON, for which ``-`` is stdout."""
-    path = click.Path(path_type=NamedPath, allow_dash=True)
-    return click.option("-o", "--output", type=path, metavar=words, help=help_)
+    return click.option("-o", "--output", type=WrittenPath(allow_dash=True), metavar=words, help=help_)
 
 
 def network_options(command: Command) -> Command:
     """Add the options that name the data."""
-    return functools.reduce(lambda f, option: option(f), reversed((*_DATA_OPTIONS, debug_option)), command)
+    added = (*_DATA_OPTIONS, _VERBOSE_OPTION, debug_option)
+    return functools.reduce(lambda f, option: option(f), reversed(added), command)
+
+
+def is_verbose() -> bool:
+    """Return whether the current command was given ``-v``."""
+    return bool(click.get_current_context().meta.get(_VERBOSE))
 
 
 def data_options(command: Command) -> Command:
@@ -159,10 +176,7 @@ def with_sources(
     """
     for source in sources:
         if not source.exists():
-            raise UserError(
-                f"found {str(source)!r}, expected a recipe, a folder or a store, and there is no such path; "
-                "a goal is named with --goal"
-            )
+            raise UserError(f"no such file or folder: {source} (goals are named with --goal)")
     if len(sources) == 1 and sources[0].is_dir() and folder is None and not network:
         return sources[0], ()
     return folder, (*sources, *network)
@@ -181,18 +195,10 @@ def read_dataset(
     measures: Sequence[Path] = (),
     sources: Sequence[Path] = (),
 ) -> Dataset:
-    """Read the data that the options name; warnings go to stderr. A session has it already.
+    """Read the data that the options name; warnings go to stderr.
 
     ``sources`` are networks named without an option, see :func:`with_sources`.
     """
-    here = held()
-    if here:
-        named = (sources, folder, network, kitchen, rates, utensils, goals, unit_prices, measures)
-        if any(named) or (lenient, level) != here[1:3]:
-            raise UserError(
-                "a session keeps the data it was started with; to take another kitchen: kitchen FILE"
-            )
-        return here.dataset
     folder, network = with_sources(sources, folder, network)
     with reading():
         files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
@@ -206,5 +212,5 @@ def read_dataset(
     if context:
         context.call_on_close(dataset.close)
     for text in dataset.brief:
-        click.echo(text, err=True)
+        say(text)
     return dataset

@@ -4,16 +4,20 @@ import contextlib
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO, cast
+
+import click
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable, escaped_lines, forget_line_ends
+from foon_asp.results.table import Part, rendered
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-_SIGNS = {"→": "->", "≈": "~", "×": "x", "─": "-", "†": "+"}
+_SIGNS = {"→": "->", "≈": "~", "×": "x", "†": "+"}
 
 
 class SafeStream:
@@ -117,6 +121,17 @@ def write_data(content: str | bytes) -> None:
     cast(SafeStream, sys.stdout).write_data(utf_8(content) if isinstance(content, str) else content)
 
 
+def write_output(output: Path | None, content: bytes) -> None:
+    """Write into a file, and report that; or to standard output, which is ``None`` or ``-``."""
+    from foon_asp.report.whole_file import write_whole
+
+    if output is None or str(output) == "-":
+        write_data(content)
+    else:
+        write_whole(output, content)
+        click.echo(f"wrote {output}", err=True)
+
+
 def console(err: bool = False) -> "Console":
     """Give a console for tables and progress, with colours at a terminal."""
     from rich.console import Console
@@ -126,14 +141,30 @@ def console(err: bool = False) -> "Console":
     return Console(file=cast(TextIO, SafeStream(stream, remarks=err, styled=True)))
 
 
-def fitted(text: Callable[[], str]) -> str:
-    """Give a text as wide as the terminal that it is printed on; anywhere else, its width is free."""
-    if not sys.stdout.isatty():
-        return with_plain_signs(text())
-    from foon_asp.report.stacked import folded, room
+def terminal() -> tuple[int | None, bool]:
+    """Return how wide the terminal is that standard output is, and whether it shows colours.
 
-    with room(shutil.get_terminal_size().columns):
-        return with_plain_signs(folded(text()))
+    The width is ``None`` where it is no terminal.
+    """
+    if not sys.stdout.isatty():
+        return None, False
+    return shutil.get_terminal_size().columns, "NO_COLOR" not in os.environ
+
+
+def write_parts(parts: Iterable[Part]) -> None:
+    """Write lines and tables to standard output, as wide and in such colours as the terminal has."""
+    width, coloured = terminal()
+    text = with_plain_signs(rendered(parts, width, coloured))
+    stream = sys.stdout
+    if coloured and isinstance(stream, SafeStream):
+        stream = cast(TextIO, SafeStream(stream.stream, styled=True))
+    stream.write(text)
+
+
+def say(text: str) -> None:
+    """Write a remark to standard error, folded between words where that is a terminal."""
+    width = shutil.get_terminal_size().columns if sys.stderr.isatty() else None
+    click.echo(rendered([text], width), err=True, nl=False)
 
 
 def with_plain_signs(text: str) -> str:

@@ -2,25 +2,24 @@
 
 import contextlib
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from pathlib import Path
+from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 import click
 
-from foon_asp.asp import Reporter
-from foon_asp.cli.output import console
+from foon_asp.aside import Aside
+from foon_asp.asp.reporter import Reporter
+from foon_asp.cli.output import console, say
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective
-from foon_asp.report.answer import bound_text, costs_text
 from foon_asp.text.bytes_read import size_of, telling
 
 if TYPE_CHECKING:
-    from rich.status import Status
     from rich.text import Text
 
 _LONG = 1.0  # seconds before anything is shown: most answers are there by then
@@ -36,9 +35,9 @@ class Progress(Reporter):
     def __init__(self, deadline: Deadline | None = None) -> None:
         self._deadline = deadline
         self._began = time.monotonic()
-        self._over = threading.Event()
-        self._shown = threading.Lock()
-        self._live: Status | None = None
+        self._over: SimpleQueue[None] = SimpleQueue()
+        self._line: Aside | None = None
+        self._warnings: set[str] = set()
         self._costs: Costs | None = None
         self._bound: tuple[Objective, int | Fraction] | None = None
         self._first: tuple[int | Fraction, float] | None = None
@@ -51,28 +50,32 @@ class Progress(Reporter):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._over.set()
-        with self._shown:
-            if self._live:
-                self._live.stop()
+        self._over.put(None)
+        if self._line is not None:
+            self._line.ended(_LONG)  # so that nothing is printed into it
 
     def begin(self) -> None:
         """Note that everything is read, and show the line where the answer takes long."""
         self._began = time.monotonic()
         if sys.stderr.isatty():
-            threading.Thread(target=self._wait, daemon=True, name="foon-asp progress").start()
+            self._line = Aside(self._show)
 
-    def _wait(self) -> None:
-        if self._over.wait(_LONG):
+    def _show(self) -> None:
+        with contextlib.suppress(Empty):
+            self._over.get(timeout=_LONG)
             return
-        with self._shown:
-            if not self._over.is_set():
-                self._live = console(err=True).status(self)
-                self._live.start()
+        with console(err=True).status(self):
+            self._over.get()
 
     def warning(self, message: str) -> None:
-        """Print a warning at once."""
-        click.echo(message, err=True)
+        """Print a warning at once, the first time: a question may ask others, under the same rules."""
+        if message not in self._warnings:
+            self._warnings.add(message)
+            say(message)
+
+    def statistics(self, text: str) -> None:
+        """Print statistics of a search at once."""
+        click.echo(text, err=True)
 
     def tree(self, costs: Costs) -> None:
         """Note the best tree."""
@@ -92,6 +95,8 @@ class Progress(Reporter):
 
     def line(self, now: float) -> str:
         """Say how far it is at a time."""
+        from foon_asp.report.answer import bound_text, costs_text  # after a second
+
         seconds = f"{now - self._began:.0f} s"
         limit = None if self._deadline is None else self._deadline.left
         left = self._left(now)

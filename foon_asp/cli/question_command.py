@@ -1,7 +1,6 @@
 """A command for each question of the catalog, made from its description."""
 
 import contextlib
-import functools
 import sys
 import textwrap
 from collections.abc import Callable, Mapping
@@ -10,13 +9,13 @@ from typing import Any
 
 import click
 
-from foon_asp.asp import Reporter
+from foon_asp.asp.reporter import Reporter
 from foon_asp.cli import options
 from foon_asp.cli.asking import ask, find_question, parameters
 from foon_asp.cli.click_option import Command, click_option
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.cli.named_path import NamedPath
-from foon_asp.cli.output import console, fitted, with_plain_signs, write_data
+from foon_asp.cli.named_path import WrittenPath
+from foon_asp.cli.output import write_data, write_parts
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.whole_process import keep
 from foon_asp.deadline import Deadline
@@ -30,6 +29,7 @@ from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, R
 
 _CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
 _LIMITS = frozenset({"time_limit", "memory_limit"})
+_FILES = {"png": "PNG", "pdf": "PDF", "html": "a page of HTML"}  # what a terminal cannot show
 _SHOWN = frozenset({"text", "json", "csv", "markdown", "steps"})  # what is data alone is written to the byte
 
 
@@ -85,14 +85,14 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
     ) -> ExitCode:
         charts = [file for files in parameters(question, given, Part.CHART).values() for file in files]
         if charts:
-            from foon_asp.report.chart_file import check_suffix
+            from foon_asp.pictures.chart import check_suffix
 
             for chart in charts:
                 check_suffix(chart)
         form = _form(question, format_, output)
         check_outputs()
         try:
-            found = ask(question, given, deadline, question_command)
+            found = ask(question, given, deadline, form)
             keep(found)
         except NoTreeError as nothing:
             click.echo(str(nothing), err=True)
@@ -130,7 +130,7 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
         click.option(
             "-o",
             "--output",
-            type=click.Path(path_type=NamedPath),
+            type=WrittenPath(),
             metavar="FILE",
             help=f"The file to write; its ending chooses the format ({' '.join(question.suffixes)}).",
         ),
@@ -140,22 +140,15 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
 def _form(question: Question, named: str | None, output: Path | None) -> str:
     """Choose the format, before anything is read or solved."""
     form = named or (question.formats[0] if output is None else question.format_of(output))
-    if form == "png" and output is None and sys.stdout.isatty():
-        raise UserError("a terminal cannot show PNG: name a file with -o")
+    if form in _FILES and output is None and sys.stdout.isatty():
+        raise UserError(f"a terminal cannot show {_FILES[form]}: write it into a file with -o FILE")
     return form
 
 
 def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
     """Write the result to standard output, and to stderr what its format cannot tell."""
-    renderable = found.renderable() if format_ == "text" else None
-    if renderable is not None and sys.stdout.isatty():
-        console().print(renderable)
-    elif renderable is not None:
-        from foon_asp.report.renderable import plain_text
-
-        click.echo(with_plain_signs(plain_text(renderable)), nl=False)
-    elif format_ == "text":
-        click.echo(fitted(functools.partial(found.text, **how)), nl=False)
+    if format_ == "text":
+        write_parts(found.show(**how))
     elif format_ == "json":
         click.echo(found.json_text(), nl=False)
     elif format_ in _SHOWN:

@@ -26,7 +26,7 @@ _A = {NameKind.OBJECT: "an object", NameKind.WORD: "a word of relations"}
 @click.command("rename")
 @click.argument("old")
 @click.argument("new")
-@options.files_argument(required=True)
+@options.files_argument
 @click.option(
     "--kind",
     type=click.Choice([str(kind) for kind in NameKind]),
@@ -47,8 +47,10 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
     folder, networks, kitchens, goals and the tables (motion.txt, utensils.txt, unit_prices.txt, tools.txt,
     durations.txt) are changed together. Everything else in the files stays as it is, comments included.
 
-    All files are written, or none. Exits with 0, or with 2, and nothing written, if there is no such name, if
-    it is that of several kinds of things, or if a line with it is not understood.
+    Where one file cannot be written, all stay as they were, as after ctrl-C. If the process is killed while
+    it writes, each file is the old one or the new one, and the same command again writes the others. Exits
+    with 0, or with 2, and nothing written, if there is no such name, if it is that of several kinds of
+    things, or if a line with it is not understood.
     """
     texts = {file: read_plain_text(file) for file in _files(paths)}
     renaming = Renaming(Rename(_kind(old, kind, texts), old, new))
@@ -79,7 +81,7 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
-    """Give the files, and of folders the tables, too."""
+    """Return the files, and of folders the tables, too."""
     files = [file for file, _ in foon_files(paths)]
     for folder in (path for path in paths if path.is_dir()):
         files += sorted(file for name in TABLES for file in folder.rglob(name) if file.is_file())
@@ -87,12 +89,12 @@ def _files(paths: Sequence[Path]) -> list[Path]:
 
 
 def _mark(file: Path) -> bytes:
-    """Give the byte order mark of a file, which is no part of its text and stays."""
+    """Return the byte order mark of a file, which is no part of its text and stays."""
     return BOM_UTF8 if read_content(file).startswith(BOM_UTF8) else b""
 
 
 def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
-    """Say of what kind the old name is; raises :class:`UserError` if it is of none, or of several."""
+    """Return the kind of the old name; raise :class:`UserError` if it has none, or several."""
     reader = FoonReader()
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():

@@ -44,25 +44,21 @@ def _serve(asked: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> E
         from foon_asp.serve.desk import Desk
         from foon_asp.serve.form import Form
         from foon_asp.serve.server import serve
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in {"starlette", "uvicorn"}:
-            raise
-        raise UserError(
-            "--serve needs starlette and uvicorn; what to do: pip install 'foon-asp[view]'"
-        ) from None
+    except ImportError as error:
+        raise UserError(f"--serve needs more packages ({error}): pip install 'foon-asp[view]'") from None
     dataset = options.read_dataset(**data)
     first = Form(
         goals=tuple(asked["goals_named"]),
         objectives=tuple(map(str, parse_objectives(asked["objectives"], dataset.measures))),
         containers=asked["containers"],
         items=asked["items"],
-        beside=tuple(asked["beside"]) or ("searches", "proof"),
+        beside=tuple(asked["beside"]),
     )
     how = settings(asked["constraints"], asked["constants"], asked["encodings"])
-    assemble(how, functools.partial(click.echo, err=True))  # what is wrong with files is said at once
-    used_up = None
-    if asked["stock"] or asked["stays"]:
-        used_up = items_of(dataset, asked["items"], asked["stock"], asked["stays"])
+    example = dataset.problem((0,), first.containers)
+    # what is wrong with files is said at once
+    assemble(how, functools.partial(click.echo, err=True), problem=example)
+    used_up = items_of(dataset, asked["items"], asked["stock"], asked["stays"])
     desk = Desk(Foon(dataset, "the data"), first, deadline.seconds, deadline.memory, how, used_up)
     serve(desk, lambda address: click.echo(f"{address}\nopen this in a browser; ctrl-C ends it"))
     return ExitCode.DONE

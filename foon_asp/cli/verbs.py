@@ -1,44 +1,56 @@
 """The verbs of the command line under headings: the questions of the catalog, and work with files."""
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import click
 
 from foon_asp.questions.index import INDEX, Entry
 
+FOR_PROGRAMS = "For programs"
+SHELL_REQUEST = "_FOON_ASP_COMPLETE"
+"""The environment variable by which a shell asks what a line may continue with; click chose its name."""
+
 # Verbs that ask nothing, and those whose question is not in the catalog.
 _OTHERS: Final[Mapping[str, Entry]] = {
     "batch": Entry("Solve", "Answer every question of a file, thousands in one run."),
-    "shell": Entry("Tools", "Read the data once, then ask and change the question line by line."),
-    "stats": Entry("Data", "Count what is in a network."),
+    "init": Entry("Data", "Write a data folder to start from: your recipe, or an example."),
+    "lint": Entry("Data", "Find errors and doubtful places in FOON files."),
+    "fmt": Entry("Data", "Bring FOON files into canonical form."),
+    "convert": Entry("Data", "Write FOON files in another dialect."),
+    "merge": Entry("Data", "Merge FOONs into a universal FOON, or into a store."),
     "facts": Entry("Tools", "Print the facts that clingo is given for a goal."),
     "encodings": Entry("Tools", "Print where the answer-set programs are, or copy them to edit."),
     "constraints": Entry("Tools", "List the ready-made constraints."),
-    "completion": Entry("Tools", "Print a script by which a shell completes verbs, options and names."),
-    "schema": Entry("Tools", "Print the JSON Schema of what a verb prints with --format json."),
-    "init": Entry("Data", "Write a data folder to start from, of a recipe of yours or a small one of ours."),
-    "lint": Entry("Data", "Find what is wrong with networks, kitchens and lists of objects."),
-    "vocabulary": Entry("Data", "Learn the names of FOONs, against which lint holds other files."),
-    "fmt": Entry("Data", "Bring FOON files into canonical form."),
-    "lsp": Entry("Tools", "Serve an editor: findings while typing, completion, renaming and more."),
-    "rename": Entry("Data", "Rename an object, a state or a motion everywhere, and show the change first."),
-    "convert": Entry("Data", "Write FOON files in another dialect."),
-    "merge": Entry("Data", "Merge FOONs into a universal FOON."),
-    "import": Entry("Data", "Merge networks into a store, for networks too large to read."),
+    "help": Entry("Tools", "List all verbs, or explain one."),
+    "rename": Entry(FOR_PROGRAMS, "Rename an object, a state or a motion in all files."),
+    "schema": Entry(FOR_PROGRAMS, "Print the JSON Schema of what a verb prints with --format json."),
+    "completion": Entry(FOR_PROGRAMS, "Print a script by which a shell completes verbs, options and names."),
+    "lsp": Entry(FOR_PROGRAMS, "Serve an editor: findings while typing, completion, renaming and more."),
 }
 VERBS: Final[Mapping[str, Entry]] = {**INDEX, **_OTHERS}
-GROUPS = ("Solve", "Explain", "Compare", "Data", "Prove", "Tools")
-_MODULES = {"import": "import_files"}  # of verbs that cannot be the name of a module
+GROUPS = ("Solve", "Explain", "Compare", "Data", "Prove", "Tools", FOR_PROGRAMS)
+FIRST = ("solve", "view", "compare", "why-not", "check", "alternatives", "schedule", "lint", "init")
 
 
 def verb_command(verb: str) -> click.Command:
-    """Give the command of a verb; its module is imported only then."""
+    """Return the command of a verb; its module is imported only then."""
     if verb in INDEX:
         from foon_asp.cli.question_command import question_command
 
         return question_command(verb)
-    module = _MODULES.get(verb, verb.replace("-", "_"))
-    command: click.Command = importlib.import_module(f"foon_asp.cli.{module}").command
+    module = importlib.import_module(f"foon_asp.cli.{verb.replace('-', '_')}")
+    command: click.Command = module.command
     return command
+
+
+def verbs_of(group: str) -> Sequence[str]:
+    """Return the verbs of a group, in the order in which they are listed."""
+    return [verb for verb, entry in VERBS.items() if entry.group == group]
+
+
+def write_verbs(formatter: click.HelpFormatter, heading: str, verbs: Sequence[str]) -> None:
+    """Write verbs with their lines of help under a heading."""
+    with formatter.section(heading):
+        formatter.write_dl([(verb, VERBS[verb].line) for verb in verbs])

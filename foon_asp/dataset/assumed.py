@@ -1,33 +1,47 @@
 """What was assumed because nobody said it, in words: the kitchen, and the goals."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from foon_asp.dataset.dataset import Dataset
 from foon_asp.network import ObjectNode, counted
 from foon_asp.problem import Problem, kitchen_needed
 from foon_asp.text.assumed_goals import MARKED
 
-_SHOWN = 40  # items of a starting kitchen that are listed
+_SHOWN = 6  # assumed items that a unit makes too, named in the line
 
 
-def kitchen_lines(problem: Problem) -> Iterator[str]:
-    """Say that the starting kitchen is at hand, and list of it what can matter for the goals."""
-    needed = kitchen_needed(problem)
-    count = f"of it {counted(len(needed), 'object node')} can be needed" + (":" if needed else "")
-    yield f"warning: no kitchen is given, so what no unit makes is at hand (--kitchen @starting); {count}"
-    yield from (f"  {problem.network.objects[o]}" for o in needed[:_SHOWN])
-    if len(needed) > _SHOWN:
-        yield f"  ... and {len(needed) - _SHOWN} more; --format json lists all"
+def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) -> Iterator[str]:
+    """Return one line on the starting kitchen: how many items the goals can use, and which units make too.
+
+    ``verbose`` adds a line for each item.
+    """
+    used = {
+        problem.network.object_number(o): problem.network.objects[o]
+        for problem in problems
+        for o in kitchen_needed(problem)
+    }
+    made_too = set(dataset.made_too(used))
+    count = f"{counted(len(used), 'item')} used" + ("" if verbose or not used else "; -v lists them")
+    line = f"No kitchen given: assuming what the recipe does not make is available ({count})"
+    if made_too:
+        named = [str(used[number]) for number in sorted(made_too)[:_SHOWN]]
+        if len(made_too) > _SHOWN:
+            named.append(f"{len(made_too) - _SHOWN} more")
+        line += f", and of what a unit makes too: {', '.join(named)}"
+    yield line
+    if verbose:
+        for number in sorted(used):
+            yield f"  {used[number]}" + ("  (a unit makes it too)" if number in made_too else "")
 
 
-def goal_lines(dataset: Dataset, goals: Sequence[ObjectNode]) -> Iterator[str]:
-    """Say which goals were taken, and why."""
-    if dataset.goals_from == MARKED:
-        why = "what is marked as a goal in the files"
-    else:
-        why = "what the last unit makes"
+def goal_lines(dataset: Dataset, goals: Sequence[ObjectNode], verbose: bool) -> Iterator[str]:
+    """Return one line on the goals assumed, and why; ``verbose`` adds a line for each of several."""
+    why = {"": "of the goals file", MARKED: "marked in the files"}.get(dataset.goals_from)
     if len(goals) == 1:
-        yield f"no goal is named (--goal), so it is {why}: {goals[0]}"
-    else:
-        yield f"no goal is named (--goal), so the goals are {why}, each by itself:"
+        said = f"the goal {why}" if why else "what the last unit makes"
+        yield f"No --goal: using {said}: {goals[0]}"
+        return
+    said = f"the {len(goals)} goals {why}" if why else f"what the last unit makes ({len(goals)} goals)"
+    yield f"No --goal: using {said}, each by itself" + ("" if verbose else "; -v lists them")
+    if verbose:
         yield from (f"  {goal}" for goal in goals)

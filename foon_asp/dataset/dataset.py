@@ -1,6 +1,7 @@
 """Data that was read, and the problems that are posed of it."""
 
 import copy
+import shlex
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -12,11 +13,12 @@ from foon_asp.dataset.names import changed_prices, changed_rates, item_id, liste
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
+    Network,
     ObjectNode,
     UnitPrices,
     counted,
     pattern_at_level,
-    starting_nodes,
+    starting_kitchen,
 )
 from foon_asp.problem import (
     Changes,
@@ -33,8 +35,9 @@ from foon_asp.problem import (
     unrated_text,
 )
 from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning, kitchen_nodes
-from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes, notation
+from foon_asp.text.goal_name import NodeNames, entry_names, find_goal, listed_goal, listed_nodes
 from foon_asp.text.object_list import ListedObject, read_object_list
+from foon_asp.text.repeated_node import refuse_repeated
 from foon_asp.warning import warn
 
 if TYPE_CHECKING:  # plain answers do not need it
@@ -45,6 +48,8 @@ def ask(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
     """Ask for goals of the network under a container rule, of data that belong to others."""
+    if items is not None:
+        refuse_repeated(data.repeated)
     unrated = origin.unrated
     return Problem(
         data.network,
@@ -107,6 +112,11 @@ class Dataset:
         return self._data
 
     @property
+    def whole_network(self) -> Network:
+        """The whole network."""
+        return self.data.network
+
+    @property
     def unit_prices(self) -> UnitPrices | None:
         """The prices of units, ``None`` where none are known."""
         return self.data.unit_prices
@@ -125,6 +135,26 @@ class Dataset:
         """Whether the kitchen has an object node, by id."""
         return o in self.data.kitchen
 
+    def kitchen_for(self, goals: Iterable[int]) -> frozenset[int]:
+        """Return the object nodes available to a question about goals; a starting kitchen withholds these."""
+        added, lacking = self.goal_changes(goals)
+        return self.kitchen.union(added).difference(lacking) if added or lacking else self.kitchen
+
+    def made_too(self, objects: Iterable[int]) -> list[int]:
+        """Return those of some nodes of a starting kitchen that a unit makes out of others."""
+        return list(filter(starting_kitchen(self.data.network).is_made, objects))
+
+    def goal_changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
+        """Return what a starting kitchen has more, and what it lacks, because these are the goals."""
+        if not self.data.starting:
+            return frozenset(), frozenset()
+        assumed = starting_kitchen(self.data.network)
+        added, lacking = assumed.changes(tuple(goals))
+        # what was taken out stays out
+        return (
+            (added - (assumed.nodes - self.data.kitchen), lacking) if added or lacking else (added, lacking)
+        )
+
     def goals(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
         """Find the goals by name; without a name, the goals file has to hold exactly one.
 
@@ -137,15 +167,21 @@ class Dataset:
         if not names and self.goals_from:
             return tuple(dict.fromkeys(self.each_goal(())))
         if not names and len(self.listed) == 1:
-            names = [self.listed[0].pattern.label]
+            return (listed_goal(self.listed[0], self.names),)
         if not names:
-            listed = "\n".join(f"  --goal {entry.pattern.label!r}" for entry in self.listed)
+            listed = "\n".join(
+                f"  --goal {shlex.quote(name)}" for name in entry_names(self.listed, self.names)
+            )
             raise UserError("name a goal with --goal" + (f"; the goals file has\n{listed}" if listed else ""))
         return tuple(dict.fromkeys(self.each_goal(names)))
 
     def assumed_goals(self) -> list[ObjectNode]:
         """Give the goals that were assumed because no file lists any; empty where one does."""
-        return [self.names.node(o) for o in dict.fromkeys(self.each_goal(()))] if self.goals_from else []
+        return self.listed_goals() if self.goals_from else []
+
+    def listed_goals(self) -> list[ObjectNode]:
+        """Return the goals of the goals file, or those that were assumed."""
+        return [self.names.node(o) for o in dict.fromkeys(self.each_goal(()))]
 
     def each_goal(self, names: Sequence[str | ObjectNode]) -> list[int]:
         """Find one goal for each name; without names, all nodes of the goals file."""
@@ -171,8 +207,8 @@ class Dataset:
         return other
 
     def with_starting_kitchen(self) -> "Dataset":
-        """Give the same data with what no unit makes out of others at hand."""
-        kitchen = starting_nodes(self.data.network)
+        """Return the same data with what makes the units of each file run at hand."""
+        kitchen = starting_kitchen(self.data.network).nodes
         return self._varied(self.data._replace(kitchen=kitchen, kitchen_items=(), starting=True))
 
     def _varied(self, data: Data) -> "Dataset":
@@ -260,16 +296,17 @@ class Dataset:
         data, goals = dataset.part(_whole_goals(problem), tree=units)
         return _with_own_rates(ask(data, goals, problem.containers, dataset, problem.items), problem)
 
-    def subject(self, everything: bool = True) -> "Subject":
+    def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
         """Give what a certificate speaks about; of a store, it may not be read, and its digests be trusted.
 
-        Raises :class:`UserError` where ``everything`` is read of a store whose digests are not true.
+        A starting kitchen is that for these ``goals``. Raises :class:`UserError` where ``everything`` is read
+        of a store whose digests are not true.
         """
         data = self.data
         rates = None if self.unrated else data.rates
         from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
 
-        return Subject(data.network, data.kitchen, rates, data.utensils, data.unit_prices)
+        return Subject(data.network, self.kitchen_for(goals), rates, data.utensils, data.unit_prices)
 
     def named_goals(self, names: Names) -> tuple[int, ...]:
         """Find goals that Python names, by id in the whole network, each once.
@@ -283,26 +320,28 @@ class Dataset:
             each = self.each_goal(())
             if len(each) == 1:
                 return tuple(each)
-            known = ", ".join(repr(notation(self.names.node(o))) for o in each)
+            known = ", ".join(repr(str(self.names.node(o))) for o in each)
             raise UserError(f"name a goal; no file lists goals, and taken for them are {known}")
         if len(self.listed) == 1:
-            return tuple(node_ids(self, self.listed[0].pattern.label, "goal"))
-        known = ", ".join(repr(entry.pattern.label) for entry in self.listed)
+            return (listed_goal(self.listed[0], self.names),)
+        known = ", ".join(map(repr, entry_names(self.listed, self.names)))
         raise UserError("name a goal" + (f"; the goals file has {known}" if known else ""))
 
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
         """Give the same data with the kitchen that a problem posed of it has."""
         from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
 
-        more, less = self.kitchen_changes(shown(problem))
+        more, less = self.kitchen_changes(shown(problem), _whole_goals(problem))
         return self.varied(more, less, None) if more or less else self
 
-    def kitchen_changes(self, problem: Problem) -> tuple[frozenset[int], frozenset[int]]:
+    def kitchen_changes(
+        self, problem: Problem, goals: Iterable[int]
+    ) -> tuple[frozenset[int], frozenset[int]]:
         """Give what a problem posed of this data has in its kitchen beyond it, and what it lacks.
 
-        Ids are those of the whole network.
+        Ids are those of the whole network, those of its ``goals`` too.
         """
-        ours, theirs = self.data.kitchen, problem.kitchen
+        ours, theirs = self.kitchen_for(goals), problem.kitchen
         return (frozenset(), frozenset()) if ours is theirs else (theirs - ours, ours - theirs)
 
     def unpriced(self) -> Sequence[Unpriced]:
@@ -327,7 +366,12 @@ class Dataset:
         ``everything`` asks for units that no goal needs to be there too. ``items`` says that items are used
         up, if they are.
         """
-        return ask(self.data, goals, containers, self, items)
+        return ask(self._stocked(goals), goals, containers, self, items)
+
+    def _stocked(self, goals: Iterable[int]) -> Data:
+        """Return the data with the kitchen for goals."""
+        kitchen = self.kitchen_for(goals)
+        return self.data if kitchen is self.data.kitchen else self.data._replace(kitchen=kitchen)
 
     def nearby(self, goals: Sequence[int], containers: str, items: UsedUp | None = None) -> Problem:
         """Ask for goals that can need many units, which of a store are read when they are looked at."""
@@ -341,7 +385,7 @@ class Dataset:
         With it come the ids that the goals have there. Raises :class:`UserError` for ids of no unit.
         """
         self._check_units(units, len(self.data.network))
-        return self.data, tuple(goals)
+        return self._stocked(goals), tuple(goals)
 
     def _check_units(self, units: Iterable[int], count: int) -> None:
         for unit in units:

@@ -32,13 +32,18 @@ def items_of(dataset: Dataset, items: str, stock: Stock | None, stays: Stays | N
             given = "a stock" if stock is not None else "what stays"
             raise UserError(f"{given} is for items that are used up: add --items used-up (items='used-up')")
         return None
-    if dataset.names.level < 3:
-        raise UserError(
-            f"items are used up at level 3 only, and this is level {dataset.names.level}: whether an input "
-            "stays depends on contents"
-        )
+    require_contents(dataset.names.level)
     told = {} if stays is None else _told(dataset, stays)
     return UsedUp(told, {} if stock is None else _stock(dataset, stock))
+
+
+def require_contents(level: int) -> None:
+    """Raise :class:`UserError` below level 3, where nothing says which items are used up."""
+    if level < 3:
+        raise UserError(
+            f"items are used up at level 3 only, and this is level {level}: whether an input stays depends "
+            "on contents (--items lasting asks for the other reading)"
+        )
 
 
 def _told(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:

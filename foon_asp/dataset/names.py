@@ -7,7 +7,9 @@ from typing import Protocol
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitPrices, node_at_level
 from foon_asp.problem import Names, Number, UnitPricesNamed, success_rate, unit_price
-from foon_asp.text.goal_name import GoalError, NodeNames, Wording, find_goal, notation
+from foon_asp.text.goal_name import GoalError, NodeNames, Wording, find_goal
+from foon_asp.text.line import LineError
+from foon_asp.text.line_parser import parse_name
 from foon_asp.text.object_list import ListedObject
 
 
@@ -45,7 +47,7 @@ def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
             raise UserError(f"no object node of the network is the {what} {str(name)!r}")
         return found
     try:
-        return find_goal(name, names, dataset.listed if what == "goal" else (), Wording(what, "", ""))
+        return find_goal(name, names, dataset.listed if what == "goal" else (), Wording(what, ""))
     except GoalError as error:
         raise UserError(in_python(error)) from None
 
@@ -61,25 +63,35 @@ def item_id(dataset: Named, name: str | ObjectNode) -> int:
     Raises :class:`UserError` with candidates for a label that several items have.
     """
     names = dataset.names
-    if isinstance(name, str) and ";" not in name:
-        plain = names.object_id(ObjectNode(name))
+    label = None if isinstance(name, ObjectNode) else _label(name)
+    if label is not None:
+        plain = names.object_id(ObjectNode(label))
         if plain is not None and dataset.at_hand(plain):
             return plain
-        count, found = names.labelled(name)
+        count, found = names.labelled(label)
         if count > len(found):
-            raise UserError(f"{count} object nodes have the label {name!r}: name the one you mean in full")
+            raise UserError(f"{count} object nodes have the label {label!r}: name the one you mean in full")
         there = [o for o in found if dataset.at_hand(o)]
         if len(there) > 1:
-            said = f"the kitchen has {len(there)} items with the label {name!r}; name those you mean"
-            raise UserError(in_python(GoalError(said, [notation(names.node(o)) for o in there])))
+            said = f"the kitchen has {len(there)} items with the label {label!r}; name those you mean"
+            raise UserError(in_python(GoalError(said, [str(names.node(o)) for o in there])))
         if count:
             if not there:
-                raise UserError(f"the kitchen has nothing with the label {name!r}")
+                raise UserError(f"the kitchen has nothing with the label {label!r}")
             return there[0]
     found_one = node_id(dataset, name, "kitchen item")
     if not dataset.at_hand(found_one):
         raise UserError(f"the kitchen does not have {str(name)!r}")
     return found_one
+
+
+def _label(name: str) -> str | None:
+    """Return the label that a name is alone, as it is where it cannot be read; ``None`` for a whole node."""
+    try:
+        named = parse_name(name)
+    except LineError:
+        return name
+    return named if isinstance(named, str) else None
 
 
 def changed_rates(

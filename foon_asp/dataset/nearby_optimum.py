@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
-from foon_asp.asp.assembly import hold_for_parts, leave_a_rest
+from foon_asp.asp.assembly import hold_for_parts, leave_a_rest, program_of
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.deadline import Deadline
@@ -38,8 +38,10 @@ def solve_nearby(
     all that there is to it: why is then a question about all that could lead to the goals.
     """
     reporter = reporter or Reporter()
+    if how.constraints:
+        program_of(near.problem, how, reporter.warning)  # whose names may be beyond what is read here
     deadline = how.begun
-    alone = how._replace(session=None, deadline=deadline)
+    alone = how._replace(deadline=deadline)
     free = alone._replace(constraints=(), constants=())
     first = levels(tuple(objectives))[0]
     tighter = min if multiplies(first) else max
@@ -83,7 +85,8 @@ def solve_nearby(
                 status=Status.FEASIBLE, units=executable_order(problem, units), costs=problem.costs(units)
             )
         if found.units is not None:
-            Postconditions(problem, levels(tuple(objectives)), how).tree(found.units)
+            holds = Postconditions(problem, levels(tuple(objectives)), how)
+            found = found._replace(units=holds.tree(found.units))
             assert found.costs is not None
             reporter.tree(found.costs)
         return found

@@ -15,7 +15,7 @@ from fractions import Fraction
 from itertools import count
 
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
-from foon_asp.asp.assembly import ReachOfRules, assemble, reach_of_rules, varying_available
+from foon_asp.asp.assembly import ReachOfRules, program_of, reach_of_rules, varying_available
 from foon_asp.asp.optimum import solve
 from foon_asp.dataset.nearby import Nearby
 from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
@@ -38,12 +38,12 @@ def solve_nearby_under(
     """
     if not how.constraints or reach_of_rules(how) is ReachOfRules.ALL:
         return None
-    plain = how._replace(constraints=(), constants=(), session=None)
+    plain = how._replace(constraints=(), constants=())
     near = near_goals(problem, objectives, plain)
     free = None if near is None else solve_nearby(near, objectives, plain)
     if near is None or free is None or (free.units is None and not free.stopped):
         return None
-    how = how._replace(session=None)
+    program_of(near.problem, how, reporter.warning)
     if free.status is not Status.OPTIMAL:
         return _unknown(near, free)
     search = _Search(near, free, how, reporter)
@@ -170,7 +170,6 @@ class _Search:
 
     def _proved(self, found: Outcome) -> Outcome:
         assert found.costs is not None
-        assemble(self._how, self._reporter.warning)
         self._reporter.tree(found.costs)
         proofs = self._free.proof, found.proof
         proof = next((each for each in proofs if each is not Proof.CUTS), Proof.CUTS)

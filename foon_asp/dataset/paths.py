@@ -13,4 +13,9 @@ Files = File | Iterable[File]
 def files(given: Files) -> tuple[Path, ...]:
     """Read one path or several."""
     one = isinstance(given, str | PathLike)
-    return tuple(map(Path, [given] if one else given))  # type: ignore[arg-type]
+    return tuple(map(as_path, [given] if one else given))  # type: ignore[arg-type]
+
+
+def as_path(file: File) -> Path:
+    """Return the path of a file; one that is a path keeps its class, which says how it is shown."""
+    return file if isinstance(file, Path) else Path(file)

@@ -7,6 +7,7 @@ from foon_asp.problem import first_places, unrated_remarks
 from foon_asp.text.data_folder import DataFiles, read_data
 from foon_asp.text.diagnostics import in_brief, summarize
 from foon_asp.text.plain_file import is_store
+from foon_asp.text.repeated_node import repeated_note
 
 
 def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dataset:
@@ -24,6 +25,7 @@ def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dat
     remarks = [left_out(data.left_out)] if data.left_out else []
     if data.rates is not None:
         remarks += unrated_remarks(first_places(data.network), data.rates)
+    remarks += repeated_note(data.repeated)
     told = (*summarize(data.warnings), *remarks)
     dataset = Dataset(data, time.perf_counter() - began, told, files.kitchen is not None)
     dataset.brief = (*in_brief(data.warnings), *remarks)

@@ -6,10 +6,13 @@ from foon_asp.text.data_folder import Data, kitchen_nodes
 
 
 def count_levels(data: Data) -> list[Statistics]:
-    """Count what is in a network, with what cannot be made from its kitchen, at the levels 1 to 3."""
-    counted = []
-    for level in LEVELS:
-        network = network_at_level(data.network, level)
-        kitchen = kitchen_nodes(network, data.kitchen_items) if data.kitchen_items else None
-        counted.append(count(network, kitchen))
-    return counted
+    """Count what is in a network, and what cannot be made from its kitchen: at the levels 1 to 3.
+
+    A network below level 3 is counted at its own level.
+    """
+    whole = data.network
+    networks = [whole] if whole.level < max(LEVELS) else [network_at_level(whole, level) for level in LEVELS]
+    return [
+        count(network, None if data.starting else kitchen_nodes(network, data.kitchen_items))
+        for network in networks
+    ]

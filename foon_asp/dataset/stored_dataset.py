@@ -17,7 +17,7 @@ from foon_asp.network import (
     UnitPrices,
     network_at_level,
     pattern_at_level,
-    starting_nodes,
+    starting_kitchen,
 )
 from foon_asp.problem import (
     ContainerRule,
@@ -46,6 +46,7 @@ from foon_asp.text.diagnostics import Diagnostic, in_brief, summarize
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.rate_table import read_rates
+from foon_asp.text.repeated_node import repeated_note
 from foon_asp.text.unit_price_list import read_unit_prices
 
 if TYPE_CHECKING:  # plain answers do not need it
@@ -87,6 +88,7 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
     remarks = [] if rates is None else [*unrated_remarks(store.motion_sources(), rates)]
     if store.left_out:
         remarks.append(f"{left_out(store.left_out)} when the store was made")
+    remarks += repeated_note(store.repeated)
     told, brief = (*summarize(warnings), *remarks), (*in_brief(warnings), *remarks)
     dataset = StoredDataset(store, kitchen, goals, rates, utensils, prices, began, told)
     dataset.brief = brief
@@ -148,6 +150,7 @@ class StoredDataset(Dataset):
         self.has_kitchen = kitchen is not None or store.has_kitchen
         self.goals_from = ""
         self._starting = False
+        self._origin: StoredDataset | None = None  # that this has the kitchen for some goals of
         self.read_seconds = time.perf_counter() - began
 
     def close(self) -> None:
@@ -163,11 +166,11 @@ class StoredDataset(Dataset):
         return other.measured(self.measures)
 
     def with_starting_kitchen(self) -> "StoredDataset":
-        """Give the same store with what no unit makes out of others at hand; nothing is read."""
+        """Return the same store with what makes the units of each file run at hand; nothing is read."""
         other = self._copied()
         other._kitchen = ()
         other._at_hand = self._store.is_starting
-        other._all_at_hand = lambda: starting_nodes(other._whole()[0])
+        other._all_at_hand = self._store.starting_kitchen
         other._starting = True
         return other
 
@@ -182,7 +185,7 @@ class StoredDataset(Dataset):
         more: Collection[int],
         less: Collection[int],
         only: Collection[int] | None,
-    ) -> Dataset:
+    ) -> "StoredDataset":
         """Give the same store with another kitchen; nothing is read."""
         before = self._at_hand if only is None else frozenset(only).__contains__
         other = self._copied()
@@ -218,7 +221,28 @@ class StoredDataset(Dataset):
         self.read_seconds += time.perf_counter() - began
         return data
 
-    def subject(self, everything: bool = True) -> "Subject":
+    def made_too(self, objects: Iterable[int]) -> list[int]:
+        """Return those of some nodes of a starting kitchen that a unit makes out of others."""
+        return self._store.made_too(objects)
+
+    def goal_changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
+        """Return what a starting kitchen has more, and what it lacks, because these are the goals."""
+        if not self._starting:
+            return frozenset(), frozenset()
+        store = self._store
+        added, lacking = store.starting_changes(goals)
+        return frozenset(o for o in added if self._at_hand(o) or not store.is_starting(o)), lacking
+
+    def _for(self, goals: Iterable[int]) -> "StoredDataset":
+        """Return the same store with the kitchen for goals."""
+        added, lacking = self.goal_changes(goals)
+        if not added and not lacking:
+            return self
+        other = self.varied(added, lacking, None)
+        other._origin = self
+        return other
+
+    def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
         """Give what a certificate speaks about: all of it, or what is read when it is looked at.
 
         Then the digests of the network and of what was imported beside it are those that the store states.
@@ -237,9 +261,10 @@ class StoredDataset(Dataset):
             del stated["prices"]
         if everything:
             data = self.data
-            return Subject(data.network, data.kitchen, rates, self.utensils, data.unit_prices, stated)
-        network, kitchen = TouchedNetwork(self._store), _AtHand(self)
-        return Subject(network, kitchen, rates, self.utensils, None, stated, tuple(sorted(stated)))
+            kitchen = self.kitchen_for(goals)
+            return Subject(data.network, kitchen, rates, self.utensils, data.unit_prices, stated)
+        network, touched = TouchedNetwork(self._store), _AtHand(self)
+        return Subject(network, touched, rates, self.utensils, None, stated, tuple(sorted(stated)))
 
     def _true_digests(self) -> dict[str, str]:
         """Work out the digests that the store states, of all that is in it."""
@@ -259,6 +284,11 @@ class StoredDataset(Dataset):
         if not self._read_whole:
             self._read_whole.append(self._store.whole())
         return self._read_whole[0]
+
+    @property
+    def whole_network(self) -> Network:
+        """The whole network, read when it is looked at unless it was before."""
+        return self._read_whole[0][0] if self._read_whole else TouchedNetwork(self._store)
 
     @property
     def unit_prices(self) -> UnitPrices | None:
@@ -292,15 +322,17 @@ class StoredDataset(Dataset):
         """Whether the kitchen has an object node, by id."""
         return self._at_hand(o)
 
-    def kitchen_changes(self, problem: Problem) -> tuple[frozenset[int], frozenset[int]]:
+    def kitchen_changes(
+        self, problem: Problem, goals: Iterable[int]
+    ) -> tuple[frozenset[int], frozenset[int]]:
         """Give what a problem posed of this data has in its kitchen beyond it, and what it lacks.
 
-        Ids are those of the whole network.
+        Ids are those of the whole network, those of its ``goals`` too.
         """
-        network = problem.network
+        network, stocked = problem.network, self._for(goals)
         numbers = {network.object_number(o) for o in range(len(network.objects))}
         theirs = {network.object_number(o) for o in problem.kitchen}
-        ours = {o for o in numbers if self._at_hand(o)}
+        ours = {o for o in numbers if stocked._at_hand(o)}
         return frozenset(theirs - ours), frozenset(ours - theirs)
 
     def problem(
@@ -312,9 +344,10 @@ class StoredDataset(Dataset):
     ) -> Problem:
         """Ask for goals; what no tree for them needs is not read, unless everything is asked for."""
         if everything:
-            return ask(self.data, goals, containers, self, items)
-        cone = self._cone(goals, containers, items)
-        return self._posed(cone, containers, items)
+            return ask(self._stocked(goals), goals, containers, self, items)
+        stocked = self._for(goals)
+        cone = stocked._cone(goals, containers, items)
+        return stocked._posed(cone, containers, items)
 
     def nearby(
         self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = FIRST
@@ -326,15 +359,16 @@ class StoredDataset(Dataset):
         """
         if items is not None or not self.has_kitchen:
             return self.problem(goals, containers, items=items)
-        cone = self._cone(goals, containers, None, first)
+        stocked = self._for(goals)
+        cone, pose = stocked._cone(goals, containers, None, first), stocked._posed
         return NearbyProblem.of(
             Nearby(
                 cone,
-                lambda cone: self._posed(cone, containers, None),
-                lambda: self.problem(goals, containers) if cone.open else self._posed(cone, containers, None),
-                lambda units: self._asked(self._store.part(units, goals), goals, containers, None),
+                lambda cone: pose(cone, containers, None),
+                lambda: self.problem(goals, containers) if cone.open else pose(cone, containers, None),
+                lambda units: stocked._asked(self._store.part(units, goals), goals, containers, None),
                 lambda objective: self._elsewhere(containers, objective, cone.units),
-                lambda: self.subject(everything=False),
+                lambda: self.subject(False, goals),
             ),
             lambda goals: self.nearby(goals, containers, None, first),
         )
@@ -382,7 +416,7 @@ class StoredDataset(Dataset):
         return problem
 
     def _asked(self, part: Network, goals: Sequence[int], containers: str, items: UsedUp | None) -> Problem:
-        return ask(self._part(part), _places(part, goals), containers, self, items)
+        return ask(self._part(part), _places(part, goals), containers, self._origin or self, items)
 
     def part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()
@@ -397,7 +431,7 @@ class StoredDataset(Dataset):
             [*units, *(unit for unit in known if unit is not None)],
             [*goals, *(o for o in objects if o is not None)],
         )
-        return self._part(network), _places(network, goals)
+        return self._for(goals)._part(network), _places(network, goals)
 
     def _part(self, network: Network) -> Data:
         at_hand = (place for place, o in enumerate(network.object_numbers) if self._at_hand(o))
@@ -419,6 +453,7 @@ class StoredDataset(Dataset):
             self._prices_of(network, self._prices),
             self._starting,
             self.goals_from,
+            self._store.repeated,
         )
 
     def _prices_of(self, network: Network, prices: _StoredPrices) -> UnitPrices | None:
@@ -459,5 +494,5 @@ def _places(part: Network, goals: Sequence[int]) -> tuple[int, ...]:
 def _at_level(data: Data, level: int) -> Data:
     network = network_at_level(data.network, level)
     goals = tuple(entry._replace(pattern=pattern_at_level(entry.pattern, level)) for entry in data.goals)
-    kitchen = starting_nodes(network) if data.starting else kitchen_nodes(network, data.kitchen_items)
+    kitchen = starting_kitchen(network).nodes if data.starting else kitchen_nodes(network, data.kitchen_items)
     return data._replace(network=network, kitchen=kitchen, goals=goals)

@@ -18,15 +18,20 @@ def schema_kinds() -> tuple[str, ...]:
 
 def schema(kind: str) -> Json:
     """Give the schema of a kind, with all that it refers to in it: what is shared, and other kinds."""
-    shared = read_json(_text(_SHARED))["$defs"]
     text = _text(kind)
+    made: Json = read_json(text)
+    if "$defs" in made:  # made of the fields of a result
+        return made
+    shared = read_json(_text(_SHARED))["$defs"]
     left, found = _REFERENCE.findall(text), dict[str, Json]()
     while left:
         name = left.pop()
         if name not in found:
             found[name] = shared.get(name) or _part(_text(name))
+            for inner, part in found[name].pop("$defs", {}).items():
+                found.setdefault(inner, part)
             left += _REFERENCE.findall(json_line(found[name]))
-    given: Json = read_json(text)
+    given = made
     names = [*(name for name in shared if name in found), *sorted(found.keys() - shared.keys())]
     return given | ({"$defs": {name: found[name] for name in names}} if found else {})
 

@@ -1,374 +1,317 @@
-"""What an editor asks of a FOON text that is edited, and the answers, in the words of the protocol."""
+"""Answers to what an editor asks about a FOON text, as plain values of the protocol."""
 
+import contextlib
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from itertools import islice, takewhile
 
-from lsprotocol import types
-
+from foon_asp.editor.checked_text import CheckedText
 from foon_asp.editor.edited_text import EditedText
-from foon_asp.editor.name_place import name_at, typed_at
-from foon_asp.editor.piece import Name, Piece, Told
-from foon_asp.lint.noqa import silencing
-from foon_asp.network import NodePattern, counted
-from foon_asp.text.diagnostics import Diagnostic, InputError, Rename, Severity
+from foon_asp.editor.field import KINDS, Field, field_at
+from foon_asp.editor.json_rpc import INVALID_PARAMETERS, RequestError, parameter
+from foon_asp.errors import UserError
+from foon_asp.linting.names import Names
+from foon_asp.linting.noqa import silencing
+from foon_asp.linting.sheet import Sheet
+from foon_asp.network import Contents, ObjectNode, counted
+from foon_asp.text.data_folder import kitchen_file
+from foon_asp.text.diagnostics import InputError, Rename, Severity
 from foon_asp.text.formatter import format_text
-from foon_asp.text.json_value import json_line
+from foon_asp.text.json_value import Json
+from foon_asp.text.line import Line, StateLine
+from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import split_lines
-from foon_asp.text.renaming import NameKind, Renaming, is_name
+from foon_asp.text.renaming import NameKind, Renaming, is_name, line_names
 
 _OFFERED = 100  # names: what is typed next leaves fewer
-_PART = 500  # findings that are put together before something else may be asked
 _SHOWN = 8  # units in what is shown of a node
 _LEVELS = {Severity.ERROR: 1, Severity.WARNING: 2, Severity.NOTE: 3}
-_COMPLETED = {
-    NameKind.OBJECT: types.CompletionItemKind.Variable,
-    NameKind.STATE: types.CompletionItemKind.Property,
-    NameKind.WORD: types.CompletionItemKind.Keyword,
-    NameKind.MOTION: types.CompletionItemKind.Function,
-}
-_LETTERS = {
-    "O": "an object",
-    "S": "a state, a relation or contents",
-    "M": "a motion",
+_FUNCTION, _KEYWORD = 12, 14  # kinds of symbols and of completion items
+_COMPLETED = {NameKind.OBJECT: 6, NameKind.STATE: 10, NameKind.WORD: _KEYWORD, NameKind.MOTION: 3}
+_Place = tuple[int, str]  # of a unit: its first line, and its motion
+_HEADS = {
+    "O\t": "an object",
+    "S\t": "a state, a relation or contents",
+    "M\t": "a motion",
     "//": "the end of a unit",
 }
 
 
-class Columns:
-    """Letters of a line as the editor counts them: UTF-16 units, unless both sides chose something else."""
-
-    def __init__(self, encoding: str) -> None:
-        codec, self._size = {
-            "utf-8": ("utf-8", 1),
-            "utf-32": ("utf-32-le", 4),
-        }.get(encoding, ("utf-16-le", 2))
-        self._bytes: Callable[[str], bytes] = lambda text: text.encode(codec, "surrogatepass")
-        self._text: Callable[[bytes], str] = lambda data: data.decode(codec, "ignore")
-
-    def theirs(self, line: str, letter: int) -> int:
-        """Give a place in a line as the editor counts."""
-        return letter if line.isascii() else len(self._bytes(line[:letter])) // self._size
-
-    def ours(self, line: str, column: int) -> int:
-        """Give a place in a line as Python counts."""
-        if line.isascii():
-            return min(column, len(line))
-        return len(self._text(self._bytes(line)[: column * self._size]))
-
-    def range(self, lines: list[str], line: int, start: int, end: int) -> types.Range:
-        """Give the letters of a line."""
-        text = lines[line] if line < len(lines) else ""
-        return types.Range(
-            types.Position(line, self.theirs(text, start)), types.Position(line, self.theirs(text, end))
+def diagnostics(checked: CheckedText) -> list[Json]:
+    """Return all findings."""
+    found = []
+    for line, finding in checked.findings:
+        start = max(0, finding.source.column - 1)
+        rest = re.split(r"[\t\[\]{},]", checked.text.lines[line][start + 1 :])[0]
+        found.append(
+            {
+                "range": checked.text.range(line, start, start + 1 + len(rest)),
+                "severity": _LEVELS[finding.severity],
+                "code": finding.code,
+                "source": "foon-asp",
+                "message": finding.message,
+            }
         )
+    return found
 
 
-def diagnostics(edited: EditedText, columns: Columns) -> Iterator[str]:
-    """Give all findings in JSON, some at a time, since there may be thousands.
-
-    What a piece says is put together once, and moves with its lines.
-    """
-    parts: list[str] = []
-    for first, piece in zip(edited.starts, edited.pieces, strict=True):
-        if piece.told is None:
-            piece.told = [_told(edited, columns, first, *each) for each in piece.findings]
-        for at, start, end, rest in piece.told:
-            line = first + at
-            place = (
-                f'{{"start":{{"line":{line},"character":{start}}},"end":{{"line":{line},"character":{end}}}}}'
-            )
-            parts.append(f'{{"range":{place},{rest}')
-        if len(parts) >= _PART:
-            yield ",".join(parts)
-            parts = []
-    if parts:
-        yield ",".join(parts)
-
-
-def _told(edited: EditedText, columns: Columns, first: int, at: int, finding: Diagnostic) -> Told:
-    text = edited.lines[first + at] if first + at < len(edited.lines) else ""
-    start = min(finding.source.column - 1, len(text))
-    end = start + len(re.match(r"[^\t\[\]{},]*", text[start:])[0])  # type: ignore[index]
-    said = {
-        "severity": _LEVELS[finding.severity],
-        "code": finding.code,
-        "source": "foon-asp",
-        "message": finding.message,
-    }
-    begin, behind = columns.theirs(text, start), columns.theirs(text, max(end, min(start + 1, len(text))))
-    return Told(at, begin, behind, json_line(said)[1:])
-
-
-def completion(edited: EditedText, columns: Columns, line: int, column: int) -> types.CompletionList:
-    """Offer names of the kind that stands there, the most frequent first, with the ids that they have."""
-    text = edited.lines[line]
-    if edited.is_json:
-        return types.CompletionList(is_incomplete=False, items=[])
-    typed = typed_at(text, column)
-    if typed is None:
-        return types.CompletionList(is_incomplete=False, items=_heads(edited, columns, line, column))
-    wanted = typed.word.casefold()
+def completion(text: EditedText, names: Names, parameters: object) -> Json:
+    """Offer names of the kind that may stand at a place, the most frequent first, with their ids."""
+    line, at = text.place(parameters)
+    written = text.lines[line]
+    field = field_at(written, at)
+    if field is None:
+        return {"isIncomplete": False, "items": _heads(text, line, at, names)}
+    typed = written[field.start : at]
+    wanted = typed.casefold()
     found = [
-        (not name.name.casefold().startswith(wanted), -count, name)
-        for name, count in edited.counts.items()
-        if name.kind in typed.kinds
-        and wanted in name.name.casefold()
-        and (name.name != typed.word or count > 1)  # once, that is what is being typed
+        (not name.casefold().startswith(wanted), -count, kind, name)
+        for kind in field.kinds
+        for name, count in names.counts[kind].items()
+        if wanted in name.casefold() and (name != typed or count > 1)  # once, that is what is being typed
     ]
-    items = []
-    for number, (_, count, name) in enumerate(sorted(found)[:_OFFERED]):
-        id_ = _id(edited, name) if typed.is_own else ""
-        known = f"{typed.letter}{id_}, " if id_ else ""
-        edits = []
-        if id_ and not typed.id:
-            edits.append(types.TextEdit(columns.range(edited.lines, line, 1, 1), id_))
-        bracket = ""
-        if name.kind is NameKind.WORD and typed.end == len(text):
-            holds = 2 * edited.holding[name.name] > -count  # mostly, where the word is used both ways
-            bracket = "\t{" if holds else "\t["
-        items.append(
-            types.CompletionItem(
-                label=name.name,
-                kind=_COMPLETED[name.kind],
-                detail=f"{name.kind}, {known}{counted(-count, 'time')}",
-                sort_text=f"{number:03}",
-                text_edit=types.TextEdit(
-                    columns.range(edited.lines, line, typed.start, typed.end), name.name + bracket
-                ),
-                additional_text_edits=edits or None,
-            )
-        )
-    return types.CompletionList(is_incomplete=len(found) > _OFFERED, items=items)
+    items = [
+        _item(text, line, field, names, kind, name) | {"sortText": f"{number:03}"}
+        for number, (_, _, kind, name) in enumerate(sorted(found)[:_OFFERED])
+    ]
+    return {"isIncomplete": len(found) > _OFFERED, "items": items}
 
 
-def _id(edited: EditedText, name: Name) -> str:
-    """Give the id that a name mostly has."""
-    ids = edited.ids[name].most_common(1) if name in edited.ids else []
-    return next((id_ for id_, count in ids if count), "")
+def _item(text: EditedText, line: int, field: Field, names: Names, kind: NameKind, name: str) -> Json:
+    """Offer a name, with its id where the line has none."""
+    count, mentions = names.counts[kind][name], names.mentions[kind][name]
+    ids = _ids(names, kind, name)
+    id_ = "" if field.id is None else max(ids, key=ids.__getitem__, default="")
+    bracket = ""
+    if kind is NameKind.WORD and field.end == len(text.lines[line]):
+        holding = sum(mention.often for mention in mentions if _holds(mention.line))
+        bracket = "\t{" if 2 * holding > count else "\t["
+    item: Json = {
+        "label": name,
+        "kind": _COMPLETED[kind],
+        "detail": f"{kind}, {f'{field.letter}{id_}, ' if id_ else ''}{counted(count, 'time')}",
+        "textEdit": text.edit(name + bracket, line, field.start, field.end),
+    }
+    if id_ and not field.id:
+        item["additionalTextEdits"] = [text.edit(id_, line, 1, 1)]
+    return item
 
 
-def _heads(edited: EditedText, columns: Columns, line: int, column: int) -> list[types.CompletionItem]:
+def _holds(line: Line) -> bool:
+    return isinstance(line, StateLine) and isinstance(line.attribute, Contents)
+
+
+def _ids(names: Names, kind: NameKind, name: str) -> Counter[str]:
+    """Count the ids of a name."""
+    ids: Counter[str] = Counter()
+    for mention in names.mentions[kind].get(name, ()):
+        if mention.line.id and next(line_names(mention.line))[:2] == (kind, name):
+            ids[mention.line.id] += mention.often
+    return ids
+
+
+def _heads(text: EditedText, line: int, at: int, names: Names) -> list[Json]:
     """Offer how a line may begin; behind a letter and digits, the names that have such an id."""
-    text = edited.lines[line]
-    whole = columns.range(edited.lines, line, 0, len(text))
-    if text[column:].strip():
+    written = text.lines[line]
+    if text.is_json or written[at:].strip():
         return []
-    if match := re.fullmatch(r"([OSM])(\d+)", text):
+    if match := re.fullmatch(r"([OSM])(\d+)", written):
         letter, digits = match.groups()
-        found = [
-            (id_, name)
-            for name, ids in edited.ids.items()
-            for id_, count in ids.items()
-            if count and id_.startswith(digits) and _letter(name.kind) == letter
+        found = sorted(
+            (id_, name, kind)
+            for kind in KINDS[letter]
+            for name in names.counts[kind]
+            for id_ in _ids(names, kind, name)
+            if id_.startswith(digits)
+        )
+        offered = [
+            (f"{letter}{id_} {name}", f"{letter}{id_}\t{name}", _COMPLETED[kind], str(kind))
+            for id_, name, kind in found[:_OFFERED]
         ]
-        return [
-            types.CompletionItem(
-                label=f"{letter}{id_} {name.name}",
-                filter_text=text,
-                kind=_COMPLETED[name.kind],
-                text_edit=types.TextEdit(whole, f"{letter}{id_}\t{name.name}"),
-            )
-            for id_, name in sorted(found)[:_OFFERED]
+    else:
+        offered = [
+            (head.rstrip(), head, _KEYWORD, meaning)
+            for head, meaning in _HEADS.items()
+            if head.startswith(written)
         ]
     return [
-        types.CompletionItem(
-            label=head,
-            detail=meaning,
-            kind=types.CompletionItemKind.Keyword,
-            filter_text=text or head,
-            text_edit=types.TextEdit(whole, head if head == "//" else f"{head}\t"),
-        )
-        for head, meaning in _LETTERS.items()
-        if head.startswith(text)
+        {
+            "label": label,
+            "filterText": written or label,
+            "kind": kind_number,
+            "detail": detail,
+            "textEdit": text.edit(new, line),
+        }
+        for label, new, kind_number, detail in offered
     ]
 
 
-def _letter(kind: NameKind) -> str:
-    return {NameKind.OBJECT: "O", NameKind.MOTION: "M"}.get(kind, "S")
+def _hover(checked: CheckedText, parameters: object) -> Json | None:
+    """Say which units make and need the node of a line, and whether it is available.
 
-
-def hover(
-    edited: EditedText, columns: Columns, line: int, column: int, kitchen: Iterable[NodePattern] | None
-) -> types.Hover | None:
-    """Say which units make and need the node of a line, and whether it is at hand.
-
-    ``kitchen`` is ``None`` where there is none: then what no unit makes is at hand.
+    Without a kitchen beside the file, a node that no unit makes is available.
     """
-    found = edited.block_at(line)
-    if found is None:
+    text = checked.text
+    line, at = text.place(parameters)
+    node = _node_at(checked, line)
+    if node is None:
         return None
-    node = found.block.node
-    makers, needers = (list(edited.where(index.get(node, ()))) for index in (edited.makers, edited.needers))
-    if kitchen is not None:
-        is_there = any(pattern.matches(node) for pattern in kitchen)
-        at_hand = "at hand: the kitchen has it" if is_there else "not in the kitchen"
-    else:
-        at_hand = "not at hand: a unit has to make it" if makers else "at hand: no unit makes it"
+    makers, needers = _makers_and_needers(checked, node)
+    at_hand = "not at hand: a unit has to make it" if makers else "at hand: no unit makes it"
+    with contextlib.suppress(OSError, UserError):
+        if file := kitchen_file(text.file.parent):
+            is_there = any(entry.pattern.matches(node) for entry in read_object_list(file))
+            at_hand = "at hand: the kitchen has it" if is_there else "not in the kitchen"
     said = [f"**{_plain(str(node))}**", f"made by {_units(makers)}", f"needed by {_units(needers)}", at_hand]
-    if (place := name_at(edited.lines[line], column)) and place.name in edited.counts:
-        kind, name = place.name
-        said.append(f"{kind} '{_plain(name)}': {counted(edited.counts[place.name], 'time')}")
-    return types.Hover(types.MarkupContent(types.MarkupKind.Markdown, "\n\n".join(said)))
+    field = field_at(text.lines[line], at)
+    if field and (count := checked.names.counts[field.kinds[0]].get(field.name)):
+        said.append(f"{field.kinds[0]} '{_plain(field.name)}': {counted(count, 'time')}")
+    return {"contents": {"kind": "markdown", "value": "\n\n".join(said)}}
 
 
-def _units(places: list[tuple[int, Piece]]) -> str:
+def _node_at(checked: CheckedText, line: int) -> ObjectNode | None:
+    """Return the object node that a line belongs to."""
+    lines = checked.text.lines
+    while line > 0 and lines[line][:1] in {"S", "#", ""}:
+        line -= 1
+    blocks = Sheet("", lines, checked.names.files.reader).blocks(line)
+    return next((node for start, node in blocks if start == line), None)
+
+
+def _makers_and_needers(checked: CheckedText, node: ObjectNode) -> tuple[list[_Place], list[_Place]]:
+    """Return the units that make a node and do not need it, and those that need it."""
+    network, copies = checked.names.network, checked.names.files.copies
+
+    def places(units: Iterable[int]) -> list[_Place]:
+        return sorted((copy.at, network.motions[unit]) for unit in units for copy in copies[unit])
+
+    id_ = network.object_id(node)
+    if id_ is None:
+        return [], []
+    makers = (unit for unit in network.producers[id_] if id_ not in network.inputs[unit])
+    return places(makers), places(network.consumers[id_])
+
+
+def _units(places: list[_Place]) -> str:
     """Name units by their motions and lines."""
-    if not places:
-        return "no unit"
-    shown = [
-        f"{_plain(piece.motion[1]) if piece.motion else '?'} (line {start + _first(piece) + 1})"
-        for start, piece in places[:_SHOWN]
-    ]
-    return ", ".join([*shown, *[f"{len(places) - _SHOWN} more"] * (len(places) > _SHOWN)])
-
-
-def _first(piece: Piece) -> int:
-    return piece.blocks[0].start if piece.blocks else 0
+    shown = [f"{_plain(motion)} (line {line + 1})" for line, motion in places[:_SHOWN]]
+    return ", ".join([*shown, *[f"{len(places) - _SHOWN} more"] * (len(places) > _SHOWN)]) or "no unit"
 
 
 def _plain(text: str) -> str:
-    """Give a name so that Markdown shows it as it is."""
+    """Write a name so that Markdown shows it as it is."""
     return re.sub(r"([\\`*_{}\[\]<>#+\-!|&])", r"\\\1", text)
 
 
-def makers(edited: EditedText, columns: Columns, uri: str, line: int) -> list[types.Location]:
-    """Give the places where the units that make the node of a line state it."""
-    found = edited.block_at(line)
-    if found is None:
+def _makers(checked: CheckedText, parameters: object) -> list[Json]:
+    """Return the places where the units that make the node of a line state it."""
+    text = checked.text
+    node = _node_at(checked, text.place(parameters)[0])
+    if node is None:
         return []
-    places = []
-    for start, piece in edited.where(edited.makers.get(found.block.node, ())):
-        block = next(b for b in piece.blocks if b.is_output and b.node == found.block.node)
-        at = start + block.start
-        places.append(types.Location(uri, columns.range(edited.lines, at, 0, len(edited.lines[at]))))
-    return places
+    sheet = Sheet("", text.lines, checked.names.files.reader)
+    lines = (sheet.line_of(node, first) for first, _ in _makers_and_needers(checked, node)[0])
+    return [{"uri": text.uri, "range": text.range(line)} for line in lines]
 
 
-def symbols(edited: EditedText) -> list[dict[str, object]]:
-    """Give the outline: each unit by its motion and what it makes, as plain values for speed."""
-    listed = []
-    for start, piece in zip(edited.starts, edited.pieces, strict=True):
-        if piece.motion is None or not piece.blocks:
-            continue
-        at, motion = piece.motion
-        made = " + ".join(dict.fromkeys(node.label for node in piece.makes))
-        end = {"line": start + len(piece.lines) - 1, "character": 0}
-        listed.append(
+def _extents(checked: CheckedText) -> Iterator[tuple[int, int, int, int]]:
+    """Return the first line of each unit, that of its motion, that of its end, and its number, in order."""
+    lines, files = checked.text.lines, checked.names.files
+    copies = sorted((copy.at, unit) for unit, listed in enumerate(files.copies) for copy in listed)
+    for first, unit in copies if not checked.text.is_json else ():
+        behind = range(first, len(lines))
+        end = next((number for number in behind if lines[number][:2] == "//"), behind[-1])
+        motion = next((number for number in behind if lines[number][:1] == "M"), first)
+        yield first, motion, end, unit
+
+
+def _symbols(checked: CheckedText, _: object) -> list[Json]:
+    """Return the outline: each unit by its motion and what it makes."""
+    network, position = checked.names.network, checked.text.position
+    found = []
+    for first, motion, end, unit in _extents(checked):
+        made = (node for node in network.outputs[unit] if node not in network.inputs[unit])
+        labels = " + ".join(dict.fromkeys(network.objects[node].label for node in made))
+        found.append(
             {
-                "name": motion,
-                "detail": f"→ {made}" if made else "",
-                "kind": types.SymbolKind.Function.value,
-                "range": {"start": {"line": start + _first(piece), "character": 0}, "end": end},
-                "selectionRange": {
-                    "start": {"line": start + at, "character": 0},
-                    "end": {"line": start + at, "character": 1},
-                },
+                "name": network.motions[unit],
+                "detail": f"→ {labels}",
+                "kind": _FUNCTION,
+                "range": {"start": position(first), "end": position(end)},
+                "selectionRange": checked.text.range(motion, 0, 1),
             }
         )
-    return listed
+    return found
 
 
-def folds(edited: EditedText) -> list[dict[str, object]]:
-    """Give what can be folded: each unit, from its first object line to its last."""
-    return [
-        {"startLine": start + piece.blocks[0].start, "endLine": start + piece.blocks[-1].end - 1}
-        for start, piece in zip(edited.starts, edited.pieces, strict=True)
-        if piece.blocks and piece.blocks[0].start < piece.blocks[-1].end - 1
-    ]
+def _folds(checked: CheckedText, _: object) -> list[Json]:
+    """Return what can be folded: each unit, up to its separator."""
+    return [{"startLine": first, "endLine": end - 1} for first, _, end, _ in _extents(checked)]
 
 
-def renameable(edited: EditedText, columns: Columns, line: int, column: int) -> types.Range | None:
-    """Give the name at a place, if there is one."""
-    place = None if edited.is_json else name_at(edited.lines[line], column)
-    return columns.range(edited.lines, line, place.start, place.end) if place else None
+def _renameable(checked: CheckedText, parameters: object) -> Json | None:
+    """Return the range of the name at a place, if there is one."""
+    line, at = checked.text.place(parameters)
+    field = field_at(checked.text.lines[line], at)
+    return checked.text.range(line, field.start, field.end) if field and field.name else None
 
 
-def renamed(
-    edited: EditedText, columns: Columns, line: int, column: int, new: str
-) -> list[types.TextEdit] | None:
-    """Write the name at a place otherwise everywhere in the text; ``None`` if it cannot be called so."""
-    place = None if edited.is_json else name_at(edited.lines[line], column)
-    if place is None or not is_name(place.name.kind, new):
-        return None
-    return _with_name(edited, columns, Rename(place.name.kind, place.name.name, new))
+def _rename(checked: CheckedText, parameters: object) -> Json:
+    """Rename the name at a place everywhere in the text."""
+    line, at = checked.text.place(parameters)
+    field, new = field_at(checked.text.lines[line], at), parameter(parameters, "newName", str)
+    if not field or not field.name or not is_name(field.kinds[0], new):
+        raise RequestError(INVALID_PARAMETERS, f"found {new!r}, which cannot be a name there")
+    return {"changes": {checked.text.uri: _renamed(checked, Rename(field.kinds[0], field.name, new))}}
 
 
-def _with_name(edited: EditedText, columns: Columns, rename: Rename) -> list[types.TextEdit]:
-    renaming = Renaming(rename, edited.reader)
-    renaming.learn_ids(edited.ids.get(Name(NameKind(rename.kind), rename.new), {}))
-    edits = []
-    for number, text in enumerate(edited.lines):
-        if rename.old in text and (new := renaming.line(text)) != text:
-            edits.append(types.TextEdit(columns.range(edited.lines, number, 0, len(text)), new))
-    return edits
+def _renamed(checked: CheckedText, rename: Rename) -> list[Json]:
+    renaming = Renaming(rename, checked.names.files.reader)
+    renaming.learn_ids(_ids(checked.names, NameKind(rename.kind), rename.new))
+    return checked.text.edits([renaming.line(line) for line in checked.text.lines])
 
 
-def formatted(edited: EditedText, columns: Columns) -> list[types.TextEdit]:
-    """Bring the text into canonical form, in one edit from the first line that changes to the last."""
+def formatted(text: EditedText) -> list[Json]:
+    """Bring the text into canonical form."""
     try:
-        text = format_text(edited.text, "", lenient=True).text
+        return text.edits(split_lines(format_text(text.text, "", lenient=True)))
     except InputError:
         return []
-    before, after = edited.lines, split_lines(text)
-    same = _same(before, after)
-    if same == len(before) == len(after):
-        return []
-    at_end = min(_same(before[::-1], after[::-1]), len(before) - same, len(after) - same)
-    first, last = same, len(before) - at_end
-    lines = after[same : len(after) - at_end]
-    if last < len(before):  # what follows stays on a line of its own
-        end, written = types.Position(last, 0), "".join(f"{each}{edited.end}" for each in lines)
-    else:
-        end = types.Position(last - 1, columns.theirs(before[-1], len(before[-1])))
-        written = edited.end.join(lines)
-        if first == last:
-            start = end
-            return [types.TextEdit(types.Range(start, end), edited.end + written)]
-    return [types.TextEdit(types.Range(types.Position(first, 0), end), written)]
 
 
-def _same(one: list[str], other: list[str]) -> int:
-    pairs = zip(one, other, strict=False)
-    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
-
-
-def quick_fixes(
-    edited: EditedText, columns: Columns, uri: str, first: int, last: int
-) -> Iterator[types.CodeAction]:
+def _quick_fixes(checked: CheckedText, parameters: object) -> list[Json]:
     """Offer what mends the findings on some lines, and to silence them."""
-    silenced: dict[tuple[int, str], types.CodeAction] = {}
-    for line, finding in islice(edited.findings(first, last), _OFFERED):
-        title, edits = _mending(edited, columns, line, finding)
-        if edits:
-            yield _action(title, uri, edits, is_preferred=not finding.unsafe and finding.rename is None)
-        if not edited.is_json and (line, finding.code) not in silenced and finding.code != "noqa":
-            place = types.Range(types.Position(line, 0), types.Position(line, 0))
-            comment = types.TextEdit(place, f"{silencing(finding.code)}{edited.end}")
-            action = _action(f"Silence {finding.code} on this line", uri, [comment], is_preferred=False)
-            silenced[line, finding.code] = action
-    yield from silenced.values()
+    text = checked.text
+    first, last = (parameter(parameters, f"range.{side}.line", int) for side in ("start", "end"))
+    mending: list[Json] = []
+    silenced: dict[tuple[int, str], Json] = {}
+    here = [each for each in checked.findings if first <= each[0] <= last]
+    for line, finding in here[:_OFFERED]:
+        code, rename = finding.code, finding.rename
+        if rename and (edits := _renamed(checked, rename)):
+            title = f"Write {rename.new!r} for the {rename.kind} {rename.old!r} everywhere in this file"
+            mending.append(_action(title, text, edits, False))
+        elif finding.fix is not None and text.lines[line] == finding.excerpt:
+            fix = text.edit(text.end.join(split_lines(finding.fix)), line)  # which may add a separator
+            mending.append(_action(f"Mend: {finding.message}", text, [fix], not finding.unsafe))
+        if not text.is_json and code != "noqa":
+            comment = text.edit(silencing(code) + text.end, line, 0, 0)
+            silenced[line, code] = _action(f"Silence {code} on this line", text, [comment], False)
+    return [*mending, *silenced.values()]
 
 
-def _mending(
-    edited: EditedText, columns: Columns, line: int, finding: Diagnostic
-) -> tuple[str, list[types.TextEdit]]:
-    if finding.rename is not None:
-        kind, old, new = finding.rename
-        return f"Write {new!r} for the {kind} {old!r} everywhere in this file", _with_name(
-            edited, columns, finding.rename
-        )
-    if finding.fix is None or edited.is_json or edited.lines[line] != finding.excerpt:
-        return "", []
-    fix = edited.end.join(split_lines(finding.fix))  # which may add a separator
-    whole = columns.range(edited.lines, line, 0, len(edited.lines[line]))
-    return f"Mend: {finding.message}", [types.TextEdit(whole, fix)]
+def _action(title: str, text: EditedText, edits: list[Json], preferred: bool) -> Json:
+    edit = {"changes": {text.uri: edits}}
+    return {"title": title, "kind": "quickfix", "isPreferred": preferred, "edit": edit}
 
 
-def _action(title: str, uri: str, edits: list[types.TextEdit], is_preferred: bool) -> types.CodeAction:
-    return types.CodeAction(
-        title,
-        kind=types.CodeActionKind.QuickFix,
-        is_preferred=is_preferred,
-        edit=types.WorkspaceEdit(changes={uri: edits}),
-    )
+ANSWERS: dict[str, Callable[[CheckedText, object], object]] = {
+    "textDocument/hover": _hover,
+    "textDocument/definition": _makers,
+    "textDocument/prepareRename": _renameable,
+    "textDocument/rename": _rename,
+    "textDocument/documentSymbol": _symbols,
+    "textDocument/foldingRange": _folds,
+    "textDocument/codeAction": _quick_fixes,
+}
+"""What is asked of a text that was read, by method."""

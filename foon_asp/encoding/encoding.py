@@ -10,7 +10,7 @@ from pathlib import Path
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Location, Transformer
 from clingo.symbol import SymbolType
 
-from foon_asp.encoding.encoding_file import check_text, excerpt, included_files
+from foon_asp.encoding.encoding_file import check_text, excerpt, included_files, string_constant
 from foon_asp.encoding.facts import FACT_PREDICATES, quote
 from foon_asp.errors import UserError
 from foon_asp.grounding.exact import LARGEST
@@ -36,8 +36,9 @@ PUBLIC_NAMES = frozenset(name for name, _ in (*PUBLIC, *EXTENDED)) | _TERMS
 
 _THEORY = "no theory is part of the program, so it would have no meaning; #sum and #count add up and count"
 _REFUSED = {
-    ASTType.Minimize: "a statement that minimizes, expected only rules and constraints: --objective chooses "
-    "what is best; to change it, edit a copy of objectives.lp and pass its folder with --encodings",
+    ASTType.Minimize: "a statement that minimizes, expected only rules and constraints: what may be broken "
+    "at a cost is a constraint (:-) in a file passed with --soft FILE=WEIGHT; what units cost are rules for "
+    "cost(NAME,U,N) in a file passed with --measure FILE.lp --objective NAME",
     ASTType.ShowTerm: "#show of a term, expected only rules and constraints: what is shown is the answer; "
     "#show NAME/ARITY. may stay",
     ASTType.ProjectAtom: "#project, expected only rules and constraints: answers are not projected",
@@ -56,9 +57,7 @@ _CODES = {ASTType.Minimize: "minimize", ASTType.Program: "program-part"}
 
 # A message of clingo: file, line and column of what it is about, its kind, and its first line.
 _MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)")
-_STRING = re.compile(r'"([^"\\]|\\["\\n])*"')  # as clingo reads one
 _NEGATIVE = re.compile(r"-\d+(,|$)")  # the weight of an element
-_ESCAPED = re.compile(r"\\(.)")
 _SAME = {ComparisonOperator.Equal, ComparisonOperator.NotEqual}
 _OF_ANYTHING = {AggregateFunction.Min, AggregateFunction.Max}  # and not of numbers alone
 _EXAMPLE = ':- use(U), motion(U,"fry").'
@@ -99,6 +98,11 @@ class Encoding:
                 first = symbol.arguments[0]
                 named = first.ast_type == ASTType.SymbolicTerm and first.symbol.type is SymbolType.Function
                 yield symbol.name, first.symbol.name if named else ""
+
+    @property
+    def definitions(self) -> list[AST]:
+        """The ``#const`` statements."""
+        return [each for each in self.statements if each.ast_type == ASTType.Definition]
 
     def saying(self, constant: str) -> set[Signature]:
         """Give the predicates of which rules say that they hold of a constant."""
@@ -472,21 +476,7 @@ def constant_value(name: str, default: str, value: str) -> str:
         raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number of 32 bits")
     if not _is_number(default) and not (_fits(value) or _WORD.fullmatch(value)):
         raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number or a word")
-    return value
-
-
-def string_constant(value: str) -> str:
-    """Give the text that is meant by a setting of a string constant, with or without quotes.
-
-    Raises :class:`UserError` for a quote at the beginning with no string of clingo's after it.
-    """
-    if not value.startswith('"'):
-        return value
-    if not _STRING.fullmatch(value):
-        raise UserError(
-            f'found {value} for a constant, expected a text in quotes, with \\" for a quote in it'
-        )
-    return _ESCAPED.sub(lambda found: "\n" if found[1] == "n" else found[1], value[1:-1])
+    return str(int(value)) if _fits(value) else value  # clingo reads no 007
 
 
 def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:

@@ -31,6 +31,7 @@ _TOKEN = re.compile(
 )
 _IN_BLOCK = re.compile(r"\*%|%\*|%[^\n]*")
 _ESCAPED = re.compile(r"\\(.)")
+_STRING = re.compile(r'"([^"\\]|\\["\\n])*"')  # as clingo reads one
 _SUFFIX = ".lp"
 
 
@@ -181,3 +182,17 @@ def _tokens(text: str) -> Iterator[_Token]:
                 return
         elif kind not in {"comment", "blank"}:
             yield _Token(kind, match[0], match.start())
+
+
+def string_constant(value: str) -> str:
+    """Return the text that is meant by a setting of a string constant, with or without quotes.
+
+    Raises :class:`UserError` for a quote at the beginning with no string of clingo's after it.
+    """
+    if not value.startswith('"'):
+        return value
+    if not _STRING.fullmatch(value):
+        raise UserError(
+            f'found {value} for a constant, expected a text in quotes, with \\" for a quote in it'
+        )
+    return _ESCAPED.sub(lambda found: "\n" if found[1] == "n" else found[1], value[1:-1])

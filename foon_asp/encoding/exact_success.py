@@ -2,7 +2,7 @@
 
 A product of rates is the sum of their logarithms; clingo adds integers, so each rate p is given the weight
 ``floor(S * -ln p)``. Rounding down loses less than 1 per unit, which bounds what it can hide: see
-``docs/exact-success.md`` for the argument and ``foon_asp/asp/solver.py`` for its use.
+``docs/dev/exact-success.md`` for the argument and ``foon_asp/asp/solver.py`` for its use.
 """
 
 import math

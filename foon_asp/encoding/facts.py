@@ -178,47 +178,6 @@ def write_worlds(
         yield f"{world}({number})." + "".join([f"_{name}({number},{said})." for name, said in atoms])
 
 
-def write_open_facts(
-    problem: Problem,
-    closed: Collection[tuple[str, int]],
-    left_open: Collection[tuple[str, int]],
-    scales: Scales,
-    looked_at: Collection[tuple[str, int]],
-) -> str:
-    """Describe a question as :func:`write_facts` does, but leave some facts open.
-
-    ``closed`` are facts, ``left_open`` externals: pairs of ``unit``, ``object`` or ``kitchen`` and an id of
-    the network. What else the facts say of a unit or a node that is left open holds only where it is there,
-    if its predicate is one of those ``looked_at``; of the others the rules that read them see to that. Every
-    node may be a goal.
-    """
-    name = problem.network.object_number
-    lines = []
-    units = [id_ for kind, id_ in {*closed, *left_open} if kind == "unit"]
-    prices = hundredths(problem, units, looked_at)
-
-    def add(subject: str, is_open: bool, atoms: Iterable[_Atom]) -> None:
-        lines.append(f"#external {subject}." if is_open else f"{subject}.")
-        for atom in atoms:
-            waits = is_open and (atom[0], FACT_PREDICATES[atom[0]]) in looked_at
-            lines.append(f"{_written(atom)} :- {subject}." if waits else f"{_written(atom)}.")
-
-    for kind, id_ in sorted({*closed, *left_open}):
-        is_open = (kind, id_) in left_open
-        if kind == "unit":
-            add(_unit_atom(problem, id_), is_open, _unit_atoms(problem, id_, scales, prices))
-        elif kind == "kitchen":
-            add(f"kitchen({_check(name(id_))})", is_open, ())
-        else:
-            atoms = _object_atoms(problem, id_)
-            label = problem.network.objects[id_].label
-            if label in problem.utensils:
-                atoms.append(("utensil", f"{quote(label)}"))
-            add(_object_atom(problem, id_), is_open, atoms)
-            lines.append(f"#external goal({name(id_)}).")
-    return "\n".join(lines) + "\n"
-
-
 def _written(atom: _Atom) -> str:
     return f"{atom[0]}({atom[1]})"
 

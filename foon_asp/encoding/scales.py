@@ -1,6 +1,5 @@
 """The costs of units as integers for clingo: unchanged, scaled, or rounded down and settled later."""
 
-import copy
 import math
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
@@ -42,6 +41,35 @@ def cost_scale(costs: Iterable[Fraction]) -> CostScale:
     return CostScale(scale, exact, weights, places, sum(weights[cost] for cost in costs))
 
 
+def require_one_rounded(problem: Problem, objectives: Iterable[Objective]) -> None:
+    """Raise :class:`UserError` for objectives of which two have to be rounded by what units may cost.
+
+    All units of the network count, so that a question is refused however few units matter for its goals.
+    """
+    fractions = [each for each in objectives if multiplies(each) or not each.row.whole]
+    if len(fractions) < 2:
+        return
+    costs = {
+        each: {Fraction(problem.figure(each, unit)) for unit in range(len(problem.network))}
+        for each in fractions
+    }
+    rounded = [
+        each
+        for each in fractions
+        if (costs[each] - {1} if multiplies(each) else not cost_scale(costs[each]).exact)
+    ]
+    if len(rounded) > 1:
+        raise too_many_rounded(rounded)
+
+
+def too_many_rounded(objectives: Iterable[Objective]) -> UserError:
+    """Return the error for several objectives that have to be rounded."""
+    return UserError(
+        f"the objectives {' and '.join(objectives)} have to be rounded for the solver, which can settle "
+        "only one such objective exactly: leave one of them out"
+    )
+
+
 class Scales:
     """How the units of a question are measured in clingo, by each of its objectives.
 
@@ -66,22 +94,8 @@ class Scales:
         }
         rounded = list(filter(self._rounds, objectives))
         if len(rounded) > 1:
-            raise UserError(
-                f"the objectives {' and '.join(rounded)} have to be rounded for the solver, which can settle "
-                "only one such objective exactly: leave one of them out"
-            )
+            raise too_many_rounded(rounded)
         self.rounded: Objective | None = rounded[0] if rounded else None
-
-    def of(self, problem: Problem) -> "Scales":
-        """Give the same scales for a problem of the same units that differs in its kitchen or goals."""
-        scales = copy.copy(self)
-        scales._problem = problem
-        return scales
-
-    @property
-    def likeness(self) -> list[int | Fraction | None]:
-        """A key that is equal for questions whose units have the same weights."""
-        return [self.rates and self.rates.scale, *(each.scale for each in self.costs.values())]
 
     def weight(self, objective: Objective, units: Iterable[int]) -> int:
         """Give what clingo adds up for some units."""

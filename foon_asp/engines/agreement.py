@@ -2,12 +2,11 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Final, NamedTuple
 
 from foon_asp.asp import Outcome, Status
-from foon_asp.certificate import Coverage, coverage
+from foon_asp.certificate import coverage
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.engines import bare_clingo, bare_plans, fast_downward, highs
 from foon_asp.engines.engine import (
@@ -39,7 +38,7 @@ ENGINES: Final = (
 
 
 def find_engines() -> tuple[Engine, ...]:
-    """Give all engines that are asked besides bare clingo, the built-in ones first.
+    """Return all engines that are asked besides bare clingo, the built-in ones first.
 
     Raises :class:`UserError` where a package offers one by a name that is taken.
     """
@@ -80,7 +79,9 @@ def cross_check(
         seconds = PATIENCE if left is None else left / (1 + len(engines))  # bare clingo is one more
     checks: list[Check] = []
     interrupted = False
-    for name, package, ask in _engines(asked, seconds, engines):
+    others = () if asked.outcome.problem.items is not None else engines  # they know no items that are used up
+    for engine in (None, *others):
+        name, package = (bare_clingo.NAME, None) if engine is None else (engine.name, engine.package)
         began = time.monotonic()
         objectives: tuple[Objective, ...] = ()
         reason: str | None = None
@@ -91,7 +92,7 @@ def cross_check(
             if asked.outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
                 raise NotCheckedError("nothing is proved, so there is nothing to check")
             with Deadline(seconds + _LATE).watched("asking another engine"):
-                objectives = ask()
+                objectives = _ask_clingo(asked, seconds) if engine is None else _ask(engine, asked, seconds)
         except NotCheckedError as error:
             reason = str(error)
         except LimitError:
@@ -106,48 +107,30 @@ def cross_check(
     return checks
 
 
-def _engines(
-    asked: Asked, seconds: float, engines: tuple[Engine, ...]
-) -> Iterator[tuple[str, str | None, Callable[[], tuple[Objective, ...]]]]:
-    """Give every engine by name and package, with a function that asks it and gives by what it agrees."""
-    outcome = asked.outcome
-    wanted = levels(outcome.objectives)
-
-    def ask_clingo() -> tuple[Objective, ...]:
-        if outcome.problem.items is not None:
-            return bare_plans.check_plan_with_bare_clingo(asked, seconds)
-        bare_clingo.check_with_bare_clingo(asked, seconds)
-        return () if outcome.units is None else wanted
-
-    yield bare_clingo.NAME, None, ask_clingo
-    if outcome.problem.items is not None:
-        return  # others know nothing of items that are used up
-    covered = coverage(asked.settings)
-
-    def ask(engine: Engine) -> tuple[Objective, ...]:
-        foreign = _foreign(asked, covered)
-        if foreign:
-            raise NotCheckedError(f"it knows no rules such as {', '.join(foreign)}")
-        if not engine.installed():
-            raise NotCheckedError(_EXTRA)
-        forbidden = covered.forbids(outcome.problem)
-        answer = engine.solve(outcome.problem, wanted, forbidden, seconds)
-        if not forbidden.isdisjoint(answer.units or ()):
-            raise DisagreementError(f"the tree of {answer.engine} has a unit that the rules forbid", answer)
-        return agree(outcome, answer)
-
-    for engine in engines:
-        yield engine.name, engine.package, lambda engine=engine: ask(engine)  # type: ignore[misc]
+def _ask_clingo(asked: Asked, seconds: float) -> tuple[Objective, ...]:
+    if asked.outcome.problem.items is not None:
+        return bare_plans.check_plan_with_bare_clingo(asked, seconds)
+    bare_clingo.check_with_bare_clingo(asked, seconds)
+    return () if asked.outcome.units is None else levels(asked.outcome.objectives)
 
 
-def _foreign(asked: Asked, covered: Coverage) -> list[str]:
-    """Name the rules that only clingo can read."""
-    others = [name.partition(" ")[0] for name in covered.not_covered]
-    return [*covered.beyond(), *others, *(file.name for file in asked.soft)]
+def _ask(engine: Engine, asked: Asked, seconds: float) -> tuple[Objective, ...]:
+    """Ask another engine than clingo, which knows no rules but units that are ruled out."""
+    problem, covered = asked.outcome.problem, coverage(asked.settings)
+    unknown = [*covered.beyond(), *(name.partition(" ")[0] for name in covered.not_covered)]
+    if unknown := [*unknown, *(file.name for file in asked.soft)]:
+        raise NotCheckedError(f"it knows no rules such as {', '.join(unknown)}")
+    if not engine.installed():
+        raise NotCheckedError(_EXTRA)
+    forbidden = covered.forbids(problem)
+    answer = engine.solve(problem, levels(asked.outcome.objectives), forbidden, seconds)
+    if not forbidden.isdisjoint(answer.units or ()):
+        raise DisagreementError(f"the tree of {answer.engine} has a unit that the rules forbid", answer)
+    return agree(asked.outcome, answer)
 
 
 def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
-    """Give the objectives by which an engine finds our tree best, too.
+    """Return the objectives by which an engine finds our tree best, too.
 
     Costs are computed anew from the units, as rational numbers. Where costs are fractions or rates, an engine
     that works in floats may take a tree for the best that is so by less than it can tell: then nothing is
@@ -161,34 +144,31 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     if answer.units is None:
         return ()
     costs = outcome.problem.costs(check_tree(outcome.problem, answer))
-    if outcome.status is Status.INFEASIBLE or outcome.costs is None:
+    if outcome.costs is None:
         raise DisagreementError(
             f"we say no tree exists, {answer.engine} says a tree exists", answer, ours=True
         )
     agreed: list[Objective] = []
     for objective in answer.objectives:
         ours, theirs = outcome.costs.measure(objective), costs.measure(objective)
-        if ours == theirs:
-            agreed.append(objective)
-            continue
-        better = theirs > ours if multiplies(objective) else theirs < ours
-        if not better and _close(objective, outcome.costs, costs):
+        if ours != theirs:
+            difference = differing(str(objective), ours, theirs, answer, multiplies(objective))
+            if difference.ours or not _is_close(objective, outcome.costs, costs):
+                raise difference
             break  # what it then finds for the objectives after this one is about other trees
-        raise differing(str(objective), ours, theirs, better, answer)
+        agreed.append(objective)
     if not agreed:
         raise NotCheckedError("its floats cannot tell our tree from a slightly worse one")
     return tuple(agreed)
 
 
-def _close(objective: Objective, one: Costs, other: Costs) -> bool:
+def _is_close(objective: Objective, one: Costs, other: Costs) -> bool:
     """Whether floats may take a tree for as good as another one."""
     first, second = Fraction(one.measure(objective)), Fraction(other.measure(objective))
-    units = 1 + one.units + other.units
+    close = _CLOSE * (1 + one.units + other.units)
     if not multiplies(objective):
-        return not objective.row.whole and abs(first - second) <= _CLOSE * units * (1 + abs(first))
+        return not objective.row.whole and abs(first - second) <= close * (1 + abs(first))
     if not first or not second:
         return False
-    difference = math.log(first.numerator * second.denominator) - math.log(
-        first.denominator * second.numerator
-    )
-    return abs(difference) <= _CLOSE * units
+    ratio = first / second
+    return abs(math.log(ratio.numerator) - math.log(ratio.denominator)) <= close

@@ -81,9 +81,10 @@ class DisagreementError(Exception):
 
 
 def differing(
-    by: str, ours: int | Fraction, theirs: int | Fraction, better: bool, answer: EngineAnswer
+    by: str, ours: int | Fraction, theirs: int | Fraction, answer: EngineAnswer, more_is_better: bool = False
 ) -> DisagreementError:
-    """Say that two trees called best cost something else by an objective; ``better`` is the engine's."""
+    """Return the error that two trees called best cost something else by an objective."""
+    better = theirs > ours if more_is_better else theirs < ours
     which = "ours is not the best" if better else f"{answer.engine} calls a worse one the best"
     words = f"by {by} our tree has {ours}, the one of {answer.engine} {theirs}; {which}"
     return DisagreementError(words, answer, ours=better)
@@ -94,7 +95,7 @@ class NotCheckedError(Exception):
 
 
 def check_tree(problem: Problem, answer: EngineAnswer) -> tuple[int, ...]:
-    """Give the units of an engine's tree in an order that executes; raises :class:`DisagreementError`."""
+    """Return the units of an engine's tree in an order that executes; raises :class:`DisagreementError`."""
     order = executable_order(problem, answer.units or ())
     if order is None or simulate_for(problem, problem.tree(order)).verdict is not Verdict.AS_LISTED:
         raise DisagreementError(f"the tree of {answer.engine} does not execute", answer)
@@ -117,7 +118,7 @@ def scope_of(problem: Problem, forbidden: frozenset[int]) -> Scope:
 
 
 def cost(problem: Problem, objective: Objective, unit: int) -> float:
-    """Give what a unit alone costs: a whole number, but for ``success``; ``kitchen`` is no cost of units."""
+    """Return what a unit alone costs: a whole number, but for ``success``; ``kitchen`` is no such cost."""
     if multiplies(objective):
         rate = problem.rate(unit)
         return math.log(rate.denominator) - math.log(rate.numerator)
@@ -128,5 +129,5 @@ def cost(problem: Problem, objective: Objective, unit: int) -> float:
 
 
 def taken(problem: Problem, units: Iterable[int]) -> list[int]:
-    """Give the kitchen items that some units need."""
+    """Return the kitchen items that some units need."""
     return sorted({o for unit in units for o in problem.needs[unit] if o in problem.kitchen})

@@ -9,8 +9,8 @@ import importlib.util
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
+from typing import Final
 
 from foon_asp.engines.engine import EngineAnswer, NotCheckedError, cost, scope_of, taken
 from foon_asp.errors import BugError
@@ -48,7 +48,7 @@ def solve_with_fast_downward(
         return EngineAnswer(NAME, objectives[:1], (), True)
     with tempfile.TemporaryDirectory() as name:
         task, plan = Path(name, "task.sas"), Path(name, "plan")
-        task.write_text("\n".join(_task(problem, objectives[0], forbidden)) + "\n", encoding="ascii")
+        task.write_text(_task(problem, objectives[0], forbidden), encoding="ascii")
         limits = f"--overall-time-limit={max(1, round(seconds))}", f"--overall-memory-limit={_MEMORY}"
         asked = "--plan-file", str(plan), str(task), "--search", "astar(lmcut())"
         command = [sys.executable, str(program), *limits, *asked]
@@ -67,24 +67,13 @@ def solve_with_fast_downward(
     return EngineAnswer(NAME, objectives[:1], units, finished)
 
 
-def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> Iterator[str]:
-    """Write the planning task, line by line; a variable is 0 once its node is at hand."""
+def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> str:
+    """Write the planning task; a variable is 0 once its node is available."""
     scope = scope_of(problem, forbidden)
     items = taken(problem, scope.units) if objective.row.item else []
     places = {o: place for place, o in enumerate([*scope.objects, *items])}
     scale = 1 if objective.row.whole else _SCALE
-    yield from ("begin_version", "3", "end_version", "begin_metric", "1", "end_metric", str(len(places) or 1))
-    for place in range(len(places) or 1):
-        yield from ("begin_variable", f"var{place}", "-1", "2", f"Atom at-hand({place})")
-        yield from (f"NegatedAtom at-hand({place})", "end_variable")
-    yield from ("0", "begin_state", *["1"] * (len(places) or 1), "end_state")
-    yield from (
-        "begin_goal",
-        str(len(scope.goals)),
-        *(f"{places[goal]} 0" for goal in scope.goals),
-        "end_goal",
-    )
-    operators: list[Iterator[str]] = []
+    operators = [_operator(f"take {o}", [], [places[o]], 1) for o in items]
     total = len(items)
     for unit in scope.units:
         needs = [o for o in problem.needs[unit] if o in places]
@@ -92,17 +81,52 @@ def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> 
         if gives:  # an operator has to have an effect
             weight = round(scale * cost(problem, objective, unit))
             total += weight
-            if total > _LARGEST:
-                raise NotCheckedError("the costs add up to more than its whole numbers hold")
             rows = [places[o] for o in needs], [places[o] for o in gives]
             operators.append(_operator(f"use {unit}", *rows, weight))
-    operators += [_operator(f"take {o}", [], [places[o]], 1) for o in items]
-    yield str(len(operators))
-    for operator in operators:
-        yield from operator
-    yield "0"
+    if total > _LARGEST:
+        raise NotCheckedError("the costs add up to more than its whole numbers hold")
+    return _TASK.format(
+        number=len(places),
+        variables="".join(map(_VARIABLE.format, range(len(places)))),
+        state="1\n" * len(places),
+        goals=len(scope.goals),
+        goal="".join(f"{places[goal]} 0\n" for goal in scope.goals),
+        operators=len(operators),
+        operator="".join(operators),
+    )
 
 
-def _operator(name: str, needs: list[int], gives: list[int], weight: int) -> Iterator[str]:
-    yield from ("begin_operator", name, str(len(needs)), *(f"{place} 0" for place in needs))
-    yield from (str(len(gives)), *(f"0 {place} -1 0" for place in gives), str(weight), "end_operator")
+_VARIABLE: Final = """\
+begin_variable
+var{0}
+-1
+2
+Atom at-hand({0})
+NegatedAtom at-hand({0})
+end_variable
+"""
+_TASK: Final = """\
+begin_version
+3
+end_version
+begin_metric
+1
+end_metric
+{number}
+{variables}0
+begin_state
+{state}end_state
+begin_goal
+{goals}
+{goal}end_goal
+{operators}
+{operator}0
+"""
+
+
+def _operator(name: str, needs: list[int], gives: list[int], weight: int) -> str:
+    conditions = "".join(f"{place} 0\n" for place in needs)
+    effects = "".join(f"0 {place} -1 0\n" for place in gives)
+    return (
+        f"begin_operator\n{name}\n{len(needs)}\n{conditions}{len(gives)}\n{effects}{weight}\nend_operator\n"
+    )

@@ -3,6 +3,8 @@
 import functools
 from typing import Any
 
+import msgspec
+
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.engines.engine import Engine, EngineAnswer, NotCheckedError
 from foon_asp.escapes import escaped
@@ -43,13 +45,10 @@ def _solve(
 
 def _looked_over(offer: Offer, problem: Problem, asked: tuple[Objective, ...], given: Any) -> EngineAnswer:
     """Take what was given for an answer, if it is one."""
-    fault = offer.fault(f"gave {given!r}, expected an EngineAnswer")
     try:
-        _, objectives, units, finished = given
-    except (ValueError, TypeError):
-        raise fault from None
-    if not isinstance(objectives, list) or type(finished) is not bool:
-        raise fault
+        _, objectives, units, finished = msgspec.convert(given, tuple[Any, list[Any], Any, bool])
+    except ValueError:
+        raise offer.fault(f"gave {given!r}, expected an EngineAnswer") from None
     if not objectives or objectives != list(asked[: len(objectives)]):
         raise offer.fault(
             f"looked at {objectives!r}, expected the first of {', '.join(asked)}, or more of them"

@@ -4,16 +4,17 @@ What comes in and goes out are plain values, so that it may be in another proces
 """
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
-from clingo import Control, MessageCode, Model, SolveHandle, parse_term
+from clingo import Control, MessageCode, Model, SolveHandle
 from clingo.symbol import Number, Symbol, SymbolType
 
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
 from foon_asp.grounding.number_checks import PLACE, Exact, numbers_beyond
-from foon_asp.grounding.run import Heard
+from foon_asp.grounding.run import Ended, Heard, asks_for_statistics
 from foon_asp.grounding.stated import Stated
 
 
@@ -30,6 +31,7 @@ class GroundProgram:
         self, files: Sequence[str | Stated], text: str, arguments: Sequence[str], products: int = 0
     ) -> None:
         self._messages: list[str] = []
+        self._statistics = asks_for_statistics(arguments)
         with refusing(self._messages):
             hear = listener(self._messages)
             self._control = Control(list(arguments), logger=hear, message_limit=NO_LIMIT)
@@ -39,12 +41,6 @@ class GroundProgram:
             self._load(checks, hear)  # last: what finds a sum that clasp refuses is grounded before the sum
             parts = [("_product", [Number(number)]) for number in range(products)]
             self._ground([("base", []), *parts])
-
-    def add(self, part: str, text: str, product: int) -> None:
-        """Ground more text, and what there is to say about a product of rates."""
-        with refusing(self._messages):
-            self._control.add(part, [], text)
-            self._ground([(part, []), ("_product", [Number(product)])])
 
     def _load(self, files: Sequence[str | Stated], hear: Callable[[MessageCode, str], None]) -> None:
         for file in files:
@@ -60,11 +56,6 @@ class GroundProgram:
             self._control.ground(parts, Exact())
         finally:
             self._messages += numbers_beyond(self._control)
-
-    def assign(self, atoms: Mapping[str, bool]) -> None:
-        """Say of external atoms whether they hold from now on."""
-        for atom, holds in atoms.items():
-            self._control.assign_external(parse_term(atom), holds)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
         """Give for each predicate, by name and arity, the numbers of its atoms: all that the rules derive.
@@ -83,8 +74,8 @@ class GroundProgram:
         predicates: Sequence[tuple[str, int]],
         on_tree: Callable[[Heard], None],
         on_bound: Callable[[list[int]], None],
-    ) -> bool:
-        """Search for the best answer, and tell whether the search was exhausted; any thread may report trees.
+    ) -> Ended:
+        """Search for the best answer, and say how the search ended; any thread may report trees.
 
         ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
         ``predicates``, by name and arity, have atoms that are wanted besides ``use``, which begin with a
@@ -118,10 +109,23 @@ class GroundProgram:
             ended = handle.get()
         if faults:
             raise faults[0]
-        return bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
+        exhausted = bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
+        return Ended(exhausted, "\n".join(_lines(self._control.statistics)) if self._statistics else "")
 
     def close(self) -> None:
         """Release the program."""
+
+
+def _lines(statistics: Any, name: str = "") -> Iterator[str]:
+    """Return clingo's statistics, a tree of numbers, as lines with the path to each."""
+    if isinstance(statistics, dict):
+        for key, each in statistics.items():
+            yield from _lines(each, f"{name}.{key}" if name else key)
+    elif isinstance(statistics, list):
+        for number, each in enumerate(statistics):
+            yield from _lines(each, f"{name}.{number}")
+    else:
+        yield f"{name} = {statistics:g}"
 
 
 def _wait(handle: SolveHandle, deadline: Deadline) -> None:

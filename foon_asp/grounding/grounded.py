@@ -1,7 +1,7 @@
 """A ground program that keeps to limits, wherever it is."""
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -46,16 +46,6 @@ class Grounded:
         else:
             self._program = GroundProgram(names, text, arguments, products)
 
-    def add(self, part: str, text: str, product: int, deadline: Deadline) -> None:
-        """Ground more text, and what there is to say about a product of rates; raises as the class does."""
-        self._begin("grounding", deadline)
-        self._program.add(part, text, product)
-
-    def assign(self, atoms: Mapping[str, bool], deadline: Deadline) -> None:
-        """Say of external atoms whether they hold from now on."""
-        self._program.deadline = deadline
-        self._program.assign(atoms)
-
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
         """Give for each predicate, by name and arity, the numbers of its atoms; raises as the class does."""
         return self._program.consequences(predicates)
@@ -89,7 +79,7 @@ class Grounded:
 
         try:
             self._begin("searching", deadline)
-            result.exhausted = self._program.search(opt_mode, predicates, tree, bound)
+            result.exhausted, result.statistics = self._program.search(opt_mode, predicates, tree, bound)
         except LimitError:  # what was heard stands
             pass
         result.solve_seconds = time.perf_counter() - began

@@ -9,11 +9,11 @@ import errno
 import os
 import queue
 import signal
-import threading
 import traceback
 from io import FileIO
 from typing import Any
 
+from foon_asp.aside import Aside
 from foon_asp.errors import UserError
 from foon_asp.grounding.derived import derive
 from foon_asp.grounding.ground_program import GroundProgram
@@ -27,7 +27,7 @@ def serve() -> None:
     answers = FileIO(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # so that nothing else gets among the answers
     commands: queue.SimpleQueue[tuple[Any, ...]] = queue.SimpleQueue()
-    threading.Thread(target=_read, args=(commands,), daemon=True).start()
+    Aside(_read, commands)
     program: GroundProgram | None = None
 
     def obey(command: str, *given: Any) -> object:
@@ -48,12 +48,12 @@ def serve() -> None:
             _bound_memory(memory)
             return derive(*described)
         assert program is not None
-        if command in {"add", "assign", "consequences"}:
-            return getattr(program, command)(*given)
+        if command == "consequences":
+            return program.consequences(*given)
         assert command == "search"
         opt_mode, predicates = given
         tree, bound = (lambda said, kind=kind: send(answers, (kind, said)) for kind in ("tree", "bound"))
-        return program.search(opt_mode, predicates, tree, bound)
+        return tuple(program.search(opt_mode, predicates, tree, bound))
 
     while True:
         try:

@@ -18,7 +18,7 @@ from typing import Any
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.derived import Value
-from foon_asp.grounding.run import OUT_OF_MEMORY, Heard, ProgramError
+from foon_asp.grounding.run import OUT_OF_MEMORY, Ended, Heard, ProgramError
 from foon_asp.grounding.stated import Stated
 from foon_asp.pipe import receive, send
 from foon_asp.python_process import PythonProcess
@@ -45,15 +45,6 @@ class WorkerProgram:
         self.deadline = deadline
         self._worker.ask(deadline, *command)
 
-    def add(self, part: str, text: str, product: int) -> None:
-        """Ground more text, and what there is to say about a product of rates."""
-        self._worker.ask(self.deadline, "add", part, text, product)
-
-    def assign(self, atoms: Mapping[str, bool]) -> None:
-        """Say of external atoms whether they hold from now on."""
-        if atoms:
-            self._worker.ask(self.deadline, "assign", dict(atoms))
-
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
         """Give for each predicate, by name and arity, the numbers of its atoms."""
         found: list[list[tuple[int, ...]]] = self._worker.ask(self.deadline, "consequences", list(predicates))
@@ -65,10 +56,10 @@ class WorkerProgram:
         predicates: Sequence[tuple[str, int]],
         on_tree: Callable[[Heard], None],
         on_bound: Callable[[list[int]], None],
-    ) -> bool:
-        """Search for the best answer, and tell whether the search was exhausted; trees are reported here."""
+    ) -> Ended:
+        """Search for the best answer, and say how the search ended; trees are reported here."""
         hear: dict[str, Callable[[Any], None]] = {"tree": on_tree, "bound": on_bound}
-        return bool(self._worker.ask(self.deadline, "search", opt_mode, list(predicates), hear=hear))
+        return Ended(*self._worker.ask(self.deadline, "search", opt_mode, list(predicates), hear=hear))
 
     def close(self) -> None:
         """Let the process have another program."""
@@ -165,7 +156,7 @@ class _Worker(PythonProcess):
 
     def _died(self, deadline: Deadline) -> None:
         """Say why the process ended by itself: memory in most cases, or else clingo cannot take the rules."""
-        code = self._process.wait()
+        code = self.died()
         if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
             deadline.out_of_memory()
             raise LimitError(deadline)

@@ -13,7 +13,11 @@ from foon_asp.network.node_pattern import NodePattern as NodePattern
 from foon_asp.network.object_node import Contents as Contents
 from foon_asp.network.object_node import ObjectNode as ObjectNode
 from foon_asp.network.object_node import Relation as Relation
+from foon_asp.network.quoted_name import in_quotes as in_quotes
+from foon_asp.network.quoted_name import unquoted as unquoted
 from foon_asp.network.source import Source as Source
+from foon_asp.network.starting import StartingKitchen as StartingKitchen
+from foon_asp.network.starting import starting_kitchen as starting_kitchen
 from foon_asp.network.starting import starting_nodes as starting_nodes
 from foon_asp.network.task_tree import TaskTree as TaskTree
 from foon_asp.network.unit_prices import UnitPrices as UnitPrices

@@ -33,7 +33,7 @@ def pattern_at_level(pattern: NodePattern, level: int) -> NodePattern:
     """Give what counts of a kitchen or goals entry at a level."""
     if level == 3:
         return pattern
-    return NodePattern(pattern.label) if level == 1 else pattern._replace(ingredients=())
+    return NodePattern(pattern.label) if level == 1 else pattern._replace(ingredients=(), contents=())
 
 
 def network_at_level(network: Network, level: int) -> Network:

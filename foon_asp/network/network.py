@@ -153,6 +153,15 @@ class Network:
         place = bisect_left(self.unit_numbers, number)
         return place if place < len(self) and self.unit_numbers[place] == number else None
 
+    def units_of_numbers(self, numbers: Iterable[int]) -> tuple[int, ...]:
+        """Return the ids of units here, in the same order, without those that are not here.
+
+        Parameters:
+            numbers: The ids of the units in the whole network.
+        """
+        found = map(self.unit_of_number, numbers)
+        return tuple(unit for unit in found if unit is not None)
+
     def object_number(self, object_id: int) -> int:
         """Give the id that a node has in the whole network.
 

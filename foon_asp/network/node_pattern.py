@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from foon_asp.network.object_node import ObjectNode, Relation
+from foon_asp.network.object_node import Contents, ObjectNode, Relation
+from foon_asp.network.quoted_name import FIRST, LISTED, quoted
 
 
 class NodePattern(NamedTuple):
@@ -10,7 +11,7 @@ class NodePattern(NamedTuple):
 
     ``container`` matches any relation to that object; ``None`` matches only nodes with no relation,
     unless ``relations`` names some, which then have to be there by word. ``ingredients`` is the sorted
-    multiset of everything contained, under whatever word.
+    multiset of everything contained, under whatever word, unless ``contents`` has it by word.
     """
 
     label: str
@@ -18,6 +19,12 @@ class NodePattern(NamedTuple):
     ingredients: tuple[str, ...] = ()
     container: str | None = None
     relations: frozenset[Relation] = frozenset()
+    contents: tuple[Contents, ...] = ()
+
+    @classmethod
+    def of(cls, node: ObjectNode) -> "NodePattern":
+        """Return the entry that only this node matches."""
+        return cls(node.label, node.states, node.ingredients, None, node.relations, node.contents)
 
     def matches(self, node: ObjectNode) -> bool:
         """Whether the node is one that this entry stands for."""
@@ -26,6 +33,7 @@ class NodePattern(NamedTuple):
             or node.states != self.states
             or node.ingredients != self.ingredients
             or not self.relations <= node.relations
+            or (self.contents and self.contents != node.contents)
         ):
             return False
         if self.container is None:
@@ -33,9 +41,12 @@ class NodePattern(NamedTuple):
         return node.is_in(self.container)
 
     def __str__(self) -> str:
-        parts = [self.label, *sorted(self.states), *map(str, sorted(self.relations))]
+        parts = [quoted(self.label, FIRST), *map(quoted, sorted(self.states))]
+        parts += map(str, sorted(self.relations))
         if self.container is not None:
-            parts.append(f"container [{self.container}]")
-        if self.ingredients:
-            parts.append(f"contains {{{','.join(self.ingredients)}}}")
+            parts.append(f"container [{quoted(self.container, LISTED)}]")
+        if self.contents:
+            parts += map(str, self.contents)
+        elif self.ingredients:
+            parts.append(str(Contents("contains", self.ingredients)))
         return "; ".join(parts)

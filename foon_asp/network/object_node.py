@@ -1,15 +1,9 @@
 """Object nodes: objects in a state."""
 
-import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-_QUOTED = re.compile(r"\\(?=[;\\]|$)|;")  # a backslash that would quote what comes behind it, or a semicolon
-
-
-def in_notation(name: str) -> str:
-    """Give a name as the one-line notation has it, where ``;`` separates names; in a name it is quoted."""
-    return _QUOTED.sub(r"\\\g<0>", name) if ";" in name or "\\" in name else name
+from foon_asp.network.quoted_name import FIRST, LISTED, in_quotes, quoted
 
 
 class Relation(NamedTuple):
@@ -19,7 +13,9 @@ class Relation(NamedTuple):
     object: str
 
     def __str__(self) -> str:
-        return f"{in_notation(self.word)} [{self.object}]"
+        # "contains [a]" is read as contents, and so is a list in square brackets
+        place = in_quotes(self.object) if self.word == "contains" else quoted(self.object, LISTED)
+        return f"{quoted(self.word)} [{place}]"
 
 
 class Contents(NamedTuple):
@@ -29,7 +25,7 @@ class Contents(NamedTuple):
     ingredients: tuple[str, ...]
 
     def __str__(self) -> str:
-        return f"{in_notation(self.word)} {{{','.join(self.ingredients)}}}"
+        return f"{quoted(self.word)} {{{','.join(quoted(item, LISTED) for item in self.ingredients)}}}"
 
 
 class ObjectNode(NamedTuple):
@@ -94,8 +90,8 @@ class ObjectNode(NamedTuple):
     def __str__(self) -> str:
         """Give the one-line notation: ``sweet potato; chopped; in [cutting board]``."""
         parts = [
-            in_notation(self.label),
-            *map(in_notation, sorted(self.states)),
+            quoted(self.label, FIRST),
+            *map(quoted, sorted(self.states)),
             *map(str, sorted(self.relations)),
             *map(str, self.contents),
         ]

@@ -20,5 +20,14 @@ class Source(NamedTuple):
     videos: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        file = self.file.replace("\n", "\\n")  # within a line, whatever a file is called
-        return f"{file}:{self.line}"
+        return f"{_in_a_line(self.file)}:{self.line}"
+
+    @property
+    def short(self) -> str:
+        """The place as a step shows it: a relative path as it is, of another one the name of the file."""
+        file = _in_a_line(self.file)
+        return f"{file.rpartition('/')[2] if file.startswith('/') else file}:{self.line}"
+
+
+def _in_a_line(file: str) -> str:
+    return file.replace("\n", "\\n")  # whatever a file is called

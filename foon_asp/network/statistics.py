@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from foon_asp.network.graph import UNREACHED, cycles, layers, parts
 from foon_asp.network.network import Network
+from foon_asp.network.starting import starting_kitchen
 
 MANY = 4  # producers: counted together from here on
 
@@ -51,9 +52,9 @@ class Statistics:
 
 
 def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
-    """Count a network, reached from the object nodes ``at_hand``, or else from all that no unit makes."""
+    """Count a network, reached from the object nodes ``at_hand``, or else from the starting kitchen."""
     if at_hand is None:
-        at_hand = [node for node, makers in enumerate(network.producers) if not makers]
+        at_hand = starting_kitchen(network).nodes
     start = list(at_hand)
     node_layer, unit_layer = layers(network, start)
     circles = cycles(network)

@@ -23,3 +23,6 @@ class TaskTree:
 
     def __len__(self) -> int:
         return len(self.units)
+
+    def __getitem__(self, place: int) -> FunctionalUnit:
+        return self.units[place]

@@ -90,6 +90,8 @@ class _Model:
             model.add_no_overlap([self._steps[step] for step in steps])
             length = model.new_int_var(0, self._end, "")
             in_use.setdefault(name, []).append(model.new_interval_var(begin, length, end, ""))
+        for steps in self._task.sharing:
+            model.add_no_overlap([self._steps[step] for step in steps])
         for name, intervals in in_use.items():
             model.add_cumulative(intervals, [1] * len(intervals), self._task.counts[name])
 

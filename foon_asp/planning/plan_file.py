@@ -1,4 +1,7 @@
-"""Plans as planners write them: Fast Downward, pyperplan, those of the IPC, and unified-planning."""
+"""Plans as planners write them: Fast Downward, Metric-FF, pyperplan, those of the IPC, unified-planning.
+
+Of Fast Downward and Metric-FF, the plan may also stand in all that they print: their log.
+"""
 
 import difflib
 import re
@@ -22,6 +25,15 @@ _STEP = re.compile(
     re.VERBOSE | re.IGNORECASE,
 )
 
+_STAMP = r"(?:\[t=[^\]]*\]\s*)?"  # of Fast Downward: [t=0.002s, 9948 KB]
+_LOG = re.compile(r"\[t=|INFO\s|ff: |problem proven unsolvable", re.IGNORECASE)  # a line of a log begins so
+_PLAN_FOLLOWS = re.compile(rf"{_STAMP}solution found!|ff: found (?:a )?(?:legal )?plan", re.IGNORECASE)
+_PLAN_ENDS = re.compile(rf"{_STAMP}plan (?:length|cost):|plan cost:|time spent:", re.IGNORECASE)
+_BETWEEN = re.compile(rf"{_STAMP}actual search time:", re.IGNORECASE)
+_LENGTH = re.compile(rf"{_STAMP}plan length:\s*(\d+)", re.IGNORECASE)
+_STAMPED = re.compile(_STAMP)
+_COST = re.compile(r"\s\(\d+\)\s*\Z")  # of a step of Fast Downward: u26-twist (1)
+
 
 class PlanStep(NamedTuple):
     """A step of a plan: the unit that it executes, and its place in the file."""
@@ -33,13 +45,13 @@ class PlanStep(NamedTuple):
 def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
     """Read the units that a plan executes, in its order; taking an item from the kitchen is no step.
 
-    Raises :class:`InputError` for lines that are no steps of a plan, and for names that the map does not
-    have.
+    Raises :class:`InputError` for lines that are no steps of a plan, for names that the map does not have,
+    and for a log without a plan.
     """
     steps: list[PlanStep] = []
     faults: list[Diagnostic] = []
     begun = False
-    for number, line in enumerate(split_lines(text), 1):
+    for number, line in _plan_lines(split_lines(text), file):
         content = _COMMENT.sub("", line)
         if not content.strip() or (not begun and _HEAD.fullmatch(content)):
             continue
@@ -73,6 +85,39 @@ def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
     if faults:
         raise InputError(faults)
     return steps
+
+
+def _plan_lines(lines: Sequence[str], file: str) -> Sequence[tuple[int, str]]:
+    """Return the lines of a plan with their numbers: all lines, or those of the last plan in a log."""
+    follows = [place for place, line in enumerate(lines) if _PLAN_FOLLOWS.match(line.strip())]
+    if not follows:
+        log = next((place for place, line in enumerate(lines) if _LOG.match(line.strip())), None)
+        if log is not None:
+            message = "found the log of a planner without a plan in it, expected one that found a plan"
+            raise InputError([_fault(file, log + 1, lines[log], 0, message)])
+        return list(enumerate(lines, 1))
+    first = follows[-1] + 1
+    end = next((n for n in range(first, len(lines)) if _PLAN_ENDS.match(lines[n].strip())), None)
+    if end is None:
+        message = "found a log that ends in the middle of this plan: it is cut off"
+        raise InputError([_fault(file, first, lines[first - 1], 0, message)])
+    steps = [
+        (number, _bare(line))
+        for number, line in enumerate(lines[first:end], first + 1)
+        if line.strip() and not _BETWEEN.match(line.strip())
+    ]
+    length = _LENGTH.match(lines[end].strip())
+    if length is not None and int(length[1]) != len(steps):
+        message = f"found a plan of {len(steps)} steps above, expected {length[1]}"
+        raise InputError([_fault(file, end + 1, lines[end], 0, message)])
+    return steps
+
+
+def _bare(line: str) -> str:
+    """Return a line of a log with blanks in the place of its time stamp, and without its cost."""
+    stamp = _STAMPED.match(line)
+    blanks = " " * (stamp.end() if stamp else 0)
+    return _COST.sub("", blanks + line[len(blanks) :])
 
 
 def _fault(file: str, number: int, line: str, column: int, message: str) -> Diagnostic:

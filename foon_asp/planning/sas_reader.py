@@ -1,13 +1,11 @@
-"""What the translator of Fast Downward writes (output.sas), as a task without deletes."""
+"""The planning task that the translator of Fast Downward writes (output.sas)."""
 
 import re
 from collections import Counter
-from fractions import Fraction
-from pathlib import Path
+from dataclasses import dataclass
 from typing import NamedTuple, NoReturn
 
 from foon_asp.network import Source
-from foon_asp.planning.strips_task import StripsAction, StripsTask
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.plain_file import split_lines
 
@@ -15,37 +13,68 @@ BEGINNING = "begin_version"
 _VERSION = 3
 _ATOM = re.compile(r"(?P<negated>Negated)?Atom (?P<predicate>[^\s()]+)\((?P<terms>[^()]*)\)")
 
-Value = tuple[int, int]
-"""A variable and one of its values, by number: a fact."""
+
+class SasEffect(NamedTuple):
+    """A fact that an operator makes true where all facts of a condition hold."""
+
+    condition: tuple[int, ...]
+    fact: int
 
 
-class _Operator(NamedTuple):
+class SasOperator(NamedTuple):
+    """An operator by name: its preconditions, its effects, its cost, and its place."""
+
     name: str
-    needs: list[Value]
-    gives: list[Value]
-    conditional: list[tuple[Value, int]]
+    preconditions: tuple[int, ...]
+    effects: list[SasEffect]
     cost: int
-    line: int
+    place: Source
 
 
-def parse_sas(text: str, file: str) -> StripsTask:
-    """Read a task: each value of a variable is a fact, and no action takes one away.
+class SasAxiom(NamedTuple):
+    """A rule that derives the fact ``head`` wherever all facts of ``body`` hold."""
 
-    Raises :class:`InputError` for what is not of that form, and for axioms and effects under conditions.
+    body: tuple[int, ...]
+    head: int
+    place: Source
+
+
+@dataclass(frozen=True)
+class SasTask:
+    """A planning task in finite-domain variables; a fact is a value of a variable, by number.
+
+    ``variables`` has the facts of each variable, ``derived`` the variables that axioms set, and ``start``
+    the fact of each variable in the initial state: of a derived one, the value that it has by default.
     """
+
+    file: str
+    facts: list[str]
+    variables: list[range]
+    derived: frozenset[int]
+    start: list[int]
+    goal: tuple[int, ...]
+    operators: list[SasOperator]
+    axioms: list[SasAxiom]
+    costed: bool
+
+
+def parse_sas(text: str, file: str) -> SasTask:
+    """Parse a file of the translator; raises :class:`InputError` for what is not of its form."""
     return _Reader(text, file).read()
 
 
 class _Reader:
     def __init__(self, text: str, file: str) -> None:
         self._lines, self._file, self._line = split_lines(text), file, 0
+        self._variables: list[range] = []
+        self._derived: set[int] = set()
 
-    def read(self) -> StripsTask:
+    def read(self) -> SasTask:
         self._expect("begin_version")
         if self._number() != _VERSION:
             self._fault(f"found another version, expected {_VERSION}")
         self._expect("end_version", "begin_metric")
-        metric = self._number()
+        costed = bool(self._number())
         self._expect("end_metric")
         names = [self._variable() for _ in range(self._number())]
         for _ in range(self._number()):
@@ -53,83 +82,62 @@ class _Reader:
             for _ in range(self._number()):
                 self._numbers(2)
             self._expect("end_mutex_group")
-        self._ranges = [len(values) for values in names]
         self._expect("begin_state")
         start = [self._value(variable, self._number()) for variable in range(len(names))]
         self._expect("end_state", "begin_goal")
         goal = self._values()
         self._expect("end_goal")
         operators = [self._operator() for _ in range(self._number())]
-        if self._number():
-            self._fault("found axioms, which are beyond a delete relaxation here")
-        self._require_no_conditions(operators, goal)
-        numbers = {
-            value: place
-            for place, value in enumerate((v, k) for v, size in enumerate(self._ranges) for k in range(size))
-        }
-        actions = [
-            StripsAction(
-                f"({operator.name})",
-                [numbers[value] for value in operator.needs],
-                [numbers[value] for value in operator.gives],
-                Fraction(operator.cost if metric else 1),
-                Source(self._file, operator.line),
-            )
-            for operator in operators
-        ]
-        started = frozenset(numbers[value] for value in start)
-        goals = tuple(numbers[value] for value in goal)
-        return StripsTask(Path(self._file).name, _unique(names), actions, started, goals)
+        axioms = [self._axiom() for _ in range(self._number())]
+        derived = frozenset(self._derived)
+        facts = _unique(names)
+        return SasTask(self._file, facts, self._variables, derived, start, goal, operators, axioms, costed)
 
     def _variable(self) -> list[str]:
         self._expect("begin_variable")
         variable = self._next()
         if self._number() != -1:
-            self._fault("found a variable that axioms set, which is beyond a delete relaxation here")
+            self._derived.add(len(self._variables))
         values = [_fact(self._next(), variable) for _ in range(self._number())]
         self._expect("end_variable")
+        first = self._variables[-1].stop if self._variables else 0
+        self._variables.append(range(first, first + len(values)))
         return values
 
-    def _operator(self) -> _Operator:
+    def _operator(self) -> SasOperator:
         self._expect("begin_operator")
-        name, line = self._next(), self._line
-        needs, gives = self._values(), list[Value]()
-        conditional: list[tuple[Value, int]] = []
+        name, place = self._next().rstrip(), Source(self._file, self._line)
+        preconditions, effects = [*self._values()], list[SasEffect]()
         for _ in range(self._number()):
-            count, *rest = self._numbers(None)
-            if len(rest) != 2 * count + 3:
-                self._fault(f"found an effect of {len(rest) + 1} numbers, expected {2 * count + 4}")
-            variable, before, after = rest[2 * count :]
-            value = self._value(variable, after)
+            count, *numbers = self._numbers(None)
+            if len(numbers) != 2 * count + 3:
+                self._fault(f"found an effect of {len(numbers) + 1} numbers, expected {2 * count + 4}")
+            condition = tuple(map(self._value, numbers[: 2 * count : 2], numbers[1 : 2 * count : 2]))
+            variable, before, after = numbers[2 * count :]
             if before != -1:
-                needs.append(self._value(variable, before))
-            if count:
-                conditional.append((value, self._line))
-            else:
-                gives.append(value)
+                preconditions.append(self._value(variable, before))
+            effects.append(SasEffect(condition, self._value(variable, after)))
         cost = self._number()
         self._expect("end_operator")
-        return _Operator(name.rstrip(), list(dict.fromkeys(needs)), gives, conditional, cost, line)
+        return SasOperator(f"({name})", tuple(dict.fromkeys(preconditions)), effects, cost, place)
 
-    def _require_no_conditions(self, operators: list[_Operator], goal: list[Value]) -> None:
-        """An effect under a condition may be ignored where nothing asks for it, as for one that deletes."""
-        asked = {*goal, *(value for operator in operators for value in operator.needs)}
-        for operator in operators:
-            for value, line in operator.conditional:
-                if value in asked:
-                    self._line = line
-                    self._fault(
-                        f"found an effect of ({operator.name}) under a condition: conditional effects are "
-                        "beyond a delete relaxation here"
-                    )
+    def _axiom(self) -> SasAxiom:
+        self._expect("begin_rule")
+        place = Source(self._file, self._line)
+        body = self._values()
+        variable, _, after = self._numbers(3)
+        if variable not in self._derived:
+            self._fault(f"found an axiom that sets the variable {variable}, which no axiom may set")
+        self._expect("end_rule")
+        return SasAxiom(body, self._value(variable, after), place)
 
-    def _values(self) -> list[Value]:
-        return [self._value(*self._numbers(2)) for _ in range(self._number())]
+    def _values(self) -> tuple[int, ...]:
+        return tuple(self._value(*self._numbers(2)) for _ in range(self._number()))
 
-    def _value(self, variable: int, value: int) -> Value:
-        if not (0 <= variable < len(self._ranges) and 0 <= value < self._ranges[variable]):
+    def _value(self, variable: int, value: int) -> int:
+        if not (0 <= variable < len(self._variables) and 0 <= value < len(self._variables[variable])):
             self._fault(f"found the value {value} of variable {variable}, which is not declared")
-        return variable, value
+        return self._variables[variable][value]
 
     def _numbers(self, count: int | None) -> list[int]:
         words = self._next().split()

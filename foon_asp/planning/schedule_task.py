@@ -8,7 +8,7 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem
-from foon_asp.proof.replay import Copy, Replay, waits
+from foon_asp.proof.replay import Copy, Replay, readers, waits
 from foon_asp.proof.timetable import Means, ToolName, tools_asked
 
 _LONGEST = 10**12  # ticks of a whole plan: CP-SAT's numbers are not without end
@@ -29,7 +29,8 @@ class ScheduleTask(NamedTuple):
     """Steps by position: ``lengths`` in ticks of ``tick`` seconds, and which are ``passive``.
 
     ``after`` are the steps that each waits for. ``uses`` are all uses of tools, and ``counts`` says how many
-    there are of each. ``at_step`` are the uses that each step is part of.
+    there are of each. ``at_step`` are the uses that each step is part of. ``sharing`` are sets of steps that
+    need one copy of something, and have it one after the other.
     """
 
     tick: Fraction
@@ -39,6 +40,7 @@ class ScheduleTask(NamedTuple):
     uses: tuple[Use, ...]
     counts: dict[ToolName, int]
     agents: int
+    sharing: tuple[tuple[int, ...], ...] = ()
 
     @property
     def at_step(self) -> list[list[int]]:
@@ -80,6 +82,7 @@ def schedule_task(
         uses,
         {use.name: means.number_of(problem, use.name) for use in uses},
         means.agents,
+        tuple(readers(replay, means.is_free)),
     )
 
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
 from foon_asp.pipe import receive, send
-from foon_asp.planning.schedule_task import ScheduleTask, Use
+from foon_asp.planning.schedule_task import ScheduleTask
 from foon_asp.planning.tool_order import first_schedule, tool_order
 from foon_asp.proof.timetable import TimedStep, Tool, ToolName
 from foon_asp.python_process import PythonProcess
@@ -111,7 +111,7 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
         own = {use: spans[use] for use, (named, _) in enumerate(task.uses) if named == name}
         tools |= {use: Tool(name, number) for use, number in _numbers(own).items()}
     after = [set(each) for each in task.after]
-    for earlier, later in _followers(task.uses, starts, spans, agents, tools):
+    for earlier, later in _followers(task, starts, spans, agents, tools):
         after[later].add(earlier)
     early: dict[int, int] = {}
     for step in sorted(range(len(starts)), key=lambda step: starts[step]):
@@ -142,17 +142,18 @@ def _numbers(spans: dict[int, tuple[int, int]]) -> dict[int, int]:
 
 
 def _followers(
-    uses: Sequence[Use],
+    task: ScheduleTask,
     starts: Sequence[int],
     spans: Sequence[tuple[int, int]],
     agents: dict[int, int],
     tools: dict[int, Tool],
 ) -> Iterator[tuple[int, int]]:
-    """Give the pairs of steps of which the second follows the first, because they share a hand or a tool."""
+    """Return pairs of steps of which the second follows the first: they share a hand, a tool or a copy."""
+    uses = task.uses
     hands: dict[int, list[int]] = {}
     for step, agent in agents.items():
         hands.setdefault(agent, []).append(step)
-    for steps in (*hands.values(), *(use.steps for use in uses)):
+    for steps in (*hands.values(), *(use.steps for use in uses), *task.sharing):
         in_order = sorted(steps, key=lambda step: starts[step])
         yield from pairwise(in_order)
     turns: dict[Tool, list[int]] = {}

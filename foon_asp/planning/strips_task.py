@@ -8,8 +8,8 @@ from typing import NamedTuple
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import Objective, Problem
 
-REACHED = "(goal-reached)"
-"""The action of no cost that stands for a goal with alternatives."""
+DERIVED = "axiom"
+"""The name of actions of no cost that derive a fact from others; names of actions are in parentheses."""
 
 
 class StripsAction(NamedTuple):
@@ -26,7 +26,8 @@ class StripsAction(NamedTuple):
 class StripsTask:
     """Facts by name, the actions, what holds at the start, and what has to hold in the end.
 
-    ``name`` says what the task is called.
+    ``name`` says what the task is called, and ``loses`` whether actions of the planning task that this is the
+    delete relaxation of take away what is needed.
     """
 
     name: str
@@ -34,12 +35,23 @@ class StripsTask:
     actions: Sequence[StripsAction]
     start: frozenset[int]
     goals: tuple[int, ...]
+    loses: bool = False
 
     @property
     def objective(self) -> Objective:
         """The objective by which the cheapest plan is the best tree."""
         same = all(action.cost == 1 for action in self.actions)
         return Objective.UNITS if same else Objective.PRICE
+
+    @property
+    def action_count(self) -> int:
+        """The number of actions without those that derive facts."""
+        return sum(action.name != DERIVED for action in self.actions)
+
+    @property
+    def unit_cost(self) -> bool:
+        """Whether each action of the planning task costs 1."""
+        return all(action.cost == 1 for action in self.actions if action.name != DERIVED)
 
     def problem(self) -> Problem:
         """Give the task as a problem: facts are object nodes, actions are units, the start is the kitchen.

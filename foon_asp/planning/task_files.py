@@ -7,34 +7,77 @@ from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.planning import sas_reader
 from foon_asp.planning.delete_relaxation import relaxed
-from foon_asp.planning.pddl_reader import read_pddl
+from foon_asp.planning.pddl_outline import PddlOutline, require_task
 from foon_asp.planning.strips_task import StripsTask
+from foon_asp.planning.translator import require_translator, translated
 from foon_asp.text.plain_file import read_plain_text
+
+_EXPECTED = "DOMAIN.pddl PROBLEM.pddl, or TASK.sas"
 
 
 def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
-    """Read and ground a task: a domain and a problem in PDDL, or what Fast Downward's translator writes.
+    """Read a task: a problem in PDDL with its domain, or what Fast Downward's translator writes.
 
-    Raises :class:`UserError` for other files, and what is not understood in them; :class:`LimitError` at the
-    deadline.
+    The domain may be left out where it stands beside the problem. Raises :class:`UserError` for other files,
+    and what is not understood in them; :class:`LimitError` at the deadline.
     """
-    deadline.doing = "reading the task"
-    if len(files) == 1:
-        text = read_plain_text(files[0])
-        if not is_translated(text):
-            raise UserError(
-                f"{files[0]}: found one file that is not of Fast Downward's translator (it begins with "
-                f"{sas_reader.BEGINNING}), expected DOMAIN.pddl PROBLEM.pddl"
-            )
-        with deadline.watched("reading the task"):
-            return sas_reader.parse_sas(text, str(files[0]))
-    if len(files) != 2:
-        raise UserError(f"found {len(files)} files, expected DOMAIN.pddl PROBLEM.pddl, or TASK.sas")
+    if not 1 <= len(files) <= 2:
+        raise UserError(f"found {len(files)} files, expected {_EXPECTED}")
     with deadline.watched("reading the task"):
-        task = read_pddl(*files)
-    return relaxed(task, deadline)
+        outlines = [PddlOutline(str(file), read_plain_text(file)) for file in files]
+        if len(outlines) == 1 and outlines[0].text.startswith(sas_reader.BEGINNING):
+            return relaxed(sas_reader.parse_sas(outlines[0].text, outlines[0].file))
+        domain, problem = _domain_and_problem(outlines)
+    return read_pddl(domain, problem, deadline)
 
 
-def is_translated(text: str) -> bool:
-    """Whether a text looks like what Fast Downward's translator writes."""
-    return text.startswith(sas_reader.BEGINNING)
+def read_pddl(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> StripsTask:
+    """Read a task in PDDL; raises as :func:`read_task`."""
+    require_translator(f"{problem.file}: reading PDDL")
+    with deadline.watched("reading the task"):
+        require_task(domain, problem)
+    text = translated(domain, problem, deadline)
+    with deadline.watched("grounding the task"):
+        return relaxed(sas_reader.parse_sas(text, problem.file))
+
+
+def _domain_and_problem(outlines: list[PddlOutline]) -> tuple[PddlOutline, PddlOutline]:
+    """Return the two files of a task, whatever their order; a single problem has its domain beside it."""
+    for outline in outlines:
+        if outline.kind not in {"domain", "problem"}:
+            raise UserError(
+                f"{outline.file}: found neither a domain nor a problem in PDDL, which begins with (define "
+                f"(domain NAME) or (define (problem NAME), expected {_EXPECTED}"
+            )
+    kinds = [outline.kind for outline in outlines]
+    if kinds == ["domain"]:
+        raise UserError(f"{outlines[0].file}: found a domain alone, expected its problem, too")
+    if len(set(kinds)) < len(kinds):
+        raise UserError(f"found two files with a {kinds[0]}, expected a domain and a problem")
+    if kinds == ["problem"]:
+        outlines = [_domain_beside(Path(outlines[0].file)), *outlines]
+    domain, problem = sorted(outlines, key=lambda outline: outline.kind)
+    return domain, problem
+
+
+def _domain_beside(problem: Path) -> PddlOutline:
+    """Read the domain that stands beside a problem, by the names that are usual in planning competitions."""
+    number = "".join(filter(str.isdigit, problem.stem))
+    names = [
+        f"{problem.stem}-domain{problem.suffix}",
+        f"{problem.name[:3]}-domain.pddl",
+        f"domain_{problem.name}",
+        f"domain-{problem.name}",
+        *(f"domain{mark}{number}.pddl" for mark in ("_", "-", "") if number),
+        "domain.pddl",
+    ]
+    for name in names:
+        file = problem.parent / name
+        if file.is_file() and file != problem:
+            outline = PddlOutline(str(file), read_plain_text(file))
+            if outline.kind == "domain":
+                return outline
+    raise UserError(
+        f"{problem}: found no domain beside this problem ({', '.join(dict.fromkeys(names))}), expected "
+        f"{_EXPECTED}"
+    )

@@ -94,6 +94,7 @@ def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...
     agents = [0] * task.agents
     free: dict[ToolName, list[int]] = {name: [0] * count for name, count in task.counts.items()}
     over = [0] * len(task.uses)  # when the last step of a use so far ends
+    free_again = [0] * len(task.sharing)  # when the last step so far that shares a copy ends
     left = [len(use.steps) for use in task.uses]
     at_step = task.at_step
     for step in order:
@@ -102,10 +103,14 @@ def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...
         for use in uses:
             name, steps = task.uses[use]
             begin = max(begin, heappop(free[name]) if left[use] == len(steps) else over[use])
+        shared = [place for place, steps in enumerate(task.sharing) if step in steps]
+        begin = max(begin, *(free_again[place] for place in shared), 0)
         if not task.passive[step]:
             begin = max(begin, agents[0])
             heapreplace(agents, begin + task.lengths[step])
         starts[step], ends[step] = begin, begin + task.lengths[step]
+        for place in shared:
+            free_again[place] = ends[step]
         for use in uses:
             over[use] = ends[step]
             left[use] -= 1

@@ -6,6 +6,7 @@ from typing import Any
 from foon_asp.errors import UserError
 from foon_asp.planning.pddl_writer import AT_HAND, COPIES, DOMAIN
 from foon_asp.planning.planning_task import planning_task
+from foon_asp.planning.translator import require_translator
 from foon_asp.problem import Objective, Problem
 
 ENGINE = "foon-asp"
@@ -77,7 +78,7 @@ def register_engine() -> str:
         The name of the engine there: ``foon-asp``.
 
     Raises:
-        UserError: if unified-planning is not installed.
+        UserError: if unified-planning is not installed, or Fast Downward's translator.
 
     Example:
         >>> try:
@@ -87,6 +88,7 @@ def register_engine() -> str:
         'foon-asp'
     """
     factory = require_unified_planning().get_environment().factory
+    require_translator("the engine of unified-planning")
     if ENGINE not in factory.engines:
         factory.add_engine(ENGINE, "foon_asp.planning.unified_engine", "FoonAspPlanner")
     return ENGINE

@@ -1,4 +1,4 @@
-"""An engine for unified-planning: problems in which nothing that is asked for is ever deleted.
+"""An engine for unified-planning: cheapest plans of delete relaxations, where they are plans of the problem.
 
 Only whoever uses unified-planning imports this; ``foon_asp.register_engine`` offers it there.
 """
@@ -6,9 +6,19 @@ Only whoever uses unified-planning imports this; ``foon_asp.register_engine`` of
 from collections.abc import Iterator
 from typing import IO, Any
 
-from unified_planning.engines import Credits, Engine, OptimalityGuarantee, PlanGenerationResult
+from unified_planning.engines import (
+    Credits,
+    Engine,
+    LogMessage,
+    OptimalityGuarantee,
+    PlanGenerationResult,
+    SequentialPlanValidator,
+    ValidationResultStatus,
+)
 from unified_planning.engines import PlanGenerationResultStatus as Ended
 from unified_planning.engines.mixins import OneshotPlannerMixin
+from unified_planning.engines.results import LogLevel
+from unified_planning.exceptions import UPException
 from unified_planning.io import PDDLWriter
 from unified_planning.model import ProblemKind
 from unified_planning.plans import ActionInstance, SequentialPlan
@@ -17,10 +27,9 @@ from foon_asp.asp import Outcome, Settings, Status
 from foon_asp.asp.solver import solve
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import UserError
-from foon_asp.planning.delete_relaxation import deletes_matter, relaxed
-from foon_asp.planning.pddl_form import PddlText
-from foon_asp.planning.pddl_reader import parse_pddl
-from foon_asp.planning.strips_task import REACHED, StripsTask
+from foon_asp.planning.pddl_outline import PddlOutline
+from foon_asp.planning.strips_task import DERIVED, StripsTask
+from foon_asp.planning.task_files import read_pddl
 from foon_asp.planning.unified import ENGINE
 
 _KIND = (
@@ -31,15 +40,11 @@ _KIND = (
         for each in ("NEGATIVE", "DISJUNCTIVE", "EXISTENTIAL", "UNIVERSAL")
     ),
     ("set_conditions_kind", "EQUALITIES"),
-    ("set_effects_kind", "FORALL_EFFECTS"),
+    *(("set_effects_kind", each) for each in ("CONDITIONAL_EFFECTS", "FORALL_EFFECTS")),
     *(("set_quality_metrics", each) for each in ("ACTIONS_COST", "PLAN_LENGTH")),
     *(
         ("set_actions_cost_kind", each)
-        for each in (
-            "STATIC_FLUENTS_IN_ACTIONS_COST",
-            "INT_NUMBERS_IN_ACTIONS_COST",
-            "REAL_NUMBERS_IN_ACTIONS_COST",
-        )
+        for each in ("STATIC_FLUENTS_IN_ACTIONS_COST", "INT_NUMBERS_IN_ACTIONS_COST")
     ),
 )
 
@@ -87,26 +92,36 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
         timeout: float | None = None,
         output_stream: IO[str] | None = None,
     ) -> Any:
-        """Find the cheapest plan; a problem with deletes that matter is not supported."""
-        writer = PDDLWriter(problem)
+        """Find a cheapest plan: one of the delete relaxation, if the problem has it as a plan, too."""
+        if not self.supports(problem.kind):
+            return self._ended(Ended.UNSUPPORTED_PROBLEM, "features beyond the kind of problems supported")
         deadline = Deadline(timeout)
         try:
-            texts = PddlText("domain", writer.get_domain()), PddlText("problem", writer.get_problem())
-            task = parse_pddl(*texts)
-            if deletes_matter(task):
-                return PlanGenerationResult(Ended.UNSUPPORTED_PROBLEM, None, self.name)
-            ground = relaxed(task, deadline)
+            writer = PDDLWriter(problem)
+            domain, task = (
+                PddlOutline(kind, text)
+                for kind, text in (("domain", writer.get_domain()), ("problem", writer.get_problem()))
+            )
+            ground = read_pddl(domain, task, deadline)
             outcome = solve(ground.problem(), (ground.objective,), Settings(deadline=deadline))
-        except LimitError:
-            return PlanGenerationResult(Ended.TIMEOUT, None, self.name)
-        except UserError:
-            return PlanGenerationResult(Ended.UNSUPPORTED_PROBLEM, None, self.name)
+        except LimitError as limit:
+            return self._ended(Ended.TIMEOUT, f"stopped at {limit.stopped}")
+        except (UserError, UPException, NotImplementedError) as error:
+            return self._ended(Ended.UNSUPPORTED_PROBLEM, str(error) or "what PDDL does not say")
         if outcome.units is None:
             none = Ended.UNSOLVABLE_PROVEN if outcome.status is Status.INFEASIBLE else Ended.TIMEOUT
-            return PlanGenerationResult(none, None, self.name)
+            return self._ended(none, "no plan, even where nothing is deleted")
         plan = SequentialPlan(list(_instances(problem, writer, outcome)), problem.environment)
+        if ground.loses:
+            checked = SequentialPlanValidator().validate(problem, plan)
+            if checked.status is not ValidationResultStatus.VALID:
+                return self._ended(Ended.UNSUPPORTED_PROBLEM, "the cheapest plan without deletes is no plan")
         status = Ended.SOLVED_OPTIMALLY if _best(outcome, ground) else Ended.SOLVED_SATISFICING
         return PlanGenerationResult(status, plan, self.name)
+
+    def _ended(self, status: Any, reason: str) -> Any:
+        """Return a result without a plan."""
+        return PlanGenerationResult(status, None, self.name, log_messages=[LogMessage(LogLevel.INFO, reason)])
 
 
 def _best(outcome: Outcome, task: StripsTask) -> bool:
@@ -123,7 +138,7 @@ def _instances(problem: Any, writer: Any, outcome: Outcome) -> Iterator[Any]:
     expressions = problem.environment.expression_manager
     for unit in outcome.units or ():
         name = outcome.problem.network.motions[unit]
-        if name != REACHED:
+        if name != DERIVED:
             action, *terms = name.strip("()").split()
             yield ActionInstance(
                 actions[action], tuple(expressions.ObjectExp(objects[term]) for term in terms)

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from foon_asp.problem.objective import Known, Measured, Objective, multiplies
@@ -10,7 +9,6 @@ from foon_asp.problem.objective import Known, Measured, Objective, multiplies
 _MEASURED = tuple(Objective)
 
 
-@dataclass(frozen=True)
 class Costs:
     """What one tree costs, by objective; ``measures`` leaves out objectives whose data are missing.
 
@@ -26,10 +24,19 @@ class Costs:
         (6, (6, 2))
     """
 
-    measures: Mapping[Objective, int | Fraction]
+    __slots__ = ("measures",)
+
+    def __init__(self, measures: Mapping[Objective, int | Fraction]) -> None:
+        self.measures = measures
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Costs) and self.measures == other.measures
 
     def __hash__(self) -> int:
         return hash(tuple(self.measures.items()))
+
+    def __repr__(self) -> str:
+        return f"Costs({dict(self.measures)!r})"
 
     @property
     def units(self) -> int:

@@ -1,13 +1,12 @@
 """What cannot be made for some goals, what is at the root of it, and the way there."""
 
 import heapq
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
 from typing import NamedTuple
 
 from foon_asp.network.dead_cycles import DeadCycle, dead_cycles
-from foon_asp.network.near_nodes import Slip
 from foon_asp.problem.problem import Problem
 from foon_asp.problem.relevance import reach
 
@@ -23,26 +22,11 @@ class Cause(StrEnum):
     CYCLE = "cycle"
 
 
-class NearName(NamedTuple):
-    """A node at hand whose name is one edit away from a missing one.
-
-    ``place`` is the entry of the kitchen file where that entry matches no node; else ``object`` is a node of
-    the network that is at hand or can be made.
-    """
-
-    name: str
-    slip: Slip
-    object: int | None
-    place: str | None
-
-
 class Root(NamedTuple):
     """An object node at the root of a dead end.
 
     ``stops`` are the units that lack it on the way to a goal, ``on_the_way`` says whether it is on the way
     that takes the fewest things. ``cycle`` is the set of nodes that feeds only itself, for that cause.
-    ``near`` are names one edit away, ``alike`` a few nodes at hand or makeable with the same label; both are
-    for whoever looks them up.
     """
 
     object: int
@@ -50,8 +34,6 @@ class Root(NamedTuple):
     stops: tuple[int, ...]
     on_the_way: bool
     cycle: DeadCycle | None = None
-    near: tuple[NearName, ...] = ()
-    alike: tuple[int, ...] = ()
 
 
 class Blocked(NamedTuple):
@@ -85,19 +67,17 @@ def dead_ends(problem: Problem) -> DeadEnds:
     goals = tuple(goal for goal in problem.goals if not available[goal])
     makers = _makers(problem, goals, available)
     cycles: list[DeadCycle] = []
-    things, easiest = _things_more(makers, ())
+    missing = dict.fromkeys((o for o, found in makers.items() if not found), 1)
+    things, easiest = h_add(makers, missing)
     while len(things) < len(makers):  # the others wait for each other, also with all that is missing at hand
         cycles += _cycles(problem, makers.keys() - things)
-        things, easiest = _things_more(makers, [node for cycle in cycles for node in cycle.nodes])
+        in_cycles = dict.fromkeys((node for cycle in cycles for node in cycle.nodes), 1)
+        things, easiest = h_add(makers, missing | in_cycles)
     cycle_of = {node: cycle for cycle in cycles for node in cycle.nodes}
     ordered = {o: _in_order(found, things, easiest.get(o)) for o, found in makers.items()}
     way = _way(goals, ordered, cycle_of)
     users = _users(ordered)
-    roots = [
-        Root(o, Cause.MISSING, tuple(sorted(users.get(o, ()))), o in way)
-        for o, found in ordered.items()
-        if not found
-    ]
+    roots = [Root(o, Cause.MISSING, tuple(sorted(users.get(o, ()))), o in way) for o in missing]
     for cycle in cycles:
         entered = [o for o, _ in cycle.steps if o in way] + sorted(way & cycle.nodes)
         node = entered[0] if entered else cycle.steps[0][0]
@@ -125,7 +105,7 @@ def _makers(problem: Problem, goals: Sequence[int], available: bytearray) -> dic
     return makers
 
 
-def _users(makers: dict[int, tuple[Blocked, ...]]) -> dict[int, list[int]]:
+def _users(makers: Mapping[int, Sequence[Blocked]]) -> dict[int, list[int]]:
     """Give for each dead end the units that lack it."""
     users: dict[int, list[int]] = {}
     for blocked in {b.unit: b for found in makers.values() for b in found}.values():
@@ -147,15 +127,15 @@ def _cycles(problem: Problem, waiting: Collection[int]) -> list[DeadCycle]:
     return dead_cycles(replace(problem.network, inputs=problem.needs, outputs=problem.gives), others)
 
 
-def _things_more(
-    makers: dict[int, tuple[Blocked, ...]], in_cycles: Collection[int]
+def h_add(
+    makers: Mapping[int, Sequence[Blocked]], sources: Mapping[int, int]
 ) -> tuple[dict[int, int], dict[int, int]]:
-    """Estimate for each dead end how many things it takes, a shared one counted each time it is needed.
+    """Estimate what each dead end costs, a shared source counted each time it is needed.
 
-    A missing node and a node of a cycle are one thing, others as many as the unit that takes the fewest
-    (Knuth, A generalization of Dijkstra's algorithm, 1977). What waits for itself, and is not
-    ``in_cycles``, is left out. Beside the numbers is the unit that takes the fewest; following these never
-    leads in a circle.
+    ``sources`` have costs above 0, other nodes cost as much as the inputs of their cheapest unit (Bonet and
+    Geffner, Planning as heuristic search, 2001, by Knuth, A generalization of Dijkstra's algorithm, 1977). A
+    node that the sources do not lead to has no estimate. The second dictionary has the cheapest unit of each
+    node for which it costs less than the node as a source; following these never leads in a circle.
     """
     lacking = {blocked.unit: len(blocked.lacks) for found in makers.values() for blocked in found}
     made_by: dict[int, list[int]] = {}
@@ -166,8 +146,7 @@ def _things_more(
     sums = dict.fromkeys(lacking, 0)
     settled: dict[int, int] = {}
     easiest: dict[int, int] = {}
-    queue = [(1, -1, o) for o, found in makers.items() if not found]
-    queue += [(1, -1, o) for o in in_cycles if o in makers]
+    queue = [(cost, -1, o) for o, cost in sources.items()]
     heapq.heapify(queue)
     while queue:
         count, maker, o = heapq.heappop(queue)

@@ -64,8 +64,9 @@ def fate(
         return Fate.TOOL
     if node.label in utensils and any(output.is_in(node.label) for output in outputs):
         return Fate.VESSEL
-    around = {relation.object for relation in node.relations}.intersection(each.label for each in inputs)
-    if any(output.label in around and node.label in output.ingredients for output in outputs):
+    holders = {output.label for output in outputs if node.label in output.ingredients}
+    holders.intersection_update(relation.object for relation in node.relations)
+    if holders and any(each.label in holders for each in inputs):
         return Fate.INSIDE
     return Fate.USED_UP
 

@@ -45,8 +45,16 @@ class Measure(Protocol):
     """A measure of the user's own: rules that say what each unit costs."""
 
     @property
+    def name(self) -> str:
+        """The name of the objective."""
+
+    @property
     def text(self) -> str:
         """The rules."""
+
+    @property
+    def place(self) -> str:
+        """The file of the rules, or what messages call them."""
 
     def costs(self, problem: "Problem", deadline: Deadline | None = None) -> Sequence[int | Fraction]:
         """Give what each unit of a problem costs, exactly and never below 0.
@@ -73,6 +81,10 @@ class Origin(Protocol):
         self, problem: "Problem", goals: Names | None, containers: str | None, changes: Changes
     ) -> "Problem":
         """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
+
+    @property
+    def whole_network(self) -> Network:
+        """The whole network; of a store, units and nodes are read when they are looked at."""
 
     def unpriced(self) -> Sequence[Unpriced]:
         """Give the units of the whole network that have no price."""

@@ -1,22 +1,42 @@
 """What of a problem's object nodes one can buy, where no prices say otherwise."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator, Sequence
+from enum import StrEnum
 
-from foon_asp.network import ObjectNode
+from foon_asp.network import ObjectNode, starting_nodes
+from foon_asp.problem.dead_ends import Blocked, DeadEnds, Root, h_add
 from foon_asp.problem.problem import Problem
 
 _FRESH = frozenset({"empty", "clean"})
+_ITEM = 2**20  # the cost of an item on a short list, more than all second choices on it
+
+
+class Offer(StrEnum):
+    """What shopping lists are made of. The first offer from which any list can be made is taken.
+
+    ``for sale``: what :class:`Shop` sells, without the dish. ``cycle``: also nodes that can only be made from
+    each other. ``processed``: everything but the dish. ``dish``: everything but the goals. ``goal``:
+    everything. ``priced``: what a price list has, and nothing else.
+    """
+
+    FOR_SALE = "for sale"
+    CYCLE = "cycle"
+    PROCESSED = "processed"
+    DISH = "dish"
+    GOAL = "goal"
+    PRICED = "priced"
 
 
 class Shop:
     """Tells what of a problem's object nodes can be bought.
 
     For sale is a node that no unit makes (one that needs it only hands it on, and so does one that the
-    container rule lets skip it), and a node without any state that holds at most one ingredient, where what
-    it is or holds is nobody's product. A *product* is a name that some unit makes out of things that neither
-    bear nor hold it: whipped cream, dough, lemon juice. States are how a FOON says that something was done,
-    so what has none is taken to be unprocessed. What is empty or clean, and nothing else, is a vessel or a
-    tool as shops have it, and for sale although washing up makes it too.
+    container rule lets skip it), what the starting kitchen has, and a node without any state that contains at
+    most one ingredient and is not put on something, where what it is or holds is nobody's product. A
+    *product* is a name that some unit makes out of things that neither bear nor hold it: whipped cream,
+    dough, lemon juice. States are how a FOON says that something was done, so what has none is taken to be
+    unprocessed. What is empty or clean, and nothing else, is a vessel or a tool as shops have it, and for
+    sale although washing up makes it too.
 
     A goal is not for sale, nor is any node that bears or holds the name of the *dish*: the label of a goal
     (or, where that is a utensil, the one ingredient in it), if that is a product.
@@ -24,20 +44,67 @@ class Shop:
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
+        self._starting = starting_nodes(problem.network, problem.goals)
         self._products = _products(problem)
+        self._ingredients = {item for each in problem.network.objects for item in each.ingredients}
         names = {_substance(problem.network.objects[goal], problem.utensils) for goal in problem.goals}
         self._dishes = {name for name in names if name in self._products}
 
     def sells(self, o: int) -> bool:
         """Whether a node, by id, can be bought, dish or not."""
         node = self._problem.network.objects[o]
-        if self.is_raw(o) or _is_fresh(node):
+        if self._is_plain(o):
             return True
         return (
             not node.states
+            and all(relation.word == "in" for relation in node.relations)
+            and all(each.word == "contains" for each in node.contents)
             and len(node.ingredients) <= 1
             and (node.ingredients or (node.label,))[0] not in self._products
         )
+
+    def offers(self, roots: Sequence[Root]) -> Iterator[tuple[Offer, list[int]]]:
+        """Yield what shopping lists can be made of, by id, each offer with more than the one before.
+
+        ``roots`` are those of the problem's dead ends.
+        """
+        problem = self._problem
+        others = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
+        no_dish = [o for o in others if not self.is_dish(o)]
+        sold = [o for o in no_dish if self.sells(o)]
+        yield Offer.FOR_SALE, sold
+        in_cycles = {o for root in roots if root.cycle for o in root.cycle.nodes}
+        yield Offer.CYCLE, [*sold, *sorted(in_cycles.difference(sold).intersection(no_dish))]
+        yield Offer.PROCESSED, no_dish
+        yield Offer.DISH, [o for o in others if o not in problem.goals]
+        yield Offer.GOAL, others
+
+    def short_list(self, ends: DeadEnds) -> list[int]:
+        """Return a few object nodes that lead to all goals once they are in the kitchen, by id.
+
+        The list is what the relaxed plan of ``h_add`` needs of the first offer that is enough, without what
+        other units of the plan make. Of two nodes, one that is no second choice is preferred. A shorter list
+        may exist. It is empty where all goals can be made.
+        """
+        for _, offer in self.offers(ends.roots):
+            sources = {o: _ITEM + self.is_second_choice(o) for o in offer if o in ends.makers}
+            costs, easiest = h_add(ends.makers, sources)
+            if costs.keys() >= set(ends.goals):
+                break
+        plan: dict[int, Sequence[Blocked]] = {}
+        open_preconditions = list(ends.goals)
+        while open_preconditions:
+            o = open_preconditions.pop()
+            if o not in plan:
+                plan[o] = ends.makers[o]
+                open_preconditions += next((b.lacks for b in plan[o] if b.unit == easiest.get(o)), ())
+        units = {easiest[o] for o in plan if o in easiest}
+        plan = {o: [blocked for blocked in makers if blocked.unit in units] for o, makers in plan.items()}
+        listed = plan.keys() - easiest
+        for o in sorted(o for o in listed if plan[o]):  # a unit of the plan makes it
+            if h_add(plan, dict.fromkeys(listed - {o}, 1))[0].keys() >= set(ends.goals):
+                listed.remove(o)
+        return sorted(listed)
 
     def is_raw(self, o: int) -> bool:
         """Whether no unit makes a node out of others."""
@@ -51,14 +118,19 @@ class Shop:
         return o in self._problem.goals or not names.isdisjoint(self._dishes)
 
     def is_second_choice(self, o: int) -> bool:
-        """Whether another node is better where trees are as good: units make this one, or it is a mixture."""
+        """Whether another node is better: units make this one, no bare vessel; or it is a mixture."""
+        return not self._is_plain(o) or len(self._problem.network.objects[o].ingredients) > 1
+
+    def _is_plain(self, o: int) -> bool:
+        """Whether a node is raw, a bare vessel or tool, or what units give back and cannot run without."""
         node = self._problem.network.objects[o]
-        return not (self.is_raw(o) or _is_fresh(node)) or len(node.ingredients) > 1
+        given_back = o in self._starting and not node.contents and node.label not in self._ingredients
+        return self.is_raw(o) or _is_fresh(node) or given_back
 
 
 def _is_fresh(node: ObjectNode) -> bool:
     """Whether a node is an empty or clean vessel or tool."""
-    return bool(node.states) and node.states <= _FRESH and not node.contents
+    return bool(node.states) and node.states <= _FRESH and not node.contents and not node.relations
 
 
 def _substance(node: ObjectNode, utensils: Collection[str]) -> str | None:

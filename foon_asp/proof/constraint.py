@@ -1,8 +1,8 @@
 """What the ready-made constraints say of a tree, read from the plain network.
 
 This is what a certificate is checked by, so nothing of clingo is here: each constraint of
-``encodings/constraints`` is a few lines of Python, and :data:`LIBRARY` lists them. docs/proofs.md says
-how their meanings enter a proof.
+``encodings/constraints`` is a few lines of Python, and :data:`LIBRARY` lists them. docs/dev/certificates.md
+says how their meanings enter a proof.
 """
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence

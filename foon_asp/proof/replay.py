@@ -1,20 +1,16 @@
 """Does a plan run where items are used up? Replayed copy by copy, in plain Python, without a solver."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode
-from foon_asp.problem import Problem, given_outputs, needed_inputs
+from foon_asp.problem import Problem, UsedUp, given_outputs, needed_inputs
 
 
 class Copy(NamedTuple):
-    """One copy of an object ``node``: ``made`` is the position of the step that made it, if one did.
-
-    Example:
-        >>> foon_asp.Copy(foon_asp.parse_node("ice; crushed"), 1).made
-        1
-    """
+    """One copy of an object ``node``: ``made`` is the position of the step that made it, if one did."""
 
     node: ObjectNode
     made: int | None
@@ -47,11 +43,6 @@ class Replay(NamedTuple):
     ``left`` are the copies there are after the last of these steps: those that were made, and what is left
     of the stock. What never runs out is not in it. ``stock`` says how many copies of each node with a finite
     stock the plan cannot do without.
-
-    Example:
-        >>> problem = foon_asp.load().problem("ice", items="used-up")
-        >>> foon_asp.check(problem, foon_asp.solve(problem).tree).replay.shortage is None
-        True
     """
 
     steps: tuple[Step, ...]
@@ -66,6 +57,14 @@ def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
     The kitchen never runs out, but for what the stock counts. A repeated unit runs again.
     """
     return _Kitchen(problem).run(list(plan))
+
+
+def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
+    """Return a problem in which a plan can be replayed: if items last, everything in the plan stays."""
+    if problem.items is not None:
+        return problem
+    stays: dict[str | ObjectNode, bool] = {node.label: True for unit in plan for node in unit.inputs}
+    return replace(problem, items=UsedUp(stays))
 
 
 def waits(replay: Replay) -> Iterator[set[int]]:
@@ -85,6 +84,22 @@ def waits(replay: Replay) -> Iterator[set[int]]:
                 after |= readers.get((copy, spent[copy]), set())
             spent[copy] += 1
         yield after
+
+
+def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
+    """Return, for each copy that several steps need and leave there, the positions of these steps.
+
+    A copy is made by a step or in the stock: of what never runs out there is always another one, and so there
+    is of what ``is_free``, by its label.
+    """
+    found: dict[tuple[Copy, int], list[int]] = {}
+    spent: Counter[Copy] = Counter()  # as in waits
+    for number, step in enumerate(replay.steps):
+        for copy in step.stayed:
+            if (copy.made is not None or copy.node in replay.stock) and not is_free(copy.node.label):
+                found.setdefault((copy, spent[copy]), []).append(number)
+        spent.update(step.gone)
+    return [tuple(steps) for steps in found.values() if len(steps) > 1]
 
 
 class _Kitchen:

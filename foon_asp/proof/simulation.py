@@ -13,7 +13,7 @@ class Verdict(StrEnum):
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
-        >>> foon_asp.check(problem, foon_asp.solve(problem).tree).simulation.verdict
+        >>> foon_asp.check(problem, foon_asp.solve(problem).tree).verdict
         <Verdict.AS_LISTED: 'executes as listed'>
     """
 
@@ -28,12 +28,14 @@ class Obstacle(NamedTuple):
     ``unit`` is ``None`` when every unit runs and a goal is still missing; ``missing`` is then the goal.
     ``cycle`` lists positions of units each of which waits for what the next makes, and the last for what the
     first makes, where such a circle is what ``unit`` waits for; otherwise it is empty, and somewhere behind
-    ``unit`` an input is missing that no unit of the tree makes.
+    ``unit`` an input is missing that no unit of the tree makes. ``used_up_by`` are the positions of the steps
+    of a plan that use up the copies there are.
     """
 
     unit: int | None
     missing: ObjectNode
     cycle: tuple[int, ...] = ()
+    used_up_by: tuple[int, ...] = ()
 
 
 class Simulation(NamedTuple):
@@ -45,8 +47,8 @@ class Simulation(NamedTuple):
 
     Example:
         >>> problem = foon_asp.load().problem("macaroni")
-        >>> foon_asp.retrieve(problem, "bfs").simulation.order[:4]
-        (0, 1, 4, 5)
+        >>> foon_asp.check(problem, foon_asp.search(problem, "bfs").tree).order[:4]
+        (1, 2, 5, 6)
     """
 
     verdict: Verdict

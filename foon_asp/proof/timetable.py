@@ -14,12 +14,7 @@ ToolName = str | ObjectNode
 
 
 class Tool(NamedTuple):
-    """One tool or vessel: the ``number``-th, from 1, of its ``name``, a label or an object node.
-
-    Example:
-        >>> str(foon_asp.Tool("knife", 2))
-        'knife 2'
-    """
+    """One tool or vessel: the ``number``-th, from 1, of its ``name``, a label or an object node."""
 
     name: ToolName
     number: int
@@ -38,12 +33,6 @@ class TimedStep(NamedTuple):
 
     ``start`` and ``end`` are in seconds. ``agent`` is a number from 1, ``None`` where nobody has to stand by.
     ``tools`` are in use by it alone, in the order of the unit's objects.
-
-    Example:
-        >>> problem = foon_asp.load().problem("ice")
-        >>> tree = foon_asp.solve(problem).tree
-        >>> foon_asp.schedule(problem, tree, durations={"twist": 10, "crush": 30}).timetable[1].agent
-        1
     """
 
     start: Fraction
@@ -69,6 +58,10 @@ class Means(NamedTuple):
             return self.tools[label] is not None
         named = any(isinstance(name, ObjectNode) and name.label == label for name in self.tools)
         return named or label in problem.utensils
+
+    def is_free(self, label: str) -> bool:
+        """Whether several steps can have one thing with a label at once."""
+        return label in self.tools and self.tools[label] is None
 
     def name(self, node: ObjectNode, label: str) -> ToolName:
         """Give what a tool of the kitchen is counted by, which has a label and is, or has in it, a node.
@@ -136,9 +129,9 @@ def timetable_fault(
 ) -> str | None:
     """Say what is wrong with a schedule of a plan, ``None`` where nothing is.
 
-    At each moment there have to be the copies that steps take, nobody may do two things, and each tool is at
-    one step, in the state in which an earlier one left it or as the kitchen has it. The problem has to be
-    one whose plans can be replayed.
+    At each moment there has to be a copy for each step that takes one, nobody may do two things, and each
+    tool is at one step, in the state in which an earlier one left it or as the kitchen has it. The problem
+    has to be one whose plans can be replayed.
     """
     if len(steps) != len(plan):
         return f"there are {len(plan)} steps, and times for {len(steps)}"
@@ -191,7 +184,8 @@ class _Run:
             if self._endless(node):
                 continue
             goes = not self._stays(unit, node)
-            if self._copies[node] < 1 + (goes and self._read[node] > 0):
+            in_use = 0 if self._means.is_free(node.label) and not goes else self._read[node]
+            if self._copies[node] <= in_use:
                 yield f"lacks a copy of {node}"
             self._copies[node] -= goes
             self._read[node] += not goes

@@ -1,8 +1,8 @@
 """Is a certificate right? Checked from the network alone: no solver, no linear program, no floats.
 
-docs/proofs.md describes certificates and proves that what passes here is true. In short: take a set T of
-object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node of
-T, so every tree uses one of the units that make a node of T and need none: the *members* of T. Positive
+docs/dev/certificates.md describes certificates and proves that what passes here is true. In short: take a set
+T of object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node
+of T, so every tree uses one of the units that make a node of T and need none: the *members* of T. Positive
 weights on cuts that overload no unit (those of its cuts add up to at most its cost) therefore add up to a
 lower bound on every tree's cost. A cut without members shows that there is no tree.
 
@@ -94,11 +94,12 @@ class RefusedError(Exception):
     """The certificate is wrong; the message says where.
 
     Example:
-        >>> foon = foon_asp.load()
-        >>> certificate = foon_asp.certify(foon.problem("ice")).certificate
-        >>> foon_asp.verify(foon.vary(without="knife"), certificate)
+        >>> import pathlib, tempfile
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "proof.json"
+        >>> _ = file.write_text("{}")
+        >>> foon_asp.verify(foon_asp.load(), file)
         Traceback (most recent call last):
-        foon_asp.proof.verify.RefusedError: kitchen: not the one that the certificate is about
+        foon_asp.proof.verify.RefusedError: expected the format 'foon-asp certificate'
     """
 
 

@@ -1,10 +1,10 @@
 """Is a certificate of a plan right, where items are used up? Without a solver, a linear program or floats.
 
-docs/proofs.md describes these certificates and proves that what passes here is true. In short: how often a
-plan executes each unit satisfies conditions that can be read from the network. Of every node no more copies
-are used up than come (its *balance*), and each cut before a goal, or before a unit that is executed, is
-crossed. Take conditions with weights from 0: whatever they say in all, each unit by itself can make it up no
-more cheaply than at the least of what it costs less what it brings, over all the counts that it may have.
+docs/dev/certificates.md describes these certificates and proves that what passes here is true. In short: how
+often a plan executes each unit satisfies conditions that can be read from the network. Of every node no more
+copies are used up than come (its *balance*), and each cut before a goal, or before a unit that is executed,
+is crossed. Take conditions with weights from 0: whatever they say in all, each unit by itself can make it up
+no more cheaply than at the least of what it costs less what it brings, over all the counts that it may have.
 These add up to a bound on every plan, since a plan fulfils all of the conditions.
 
 What becomes of the inputs of a unit, and whether a plan runs, is worked out here anew from the plain network.

@@ -1,24 +1,41 @@
 """The best tree for a problem, and what is proved of it."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
 
-from foon_asp.asp import Outcome, Reporter, Settings, Status
+from msgspec import UNSET, UnsetType
+from msgspec.structs import replace
+
+from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
 from foon_asp.asp.optimum import solve as find
 from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
-from foon_asp.problem import Objective, Problem, levels
+from foon_asp.network import counted
+from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
-from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import answer_json, headline, outcome_foon, outcome_text
-from foon_asp.text.json_value import Json, json_text
+from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.report.answer import (
+    bound_text,
+    costs_text,
+    figure_text,
+    headline,
+    headlines,
+    outcome_foon,
+    why_infeasible,
+)
+from foon_asp.results.table import Part
+from foon_asp.results.values import Figure, ListedConstraint, Node, Step, UsedUpRun, Value
+from foon_asp.results.values_of import head_of, steps_of, used_up_of
+from foon_asp.text.json_value import schema_name
 
 if TYPE_CHECKING:  # what a command that prints an answer can do without
+    from foon_asp.certificate import Certificate
     from foon_asp.dataset.nearby import Nearby
+    from foon_asp.pictures.drawing import Drawing
+    from foon_asp.pictures.page import Page
     from foon_asp.questions.tree import Tree
-    from foon_asp.report.drawing import Drawing
-    from foon_asp.report.page import Page
 
 
 def of_status(status: Status) -> Ending:
@@ -31,29 +48,209 @@ def of_status(status: Status) -> Ending:
     }[status]
 
 
-class Answer(Result, Outcome):
-    """The answer to one problem: an :class:`~foon_asp.Outcome` with a text, JSON and a picture.
+class SoftConstraint(ListedConstraint, frozen=True):
+    """A rule without a head that may be broken at a price.
 
-    ``status`` tells what is proved, ``costs`` what the tree costs, and ``units`` are its units by id in an
-    order that executes; :attr:`tree` has them as values.
+    Attributes:
+        weight: The price of each way to break it.
+        broken: In how many ways the tree breaks it.
+    """
+
+    weight: int
+    broken: int
+
+
+class Alone(Value, frozen=True):
+    """One of several goals by itself.
+
+    Attributes:
+        costs: What the best tree for it costs; null without one.
+    """
+
+    goal: Node
+    status: Status
+    costs: Costs | None
+
+    def __str__(self) -> str:
+        costs = "" if self.costs is None else f": {costs_text(self.costs)}"
+        return f"{self.goal} alone: {self.status}{costs}"
+
+
+class Serving(Value, frozen=True):
+    """The goals that a unit of a tree is needed for.
+
+    Attributes:
+        unit: The id of the unit.
+        goals: The goals, followed back through the first achievers.
+    """
+
+    unit: int
+    goals: tuple[Node, ...]
+
+
+class EngineCheck(Value, frozen=True):
+    """What came of asking another engine.
+
+    Attributes:
+        package: The package of an engine that is not ours, or null.
+        checked: Whether it has checked the answer.
+        agrees_by: The objectives by which it finds the tree best; none where it agrees that there is none.
+        disagrees: In what an engine of another package is wrong, or null.
+        reason: Why it has not checked the answer, or null.
+    """
+
+    engine: str
+    package: str | None
+    checked: bool
+    agrees_by: tuple[Objective, ...]
+    disagrees: str | None
+    reason: str | None
+    seconds: float
+
+
+class Answer(AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
+    """The best task tree, and what is proved of it.
+
+    Attributes:
+        encodings: The folder that replaced the built-in encodings, if any: they then define what is best.
+        status: optimal: proved best; feasible: stopped at a limit with a tree; infeasible: proved that there
+            is none; unknown: stopped without one.
+        stopped: The limit that stopped an unproved answer, and what was being done.
+        proof: What proves an optimal or infeasible answer; null for others.
+        proof_by_objective: The same by objective, of an optimal answer.
+        costs: What the tree costs by every objective; null without a tree.
+        lower_bound: By objective in order, the best value that a tree can still have, as far as it is proved;
+            for success the greatest. An objective counts only among the trees best by those before it.
+        used_up: Whether the steps, each done once, run where items are used up; null without a tree, and
+            where items are used up anyway.
+        units: The steps of the tree, in an order that executes; null without a tree.
+        seconds: The time of each phase.
+        penalty: Under soft constraints, the sum of weight times ways over them; null without a tree.
+        soft_constraints: Every constraint that may be broken; none without a tree.
+        goals_alone: Of several goals, the best tree for each by itself.
+        sum_of_goals_alone: What these cost by the first objective, added up (success: multiplied); null
+            if one has no tree.
+        serves: Of several goals, those that each unit is needed for.
+        cross_check: What other engines say, where they are asked.
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
-        >>> str(answer.status), answer.costs.units, answer.tree
-        ('optimal', 2, <Tree for ice; crushed; in [drinking glass]: 2 units>)
+        >>> str(answer.status), answer.costs.units, answer.ids, answer.tree
+        ('optimal', 2, (26, 27), <Tree for ice; crushed; in [drinking glass]: 2 units>)
+        >>> answer.units[0].motion, str(answer.units[0].inputs[0]), str(answer.units[0].inputs[0].origin)
+        ('twist', 'ice; cubed; in [ice cube tray]', 'kitchen')
         >>> answer.text().splitlines()[1]
         'optimal by units (strict containers): 2 units, 6 inputs, success 0.644'
         >>> answer.json()["status"], answer.json_dict()["level"]
         ('optimal', 3)
         >>> answer.foon().count("//"), answer.steps()[0], answer.json_text()[0], answer.remark("foon")
         (3, '{', '{', '')
-        >>> answer.drawing().caption[0], answer.renderable()
-        ('Task tree for ice; crushed; in [drinking glass]', None)
+        >>> answer.drawing().caption[0]
+        'Task tree for ice; crushed; in [drinking glass]'
         >>> answer.view().title
         'ice; crushed; in [drinking glass] - foon-asp'
     """
 
-    __slots__ = ()
+    ROWS = "units"
+
+    encodings: Path | None
+    status: Status
+    stopped: str | None
+    proof: Proof | None
+    proof_by_objective: dict[Objective, Proof]
+    costs: Costs | None
+    lower_bound: dict[Objective, Figure | None]
+    used_up: UsedUpRun | None
+    units: tuple[Step, ...] | None
+    seconds: dict[str, float]
+    penalty: int | UnsetType | None = UNSET
+    soft_constraints: tuple[SoftConstraint, ...] | UnsetType = UNSET
+    goals_alone: tuple[Alone, ...] | UnsetType = UNSET
+    sum_of_goals_alone: Figure | UnsetType | None = UNSET
+    serves: tuple[Serving, ...] | UnsetType = UNSET
+    cross_check: tuple[EngineCheck, ...] | UnsetType = UNSET
+
+    @classmethod
+    def of(cls, outcome: Outcome, bought: Collection[int] = (), **more: Any) -> Self:
+        """Return the answer that an outcome of the solver is.
+
+        Parameters:
+            outcome: The outcome.
+            bought: The items of the kitchen, by id, that were not there before.
+            more: The fields that a kind of answer has besides.
+        """
+        problem, units, proof = outcome.problem, outcome.units, outcome.proof
+        proofs: dict[Objective, Proof] = {}
+        if outcome.status is Status.OPTIMAL and proof is not None:
+            for objective in levels(outcome.objectives):
+                proofs[objective] = Proof.CERTIFICATE if objective in outcome.certified else proof
+        answer = cls(
+            **head_of(problem, outcome.objectives),
+            encodings=outcome.encodings,
+            status=outcome.status,
+            stopped=outcome.stopped,
+            proof=proof,
+            proof_by_objective=proofs,
+            costs=outcome.costs,
+            lower_bound=dict(outcome.bounds),
+            used_up=used_up_of(problem, None if units is None else problem.tree(units)),
+            units=None if units is None else steps_of(problem, units, bought),
+            seconds={phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
+            **more,
+        )
+        answer.__dict__["outcome"] = outcome
+        return answer
+
+    @property
+    def outcome(self) -> Outcome:
+        """The outcome of the solver, with ids."""
+        found: Outcome = self.__dict__["outcome"]
+        return found
+
+    @property
+    def problem(self) -> Problem:
+        """The problem that was asked about."""
+        return self.outcome.problem
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Lines about the proof, which are shown behind the steps."""
+        notes: tuple[str, ...] = self.__dict__.get("notes", ())
+        return notes
+
+    @property
+    def certificate(self) -> "Certificate | None":
+        """The certificate that proves the answer, where one was asked for and found."""
+        return self.__dict__.get("certificate")
+
+    def having(
+        self, notes: Iterable[str] = (), certificate: "Certificate | None" = None, **fields: Any
+    ) -> Self:
+        """Return the same answer with more of what is known of it.
+
+        Parameters:
+            notes: More notes.
+            certificate: The certificate; without it, the answer keeps the one that it has.
+            fields: The fields that change.
+        """
+        answer = replace(self, **fields)
+        certificate = certificate or self.certificate
+        answer.__dict__.update(self.__dict__, notes=(*self.notes, *notes), certificate=certificate)
+        return answer
+
+    @property
+    def ids(self) -> tuple[int, ...] | None:
+        """The units of the tree by id in the network of the problem; ``None`` without a tree."""
+        return self.outcome.units
+
+    @property
+    def claim(self) -> str:
+        """What is proved of the tree, and what it costs, in one line."""
+        return headline(self.outcome)
+
+    def headlines(self) -> list[str]:
+        """Return the claim, and under it a note where the tree would not run with items used up."""
+        return headlines(self.outcome)
 
     def __bool__(self) -> bool:
         """Whether there is a tree."""
@@ -64,71 +261,125 @@ class Answer(Result, Outcome):
         """The tree, in an order that executes; ``None`` where there is none."""
         from foon_asp.questions.tree import Tree  # noqa: PLC0415
 
-        return None if self.units is None else Tree.of(self.problem, self.units, headline(self))
+        return None if self.ids is None else Tree.of(self.problem, self.ids, self.claim)
 
     @property
     def ending(self) -> Ending:
         """Done when the tree is proved to be the best."""
         return of_status(self.status)
 
-    def text(self) -> str:
-        """Give the answer as ``foon-asp solve`` does."""
-        return outcome_text(self, deadline=caller().deadline)
+    def show(self) -> Iterator[Part]:
+        """Return the goals, the claim, the steps, and notes; without a tree, why there is none."""
+        yield from (*self.goal_lines(), *self.findings(), *self.notes)
 
-    def json_dict(self) -> Json:
-        """Give the answer as ``foon-asp solve --format json`` does; docs/json.md describes it."""
-        return answer_json(self)
+    def findings(self) -> Iterator[Part]:
+        """Return the claim and the steps."""
+        yield from self.headlines()
+        yield from self.remarks()
+        if self.status is Status.FEASIBLE:
+            bounds = [bound_text(objective, bound) for objective, bound in self.outcome.bounds.items()]
+            yield f"proved so far: {', '.join(bounds) or 'nothing'}"
+        if self.units:
+            yield ""
+            yield from (line for step in self.units for line in step.lines())
+        elif self.units is not None:
+            yield "the kitchen already holds it: nothing to do"
+        if self.status is Status.INFEASIBLE:
+            yield from why_infeasible(self.problem, caller().deadline)
+
+    def remarks(self) -> Iterator[str]:
+        """Return lines about what several goals share, and about soft constraints."""
+        yield from self._sharing()
+        yield from self._penalty()
+
+    def _sharing(self) -> Iterator[str]:
+        """Return lines that say what each of several goals costs alone, and which units serve several."""
+        if not isinstance(self.goals_alone, tuple) or not isinstance(self.serves, tuple):
+            return
+        yield from map(str, self.goals_alone)
+        by, total = self.objectives[0], self.sum_of_goals_alone
+        if self.costs is None or self.units is None or isinstance(total, UnsetType) or total is None:
+            return
+        alone, together = (figure_text(by, each) for each in (total, self.costs.measure(by)))
+        shared = {each.unit: each.goals for each in self.serves if len(each.goals) > 1}
+        yield f"{by} one by one {alone}, together {together}; {counted(len(shared), 'unit')} shared"
+        for step in self.units:
+            if step.id in shared:
+                labels = ", ".join(goal.label for goal in shared[step.id])
+                yield f"  {step.motion}    [{step.source[0]}] for {labels}"
+
+    def _penalty(self) -> Iterator[str]:
+        """Return lines that say which soft constraints the tree breaks, and what that costs."""
+        if not isinstance(self.soft_constraints, tuple) or self.penalty is None:
+            return
+        number = counted(len(self.soft_constraints), "soft constraint")
+        broken = [each for each in self.soft_constraints if each.broken]
+        if not broken:
+            one = len(self.soft_constraints) == 1
+            yield f"penalty 0: {'the soft constraint holds' if one else f'all of {number} hold'}"
+            return
+        least = "the least there is" if self.status is Status.OPTIMAL else "not proved least"
+        yield f"penalty {self.penalty}, {least}: {len(broken)} of {number} broken"
+        for each in broken:
+            times = "" if each.broken == 1 else f", {each.broken} times"
+            yield from each.lines(f"    (weight {each.weight}{times})")
 
     def foon(self) -> str:
-        """Give the tree as FOON text with a comment that says what it is; empty where there is none."""
-        return outcome_foon(self)
+        """Return the tree as FOON text with a comment that says what it is; empty where there is none."""
+        return outcome_foon(self.outcome)
 
     def steps(self) -> str:
-        """Give the plan for a robot's program, as JSON; empty where there is none."""
-        if self.units is None:
+        """Return the plan for a robot's program, as JSON; empty where there is none."""
+        if self.ids is None:
             return ""
-        from foon_asp.report.robot_steps import robot_steps  # noqa: PLC0415
+        from foon_asp.questions.robot_plan import RobotPlan  # noqa: PLC0415
 
-        return json_text(robot_steps(self.problem, self.objectives, self.units))
+        return RobotPlan.of(self.problem, self.objectives, self.ids).json_text()
 
     def remark(self, format_: str) -> str:
-        """Say what is claimed, where that is not the best tree."""
-        return "" if self.status is Status.OPTIMAL else headline(self)
+        """Return the claim where that is not the best tree, and the notes, which JSON needs not."""
+        claim, *note = self.headlines()
+        note += self.remarks()
+        claimed = [] if self.status is Status.OPTIMAL and self.penalty is UNSET else [claim]
+        if format_ == "steps" and self.units and not self.problem.utensils:
+            note.append("note: no utensils are known (--utensils), so no step has tools: all is acted on")
+        return "\n".join([*claimed, *([] if format_ == "json" else note), *self.notes])
 
     def drawing(self) -> "Drawing | None":
-        """Give what the picture shows."""
-        from foon_asp.report.tree_drawing import solved_tree  # noqa: PLC0415
-
-        return None if self.units is None else solved_tree(self, self.units)
+        """Return what the picture shows."""
+        return None if self.tree is None else self.tree.drawing()
 
     def view(self) -> "Page":
-        """Give the page that shows the tree in any browser; ``write`` writes it, and a notebook shows it."""
-        from foon_asp.report.page import Page, view_json  # noqa: PLC0415
+        """Return the page that shows the tree in any browser; ``write`` writes it."""
+        from foon_asp.pictures.page import Page, view_json  # noqa: PLC0415
 
-        goals = " + ".join(map(str, self.problem.goal_nodes))
-        shown = view_json(self.json_dict(), [(self.problem, self.units or ())])
-        return Page(f"{goals} - foon-asp", self.text(), shown)
+        shown = view_json(self.json_dict(), [(self.problem, self.ids or ())])
+        return Page(f"{' + '.join(map(str, self.goals))} - foon-asp", self.text(), shown)
 
     def _in_notebook(self) -> dict[str, str]:
         """Give what a notebook shows by media type: the picture with its claim, or the text."""
-        from foon_asp.report.notebook import picture_bundle  # noqa: PLC0415
+        from foon_asp.pictures.notebook import picture_bundle  # noqa: PLC0415
 
         drawing = self.drawing()
         return super()._in_notebook() if drawing is None else picture_bundle(self, drawing)
 
 
-class WithOutcome(Result):
-    """What comes with an ``outcome``: the best tree, which its picture shows, or ``None`` without one."""
+class WithAnswer(AboutGoals, frozen=True, kw_only=True):
+    """A result that comes with the best tree, which its picture shows.
 
-    outcome: Answer | None
+    Attributes:
+        answer: The best tree; null where there is none to go on with.
+    """
+
+    answer: Answer | None
 
     def __bool__(self) -> bool:
         """Whether there is a tree."""
-        return bool(self.outcome)
+        return bool(self.answer)
 
     def drawing(self) -> "Drawing | None":
-        """Give what the picture of the tree shows."""
-        return None if self.outcome is None else self.outcome.drawing()
+        """Return what the picture of the tree shows."""
+        return None if self.answer is None else self.answer.drawing()
 
 
 def answered(
@@ -213,7 +464,7 @@ def answered_nearby(near: "Nearby", objectives: Sequence[Objective], how: Settin
 
 def _noted(outcome: Outcome) -> Answer:
     """Make an answer of an outcome, with how long reading took, if known."""
-    answer, read = Answer._make(outcome), caller().read_seconds
+    read = caller().read_seconds
     if read is not None:
-        answer.seconds["read"] = read
-    return answer
+        outcome.seconds["read"] = read
+    return Answer.of(outcome)

@@ -2,15 +2,16 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
-from foon_asp.asp import Settings
-from foon_asp.asp.assembly import GREATEST_WEIGHT, asks_of_all
+from foon_asp.asp.settings import Settings
+from foon_asp.dataset.items import require_contents
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Deadline, memory_size, seconds
 from foon_asp.errors import UserError
-from foon_asp.problem import Objective, Problem, parse_objectives
+from foon_asp.problem import ITEMS, Objective, Problem, UsedUp, parse_objectives
 from foon_asp.questions.caller import caller
 from foon_asp.rules.constraint import Constraint, find_constraint, given_constraint
 
@@ -60,7 +61,6 @@ def settings(
         given_constraints(constraints),
         None if encodings is None else Path(encodings),
         tuple(given),
-        session=caller().session,
         deadline=begin(time_limit, memory_limit),
     )
 
@@ -89,6 +89,8 @@ def begin(time_limit: float | None, memory_limit: int | str | None) -> Deadline:
 
 def asked_with(problem: Problem, how: Settings) -> Problem:
     """Give the whole problem if the settings have rules that may be about any unit."""
+    from foon_asp.asp.assembly import asks_of_all  # noqa: PLC0415 (where there may be rules)
+
     return whole(problem) if asks_of_all(problem, how) else problem
 
 
@@ -113,6 +115,8 @@ def reading() -> AbstractContextManager[object]:
 
 def constraint_weights(given: Mapping[File, int]) -> dict[Constraint, int]:
     """Read the weights of constraints, whole numbers from 1."""
+    from foon_asp.asp.assembly import GREATEST_WEIGHT  # noqa: PLC0415 (where there are rules)
+
     weights: dict[Constraint, int] = {}
     for name, weight in given.items():
         if not isinstance(weight, int) or not 1 <= weight <= GREATEST_WEIGHT:
@@ -124,6 +128,18 @@ def constraint_weights(given: Mapping[File, int]) -> dict[Constraint, int]:
             raise UserError(f"{name} has two weights")
         weights[constraint] = weight
     return weights
+
+
+def read_as(problem: Problem, items: str) -> Problem:
+    """Return a problem as a plan for it is read: with items that are ``used-up``, or ``lasting``."""
+    if items not in ITEMS:
+        raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
+    if items == "lasting":
+        return replace(problem, items=None)
+    if problem.items is not None:
+        return problem
+    require_contents(problem.network.level)
+    return replace(problem, items=UsedUp())
 
 
 def at_least(number: int, least: int, what: str) -> int:

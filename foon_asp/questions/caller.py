@@ -3,14 +3,11 @@
 import contextlib
 from collections.abc import Iterator
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-from foon_asp.asp import Reporter
+from foon_asp.asp.reporter import Reporter
 from foon_asp.deadline import Deadline
 from foon_asp.warning import warn
-
-if TYPE_CHECKING:
-    from foon_asp.asp.session import Session
 
 
 class _Warner(Reporter):
@@ -24,16 +21,16 @@ class _Warner(Reporter):
 class Caller(NamedTuple):
     """Who asks.
 
-    ``reporter`` receives warnings and progress. ``session`` keeps ground programs for the next question.
-    ``deadline`` is that of the whole command. ``read_seconds`` is how long reading took, if it is to be
-    shown. ``lenient`` says that lines of trees that are not understood are left out.
+    ``reporter`` receives warnings and progress. ``deadline`` is that of the whole command. ``read_seconds``
+    is how long reading took, if it is to be shown. ``lenient`` says that lines of trees that are not
+    understood are left out. ``form`` is the format of the result, if one is chosen.
     """
 
     reporter: Reporter
-    session: "Session | None" = None
     deadline: Deadline | None = None
     read_seconds: float | None = None
     lenient: bool = False
+    form: str | None = None
 
 
 _CALLER: ContextVar[Caller | None] = ContextVar("caller", default=None)

@@ -1,43 +1,49 @@
-"""Does a tree that some program wrote execute?"""
+"""Does a tree that some program wrote execute, and is it the best?"""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, Any, Self, Unpack
 
-from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Cancel
-from foon_asp.document.json_document import costs_json, document
+from msgspec import UNSET, UnsetType
+
+from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, counted
-from foon_asp.problem import Problem
-from foon_asp.problem.progress import OnProgress
-from foon_asp.proof.replay import Replay, replay_for
-from foon_asp.proof.simulation import Simulation, Verdict, simulate_for
-from foon_asp.questions.arguments import Constants, settings, whole
-from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, RULES
-from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.tree import Tree
-from foon_asp.report.drawing import Drawing
-from foon_asp.report.replay import replay_json, replay_text
-from foon_asp.report.verdict import Listed, verdict_json, verdict_text
-from foon_asp.text.json_value import Json
+from foon_asp.pictures.drawing import Drawing
+from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.proof.replay import replay_for
+from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_for
+from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
+from foon_asp.questions.posing_plan import a_tree
+from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.tree import Tree, posed_tree
+from foon_asp.report.verdict import Listed, Stop, verdict_text, verdict_values
+from foon_asp.results.table import Part as Shown
+from foon_asp.results.values import ListedConstraint, UsedUpRun
+from foon_asp.results.values_of import head_of
+from foon_asp.text.json_value import schema_name
 
-if TYPE_CHECKING:  # clingo, which only rules need
+if TYPE_CHECKING:  # clingo and linear programs, which only rules and certificates need
     from foon_asp.asp import Settings
     from foon_asp.asp.breaking import Breaking
-    from foon_asp.asp.integrity import IntegrityConstraint
+    from foon_asp.certificate import Certificate
 
 
-@dataclass(frozen=True, repr=False)
-class Checked(Result):
-    """The ``tree`` that was simulated, and the ``simulation`` with its ``verdict`` and what stops the tree.
+class Checked(AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
+    """Whether a given tree executes, or a plan, in which items are used up and order and repeats count.
 
-    Where items are used up, the tree is a plan, whose order and repeats count, and ``replay`` says what
-    became of each copy; otherwise it is ``None``. ``ruled`` says that there are rules to keep to, and
-    ``breaks`` has those that the tree breaks: each with its ``source`` and ``text``. It is ``None`` without
-    rules, and for a tree that does not execute, or has units of its own.
+    Attributes:
+        verdict: Whether the tree executes; a plan executes as listed or not at all.
+        as_listed: What stops the listed order, if anything.
+        in_any_order: What stops every order of a tree, if anything.
+        order: Positions of units, from 1, in an order that executes, as far as one does.
+        used_up: Whether the tree, each step done once, runs where items are used up; null for a plan.
+        costs: What the tree costs by every objective; null where the network does not have all of its units.
+        not_in_network: The positions, from 1, of units that are not in the network.
+        breaks: Under rules: those that the tree breaks; null if it does not execute or has units of its own.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -45,56 +51,83 @@ class Checked(Result):
         True
     """
 
-    tree: Tree
-    simulation: Simulation
-    replay: Replay | None = None
-    ruled: bool = False
-    breaks: "tuple[IntegrityConstraint, ...] | None" = None
+    verdict: Verdict
+    as_listed: Stop | None
+    in_any_order: Stop | None
+    order: tuple[int, ...]
+    used_up: UsedUpRun | None
+    costs: Costs | None
+    not_in_network: tuple[int, ...]
+    breaks: tuple[ListedConstraint, ...] | UnsetType | None = UNSET
+
+    @classmethod
+    def of(cls, tree: Tree, objectives: Iterable[Objective] = (), **more: Any) -> Self:
+        """Simulate a tree, or replay a plan.
+
+        Parameters:
+            tree: The tree or plan.
+            objectives: The objectives by which it is to be the best.
+            more: The fields that a kind of check has besides.
+        """
+        problem, simulation = tree.problem, _simulated(tree)
+        foreign = tuple(n for n, unit in enumerate(map(problem.network.unit_id, tree), 1) if unit is None)
+        found = cls(
+            **head_of(problem, objectives),
+            **verdict_values(problem, _listed(tree), simulation),
+            costs=None if foreign else problem.costs(tree.ids),
+            not_in_network=foreign,
+            **more,
+        )
+        found.__dict__.update(tree=tree, simulation=simulation)
+        return found
+
+    @property
+    def tree(self) -> Tree:
+        """The tree as it was given."""
+        tree: Tree = self.__dict__["tree"]
+        return tree
+
+    @property
+    def problem(self) -> Problem:
+        """The problem that the tree is for."""
+        return self.tree.problem
 
     @property
     def executes(self) -> bool:
-        """Whether the tree executes, as listed or in another order; a plan, as listed."""
-        if self.replay is not None:
-            return self.replay.shortage is None
-        return self.simulation.verdict is not Verdict.NEVER
+        """Whether the tree executes, as listed or in another order."""
+        return self.verdict is not Verdict.NEVER
 
     @property
     def in_order(self) -> Tree | None:
         """The tree in an order that executes, ``None`` where no order does."""
         if not self.executes:
             return None
-        if self.replay is not None:
-            return self.tree
+        order = [position - 1 for position in self.order]
         units, places = self.tree.units, self.tree.places
-        order = self.simulation.order
-        return Tree(tuple(units[n] for n in order), self.tree.problem, tuple(places[n] for n in order))
+        return Tree(tuple(units[n] for n in order), self.problem, tuple(places[n] for n in order))
 
     @property
-    def problem(self) -> Problem:
-        """What the tree is for."""
-        return self.tree.problem
+    def certificate(self) -> "Certificate | None":
+        """The certificate that proves the tree the best, where one was asked for and found."""
+        return self.__dict__.get("certificate")
 
     @property
     def ending(self) -> Ending:
-        """Done when the tree executes, has no unit but those of the network, and breaks no rule."""
-        sound = self.executes and not self.foreign and not self.breaks
-        return Ending.DONE if sound else Ending.NEGATIVE
+        """Done when the tree executes, has units of the network alone, and breaks no rule.
 
-    @property
-    def foreign(self) -> tuple[int, ...]:
-        """The positions, from 0, of units that are not in the network."""
-        return tuple(position for position, unit in enumerate(self._ids()) if unit is None)
+        Where a certificate is asked for, the tree is also to be proved the best.
+        """
+        sound = self.executes and not self.not_in_network and not self.breaks
+        proved: Ending = self.__dict__.get("proved", Ending.DONE)
+        return proved if sound else Ending.NEGATIVE
 
-    def text(self) -> str:
-        """Say whether the tree executes, in which order, what stops it, and which rules it breaks."""
-        if self.replay is not None:
-            found = replay_text(self.problem, self._listed(), self.replay)
-        else:
-            found = verdict_text(self.problem, self._listed(), self.simulation)
-        return found + "".join(f"{line}\n" for line in self._about_rules())
+    def show(self) -> Iterator[Shown]:
+        """Return whether the tree executes, in which order, what stops it, and which rules it breaks."""
+        yield verdict_text(self.problem, _listed(self.tree), self.__dict__["simulation"]).rstrip("\n")
+        yield from (*self._about_rules(), *self.notes)
 
     def _about_rules(self) -> Iterator[str]:
-        if not self.ruled:
+        if self.breaks is UNSET:
             return
         if self.breaks is None:
             why = "has units that are not in the network" if self.executes else "does not execute"
@@ -102,44 +135,42 @@ class Checked(Result):
         elif not self.breaks:
             yield "it keeps to the rules"
         else:
-            from foon_asp.report.integrity_constraint import constraint_lines  # noqa: PLC0415
-
             yield f"it breaks {counted(len(self.breaks), 'rule')}:"
             for rule in self.breaks:
-                yield from constraint_lines(rule)
+                yield from rule.lines()
 
-    def json_dict(self) -> Json:
-        """Give the same; positions count from 1."""
-        problem, foreign, replay = self.problem, self.foreign, self.replay
-        known = [unit for unit in self._ids() if unit is not None]
-        return document(
-            "check",
-            problem,
-            **verdict_json(problem, self._listed(), None if replay else self.simulation),
-            **({} if replay is None else {"replay": replay_json(problem, self._listed(), replay)}),
-            not_in_network=[position + 1 for position in foreign],
-            costs=None if foreign else costs_json(problem.costs(known)),
-            **({"breaks": self._breaks_json()} if self.ruled else {}),
-        )
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a certificate proves of the tree, where one was asked for."""
+        notes: tuple[str, ...] = self.__dict__.get("notes", ())
+        return notes
 
-    def _breaks_json(self) -> list[Json] | None:
-        from foon_asp.report.integrity_constraint import constraint_json  # noqa: PLC0415
-
-        return None if self.breaks is None else list(map(constraint_json, self.breaks))
+    def remark(self, format_: str) -> str:
+        """Return what a certificate proves."""
+        return "\n".join(self.notes)
 
     def drawing(self) -> Drawing | None:
-        """Give what the picture shows."""
+        """Return what the picture shows."""
         return self.tree.drawing()
 
-    def _ids(self) -> list[int | None]:
-        return [self.problem.network.unit_id(unit) for unit in self.tree.units]
-
     def __repr__(self) -> str:
-        said = super().__repr__()
-        return f"{said[:-1]}, but breaks {counted(len(self.breaks), 'rule')}>" if self.breaks else said
+        shown = super().__repr__()
+        return f"{shown[:-1]}, but breaks {counted(len(self.breaks), 'rule')}>" if self.breaks else shown
 
-    def _listed(self) -> Listed:
-        return list(zip(self.tree.units, self.tree.places, strict=True))
+
+def _listed(tree: Tree) -> Listed:
+    return list(zip(tree.units, tree.places, strict=True))
+
+
+def _simulated(tree: Tree) -> Simulation:
+    """Simulate a tree, or replay a plan."""
+    if tree.problem.items is None:
+        return simulate_for(tree.problem, tree)
+    shortage = replay_for(tree.problem, tree).shortage
+    if shortage is None:
+        return Simulation(Verdict.AS_LISTED, tuple(range(len(tree))), None, None)
+    stop = Obstacle(shortage.step, shortage.node, used_up_by=shortage.taken)
+    return Simulation(Verdict.NEVER, (), stop, None)
 
 
 @question(
@@ -147,38 +178,45 @@ class Checked(Result):
         "tree",
         "The task tree: FOON text, or an answer in JSON.",
         Kind.FILE,
-        metavar="TREE.txt",
+        Part.PROBLEM,
+        metavar="TREE",
         positional=True,
     ),
-    GOALS,
+    GOAL_OF_PLAN,
     CONTAINERS,
     *ITEMS,
-    *RULES,
+    pose=a_tree,
     help_="""
     \b
     foon-asp check tree.txt --goal macaroni
     foon-asp check tree.txt --goal macaroni --rule ':- use(U), motion(U,"fry").'
+    foon-asp check tree.txt --goal macaroni --certificate proof.json --objective success
+    foon-asp check answer.json                              an answer knows its goal
 
-    The tree is FOON text, units in the order of execution, or an answer in JSON.
+    The tree is FOON text, units in the order of execution, or an answer in JSON. Where no data are named and
+    the bundled kitchen has less than half of its units, it is the network itself.
 
     With --items used-up, order and repeats count: the plan is replayed copy by copy.
 
-    Under rules, it says of a tree that executes which of them it breaks.
+    Under rules, it says of a tree that executes which of them it breaks. With --certificate, it proves the
+    tree the best without a search, and writes the proof, which `foon-asp verify` checks.
 
     Exits with 0 when the tree executes, as listed or in the order that is then given; with 1 when no
-    order executes, a unit is not in the network, or a rule is broken.
+    order executes, a unit is not in the network, or a rule is broken. With --certificate, it exits with 0
+    when the tree is proved the best by every objective, with 1 also when it is not the best, and with 3 when
+    less is proved.
     """,
 )
 def check(
     problem: Problem,
     tree: str | PathLike[str] | Iterable[FunctionalUnit],
     *,
-    constraints: Files = (),
-    constants: Constants | None = None,
-    encodings: File | None = None,
-    time_limit: float | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    certificate: Annotated[File | None, Option(kind=Kind.WRITTEN)] = None,
+    objectives: Annotated[
+        Objectives,
+        OBJECTIVES._replace(help="What is best, for a certificate: the most important first.", default=()),
+    ] = (),
+    **how: Unpack[How],
 ) -> Checked:
     """Simulate a task tree for the goals of a problem: does it execute, and in which order?
 
@@ -186,41 +224,50 @@ def check(
         tree: The path of a file (FOON text, or an answer in JSON), or functional units in the order listed,
             such as a :class:`TaskTree`. Where items are used up, it is a plan, in which a unit may be listed
             several times.
+        certificate: Also prove the tree the best, and write the proof. It is the path of the file.
 
     Returns:
-        Whether the tree ``executes``, the tree ``in_order``, the ``simulation`` with what stops it, and the
-        rules that it ``breaks``.
+        Whether the tree ``executes``, the tree ``in_order``, what stops it, the rules that it ``breaks``, and
+        the ``certificate`` that was found, if one was asked for.
 
     Raises:
         UserError: if the file cannot be read or contains no tree, or for a wrong rule.
 
     Example:
         >>> problem = foon_asp.load().problem("macaroni")
-        >>> checked = foon_asp.check(problem, foon_asp.retrieve(problem, "bfs").tree)
-        >>> checked.simulation.verdict
+        >>> checked = foon_asp.check(problem, foon_asp.search(problem, "bfs").tree)
+        >>> checked.verdict
         <Verdict.REORDERED: 'executes in another order'>
-        >>> checked.simulation.as_listed.missing.label
+        >>> checked.as_listed.missing.label
         'stove'
         >>> rule = ':- use(U), motion(U,"turn on").'
         >>> checked = foon_asp.check(problem, foon_asp.solve(problem).tree, constraints=rule)
         >>> [broken.text for broken in checked.breaks] == [rule]
         True
     """
-    rules = settings(constraints, constants, encodings)._replace(session=None)
+    rules, used_up = settings_of(how), problem.items is not None
     if rules.replaced is not None:
         raise UserError(f"{rules.replaced}: a tree is checked without encodings: leave them out")
-    used_up = problem.items is not None
+    if objectives and certificate is None:
+        raise UserError("objectives are those of a certificate: add --certificate FILE")
     breaking = _breaking(rules, used_up) if rules.constraints or rules.constants else None
-    if breaking is not None and not breaking.local:
+    if certificate is not None or (breaking is not None and not breaking.local):
         problem = whole(problem)
-    given = Tree.read(problem, tree) if isinstance(tree, str | PathLike) else Tree.given(problem, tree)
-    replay = None if given.problem.items is None else replay_for(given.problem, given)
-    found = Checked(given, simulate_for(given.problem, given), replay, breaking is not None)
-    if breaking is None or not found.executes or found.foreign:
-        return found
-    ids = map(given.problem.network.unit_id, given.units)
-    units = [unit for unit in ids if unit is not None]
-    return replace(found, breaks=breaking.broken(given.problem, units))
+    chosen = () if certificate is None else chosen_objectives(problem, objectives or "units")
+    given = posed_tree(problem, tree)
+    checked = Checked.of(given, chosen)
+    if breaking is not None:
+        broken = None
+        if checked.executes and not checked.not_in_network:
+            broken = [rule.listed for rule in breaking.broken(given.problem, given.ids)]
+        checked = Checked.of(given, chosen, breaks=None if broken is None else tuple(broken))
+    in_order = checked.in_order
+    if certificate is not None and in_order is not None and checked.ending is Ending.DONE:
+        from foon_asp.questions.certifying import certify_tree  # noqa: PLC0415
+
+        proof, proved, note = certify_tree(in_order, chosen, rules, certificate)
+        checked.__dict__.update(certificate=proof, proved=proved, notes=(note,))
+    return checked
 
 
 def _breaking(rules: "Settings", used_up: bool) -> "Breaking":

@@ -1,69 +1,69 @@
-"""The searches of the literature, compared with the optimum."""
+"""The published searches, compared with the optimum."""
 
 import contextlib
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Annotated, Unpack
 
-from foon_asp.compare.comparison import Comparison
-from foon_asp.compare.many import compare_goals, makeable
-from foon_asp.compare.results_file import ResultsFile, comparison_json, results_question
-from foon_asp.compare.summary import all_proved, summarize_comparisons
+from msgspec import UNSET, UnsetType, structs
+
+from foon_asp.asp import Settings
+from foon_asp.asp.assembly import assemble
+from foon_asp.comparison.comparison import Comparison
+from foon_asp.comparison.comparison_rows import COMPARISONS, comparisons_question
+from foon_asp.comparison.many import compare_goals, makeable
+from foon_asp.comparison.published_table import PublishedTable, read_published
+from foon_asp.comparison.rows_file import RowsFile
+from foon_asp.comparison.summary import all_proved, summarize_comparisons
 from foon_asp.dataset.items import items_of
-from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Cancel
-from foon_asp.document.json_document import document, goals_json, nodes_json
+from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.pictures.comparison_chart import write_comparison_chart
 from foon_asp.problem import Problem
-from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.arguments import Constants, asked_with, at_least, limits, settings
+from foon_asp.questions.arguments import asked_with, at_least, limits
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS, RULES
+from foon_asp.questions.compared import comparison_table, published_table, summary_tables, tidy_rows
+from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
+from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
 from foon_asp.questions.posing import Command, each_goal
-from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.searching import SEARCHING, known_searches, search_settings, searched
-from foon_asp.report.bar_chart import write_chart
-from foon_asp.report.comparison_chart import comparison_chart
-from foon_asp.report.comparison_table import (
-    comparisons_csv,
-    comparisons_markdown,
-    comparisons_table,
-    summary_lines,
-)
-from foon_asp.report.published_table import PublishedTable, published_markdown, read_published
-from foon_asp.report.renderable import Renderable
-from foon_asp.resources import published_table
-from foon_asp.search import search_names
-from foon_asp.text.json_value import Json
+from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.search import Retrieved
+from foon_asp.questions.searching import COUNT, DEPTH, TIES, known_searches, search_settings, searched
+from foon_asp.resources import published_table as published_file
+from foon_asp.results.table import Part as Shown
+from foon_asp.results.values_of import head_of
+from foon_asp.searches import Search, SearchSettings, search_names
+from foon_asp.text.json_value import Json, schema_name
 
-_CHARTED = 60  # goals that a chart has room for
+_ONE_TREE = "FOON text holds one tree: name one search (--search) and one goal (--goal)"
 
 
-@dataclass(frozen=True, repr=False)
-class Compared(Result):
+class Compared(AboutGoals, frozen=True, kw_only=True, tag=schema_name("compare")):
     """The searches and the optimum, compared for each goal of a problem.
 
-    Each of ``comparisons`` has ``optima`` by objective, and a judgement for each search, for one goal of
-    ``problem``. ``comparison.ratio(judgement, objective)`` is a tree's measure divided by the optimum.
-    ``published`` are published figures to show beside the measured ones, if any; ``summed_up`` tells whether
-    the text is a summary of all goals.
+    Attributes:
+        comparisons: One for each goal.
+        published: Published figures to show beside the measured ones, where they are asked for.
 
     Example:
-        >>> compared = foon_asp.compare_searches(foon_asp.load().problem("macaroni"), ["bfs"])
-        >>> comparison = compared.comparisons[0]
-        >>> str(comparison.ratio(comparison.judgements[0], foon_asp.Objective.UNITS))
-        '10/9'
-        >>> compared.markdown().splitlines()[0]
-        '| goal | search | units | inputs | success | executes |'
-        >>> compared.csv()[:10]
-        'goal,conta'
+        >>> compared = foon_asp.compare(foon_asp.load().problem("macaroni"), ["bfs"])
+        >>> (bfs,) = compared.comparisons[0].searches
+        >>> str(bfs.ratios[foon_asp.Objective.UNITS]), bfs.executes, compared.proved
+        ('10/9', True, True)
+        >>> compared.csv()[:12]
+        'goal,search,'
     """
 
-    problem: Problem
     comparisons: tuple[Comparison, ...]
-    published: PublishedTable | None = None
-    summed_up: bool = False
+    published: PublishedTable | UnsetType = UNSET
+
+    @property
+    def retrieved(self) -> tuple[Retrieved, ...]:
+        """What each search returned for each goal, where trees are asked for, or there is but one."""
+        retrieved: tuple[Retrieved, ...] = self.__dict__["retrieved"]
+        return retrieved
 
     @property
     def proved(self) -> bool:
@@ -75,69 +75,50 @@ class Compared(Result):
         """Done when every optimum is proved."""
         return Ending.DONE if self.proved else Ending.LIMIT
 
-    def text(self) -> str:
-        """Give the table in Markdown; a summary of everything that can be made."""
-        return self.markdown()
+    def show(self) -> Iterator[Shown]:
+        """Return the table, and for many goals a summary; trees, where they are asked for."""
+        if isinstance(self.published, PublishedTable):
+            yield from published_table(self.published, self.comparisons)
+            return
+        if not self.__dict__["summed_up"]:
+            yield f"Searches and the optimum ({self.__dict__['conditions']})"
+            yield ""
+            yield from comparison_table(self.comparisons, self.items == "lasting")
+            if self.comparisons[0].searches[0].tree is not UNSET:
+                yield from (part for retrieved in self.retrieved for part in ("", *retrieved.show()))
+            if len(self.comparisons) == 1:
+                return
+            yield ""
+        yield from summary_tables(summarize_comparisons(self.comparisons), self.proved)
 
-    def markdown(self) -> str:
-        """Give the table in Markdown, or what is said in its place."""
-        if self.published is not None:
-            return published_markdown(self.published, self._labels(), self.comparisons)
-        if self.summed_up:
-            lines = summary_lines(summarize_comparisons(self.comparisons), self.proved)
-            return "\n".join(lines) + "\n"
-        return comparisons_markdown(self.comparisons)
+    def table_rows(self) -> Iterator[Json]:
+        """Return a row for each goal and search: optima with their status, ratios, whether it executes."""
+        how = {"containers": self.containers, "items": self.items, "level": self.level}
+        return (row | how for comparison in self.comparisons for row in tidy_rows(comparison))
 
-    def renderable(self) -> Renderable | None:
-        """Give the table, as wide and in such colours as a console has."""
-        return None if self.published or self.summed_up else comparisons_table(self.comparisons)
+    def foon(self) -> str:
+        """Return the tree of one search for one goal as FOON text, in the order listed.
 
-    def csv(self) -> str:
-        """Give one line for each goal and search; fractions exact, ratios as decimals too."""
-        return comparisons_csv(self.comparisons)
-
-    def json_dict(self) -> object:
-        """Give the comparisons, one for each goal; positions count from 1."""
-        network = self.problem.network
-        ids = {str(node): o for o, node in enumerate(network.objects)}
-
-        def name(holder: Json | None, key: str) -> None:
-            if holder and holder[key] is not None:
-                (holder[key],) = nodes_json(network, [ids[holder[key]]])
-
-        rows = list(map(comparison_json, self.comparisons))
-        for row, goal in zip(rows, goals_json(network, self.problem.goals), strict=True):
-            row["goal"] = goal
-            del row["containers"], row["items"], row["level"]
-            for search in row["searches"]:
-                name(search, "stuck_at")
-                name(search["obstacle"], "missing")
-                search["units"] = search["units"] and list(map(network.unit_number, search["units"]))
-        objectives = dict.fromkeys(each for row in self.comparisons for each in row.optima)
-        return document("compare", self.problem, objectives, comparisons=rows)
+        Raises:
+            UserError: for several goals or searches.
+        """
+        if len(self.retrieved) != 1:
+            raise UserError(_ONE_TREE)
+        return self.retrieved[0].foon()
 
     def write_chart(self, file: File) -> None:
-        """Draw a bar chart of units into a file.
+        """Draw a box for each search into a file: the units of its trees over the optimum, goal by goal.
 
         Parameters:
             file: The path of the file, which ends in ``.svg`` or ``.png``.
 
         Raises:
-            UserError: for too many goals, for another file name, or if the packages of
-                ``foon-asp[pictures]`` are missing.
+            UserError: for another file name, or if the packages of ``foon-asp[pictures]`` are missing.
         """
-        _hold_readable(self.problem)
-        write_chart(comparison_chart(self._labels(), self.comparisons), Path(file))
-
-    def _labels(self) -> list[str]:
-        return [node.label for node in self.problem.goal_nodes]
+        write_comparison_chart(self.comparisons, self.__dict__["conditions"], Path(file))
 
     def __repr__(self) -> str:
-        return f"<Compared: {', '.join(comparison.goal for comparison in self.comparisons)}>"
-
-    def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the table."""
-        return {"text/plain": repr(self), "text/markdown": str(self)}
+        return f"<Compared: {', '.join(map(str, self.goals))}>"
 
 
 def _posed(
@@ -146,14 +127,13 @@ def _posed(
     containers: str,
     all_makeable: bool,
     published: bool,
-    charts: Sequence[Path],
     items: str,
     stock: File | None,
     stays: File | None,
 ) -> tuple[Problem]:
-    """Pose the goals, and refuse what cannot be laid beside them before anything is solved."""
+    """Pose the goals, and refuse what cannot be shown beside them before anything is solved."""
     if published:
-        table = read_published(published_table())
+        table = read_published(published_file())
         goals_named = goals_named or tuple(table.goals)
         if all_makeable or not table.goals.keys() >= set(goals_named):
             raise UserError(f"the published table has the goals {', '.join(table.goals)} and no others")
@@ -164,67 +144,20 @@ def _posed(
             )
     if all_makeable:
         how = items_of(command.dataset, items, stock, stays)
-        problem = _everything_makeable(command.dataset.problem((0,), containers, everything=True, items=how))
-    else:
-        (problem,) = each_goal(command, goals_named, containers, items, stock, stays)
-    if charts:
-        _hold_readable(problem)
-    return (problem,)
-
-
-def _everything_makeable(problem: Problem) -> Problem:
-    goals = makeable(problem)
-    if not goals:
-        raise UserError("there are no goals: nothing can be made that is not in the kitchen")
-    return replace(problem, goals=tuple(goals))
-
-
-def _hold_readable(problem: Problem) -> None:
-    if len(problem.goals) > _CHARTED:
-        raise UserError(
-            f"a chart of {len(problem.goals)} goals would be unreadable; name up to {_CHARTED} with --goal"
-        )
+        return (command.dataset.problem((0,), containers, everything=True, items=how),)
+    return each_goal(command, goals_named, containers, items, stock, stays)
 
 
 @question(
     EACH_GOAL,
-    Option(
-        "all_makeable",
-        "Compare for every object that can be made, and print a summary.",
-        Kind.FLAG,
-        Part.PROBLEM | Part.QUESTION,
-        default=False,
-    ),
-    Option(
-        "searches",
-        "A search to run; by default all of them, including those of other packages.",
-        flags=("--search",),
-        many=True,
-        choices=search_names,
-    ),
-    *SEARCHING,
-    Option(
-        "published",
-        "Show the published figures beside the measured ones.",
-        Kind.FLAG,
-        Part.PROBLEM | Part.QUESTION,
-        default=False,
-    ),
     CONTAINERS,
     *ITEMS,
-    *RULES,
     *EACH_LIMITS,
-    JOBS,
-    Option(
-        "results",
-        "A file to which results are added, as JSON Lines; goals that it already has are not searched again.",
-        Kind.FILE,
-    ),
     Option(
         "charts",
-        "A file for a bar chart of units (.svg or .png).",
-        Kind.FILE,
-        Part.CHART | Part.PROBLEM,
+        "A file for a chart of units over the optimum (.svg or .png).",
+        Kind.WRITTEN,
+        Part.CHART,
         flags=("--chart",),
         many=True,
     ),
@@ -232,34 +165,36 @@ def _hold_readable(problem: Problem) -> None:
     \b
     foon-asp compare                                   every goal of the goals file
     foon-asp compare --goal macaroni --containers implied
+    foon-asp compare --goal macaroni --search bfs --trees
+    foon-asp compare --goal macaroni --search bfs --format foon > tree.txt
     foon-asp compare --all-makeable --jobs 2 --results makeable.jsonl
 
-    The searches are run, every tree they return is simulated, and the optima are proved beside them. Each
-    goal is answered by itself, and the limits are for each answer. Under rules, the optima keep to them, and
-    of each tree it is said which ones it breaks. Exits with 0 when every
-    optimum is proved, and with 3 when one was stopped at a limit.
+    The searches are run, every tree they return is simulated, and the optima are proved beside them. bfs,
+    dfs, greedy-success and greedy-inputs choose one unit for each object and never look back; ids backtracks,
+    and returns a tree of least depth that executes or says that none does. Other packages may bring searches:
+    docs/entry-points.md. They know nothing of items that are used up: their tree then executes if it runs as
+    a plan, in some order.
+
+    Each goal is answered by itself, and the limits are for each answer. Under rules, the optima keep to them,
+    and of each tree it is said which ones it breaks. Exits with 0 when every optimum is proved, and with 3
+    when one was stopped at a limit.
     """,
-    formats=("text", "json", "csv", "markdown"),
+    formats=(*TABLES, "foon"),
     pose=_posed,
 )
-def compare_searches(
+def compare(
     problem: Problem,
-    searches: Iterable[str] = (),
+    searches: Annotated[Iterable[str], Option(flags=("--search",), many=True, choices=search_names)] = (),
     *,
-    all_makeable: bool = False,
-    ties: str = "first",
-    count: str = "ingredients",
-    depth_limit: int | None = None,
-    published: bool = False,
-    constraints: Files = (),
-    constants: Constants | None = None,
-    encodings: File | None = None,
-    time_limit: float | None = None,
-    memory_limit: int | str | None = None,
-    jobs: int = 1,
-    results: File | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    trees: Annotated[bool, Option()] = False,
+    all_makeable: Annotated[bool, Option(part=Part.PROBLEM | Part.QUESTION)] = False,
+    published: Annotated[bool, Option(part=Part.PROBLEM | Part.QUESTION)] = False,
+    ties: Annotated[str, TIES] = "first",
+    count: Annotated[str, COUNT] = "ingredients",
+    depth_limit: Annotated[int | None, DEPTH] = None,
+    jobs: Annotated[int, JOBS] = 1,
+    results: Annotated[File | None, Option(kind=Kind.WRITTEN)] = None,
+    **how: Unpack[How],
 ) -> Compared:
     """Run searches for each goal of a problem by itself, and prove the optimum beside them.
 
@@ -267,21 +202,24 @@ def compare_searches(
     that executes, it is said which of their rules it breaks.
 
     Parameters:
-        searches: Names of searches, as for :func:`foon_asp.retrieve`; without any, all that are known.
-        all_makeable: Whether to search for every object that can be made, and to print a summary.
-        published: Whether to run ids as published, and to show the published figures beside the measured
-            ones if all goals have some.
+        searches: A search to run; by default all of them, including those of other packages.
+        trees: Show the trees of the searches too, step by step.
+        all_makeable: Compare for every object that can be made, and print a summary.
+        published: Show the published figures beside the measured ones. Where the goals have some; ``ids`` is
+            then run as published, and takes the first unit everywhere.
+        results: A file to which results are added, as JSON Lines; goals that it already has are not searched
+            again.
 
     Returns:
-        One comparison for each goal, with figures for each search and the optimum.
+        One of the ``comparisons`` for each goal, with figures for each search and the optimum.
 
     Raises:
         UserError: for a wrong argument, or a file of results that belongs to another question.
 
     Example:
-        >>> compared = foon_asp.compare_searches(foon_asp.load().problem("macaroni"), ["bfs"])
-        >>> bfs = compared.comparisons[0].judgements[0]
-        >>> len(bfs.units), bfs.executes
+        >>> compared = foon_asp.compare(foon_asp.load().problem("macaroni"), ["bfs"])
+        >>> bfs = compared.comparisons[0].searches[0]
+        >>> len(bfs.units), str(bfs.verdict)
         (10, 'executes in another order')
     """
     searches = tuple(searches)
@@ -289,36 +227,82 @@ def compare_searches(
     if problem.rates is None and not searches:
         chosen = known_searches(rated=False)
         caller().reporter.warning("greedy-success is left out, and so is success: no success rates are known")
-    how = search_settings(ties, count, depth_limit, published, *limits(time_limit, memory_limit))
+    each_limit = limits(how.get("time_limit"), how.get("memory_limit"))
+    asked = search_settings(ties, count, depth_limit, published, *each_limit)
     at_least(jobs, 1, "jobs")
-    rules = settings(constraints, constants, encodings)._replace(session=None, deadline=None)
+    rules = settings_of(how)._replace(deadline=None)
     if rules.replaced is not None:
         raise UserError(f"{rules.replaced}: searches know nothing of other encodings: leave them out")
     problem = asked_with(problem, rules)
+    assemble(rules, caller().reporter.warning, problem=problem)  # what is wrong with files is said at once
     if all_makeable or results is not None:  # results are kept with a digest of all the data
         problem = problem.whole
     if all_makeable:
-        problem = _everything_makeable(problem)
+        problem = replace(problem, goals=tuple(makeable(problem)))
+        if not problem.goals:
+            raise UserError("there are no goals: nothing can be made that is not in the kitchen")
+    alone = len(problem.goals) == len(chosen) == 1
+    if caller().form == "foon" and not alone:
+        raise UserError(_ONE_TREE)
+    table = read_published(published_file()) if published else None
+    if table is not None and not table.goals.keys() >= {node.label for node in problem.goal_nodes}:
+        table = None
+    comparisons = list(_compared_goals(problem, chosen, asked, rules, jobs, results))
+    known = {search.name: search for search in chosen}
+    retrieved: list[Retrieved] = []
+    if trees or alone:
+        for goal, row in zip(problem.goals, comparisons, strict=True):
+            asked_of = replace(problem, goals=(goal,))
+            for each in row.searches:
+                ids = problem.network.units_of_numbers(each.units or ())
+                retrieved.append(Retrieved.of(asked_of, known[each.search], each.ending, ids, each.stuck_at))
+    if trees:
+        steps = iter(retrieved)
+        comparisons = [
+            structs.replace(
+                row,
+                searches=tuple(structs.replace(each, tree=next(steps).units) for each in row.searches),
+            )
+            for row in comparisons
+        ]
+    compared = Compared(
+        **head_of(problem, dict.fromkeys(each for row in comparisons for each in row.optimum)),
+        comparisons=tuple(comparisons),
+        published=table or UNSET,
+    )
+    compared.__dict__.update(
+        retrieved=tuple(retrieved), conditions=problem.conditions, summed_up=all_makeable
+    )
+    return compared
+
+
+def _compared_goals(
+    problem: Problem,
+    searches: Sequence[Search],
+    settings: SearchSettings,
+    rules: Settings,
+    jobs: int,
+    results: File | None,
+) -> Iterator[Comparison]:
+    """Return the comparison of each goal; those that a file of results has already are taken from it."""
     goals = {str(node): goal for node, goal in zip(problem.goal_nodes, problem.goals, strict=True)}
     with contextlib.ExitStack() as stack:
-        done: dict[str, Comparison] = {}
+        done: dict[object, Comparison] = {}
         file = None
         if results is not None:
-            begun_for = results_question(problem, chosen, how, rules)
-            file = stack.enter_context(ResultsFile(Path(results), begun_for))
+            begun_for = comparisons_question(problem, searches, settings, rules)
+            file = stack.enter_context(RowsFile(Path(results), COMPARISONS, begun_for))
             done = file.done
+            for text in file.twice:
+                caller().reporter.warning(text)
         left = [goal for name, goal in goals.items() if name not in done]
         before = len(goals) - len(left)
         caller().reporter.step("comparing", before, len(goals))
-        rows = compare_goals(problem, left, chosen, how, how.time_limit, jobs, rules)
+        rows = compare_goals(problem, left, searches, settings, settings.time_limit, jobs, rules)
         for number, row in enumerate(rows, 1):
             if file is None:
-                done[row.goal] = row
+                done[row.goal.node] = row
             else:
                 file.add(row)
             caller().reporter.step("comparing", before + number, len(goals))
-    table = read_published(published_table()) if published else None
-    if table is not None and not table.goals.keys() >= {node.label for node in problem.goal_nodes}:
-        table = None
-    compared = tuple(done[name]._replace(starting=problem.starting) for name in goals)
-    return Compared(problem, compared, table, all_makeable)
+    return map(done.__getitem__, goals)

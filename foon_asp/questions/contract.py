@@ -1,20 +1,23 @@
 """Questions: functions for Python, with options from which a command line is made."""
 
 import functools
-from collections.abc import Callable, Mapping
+import inspect
+from collections.abc import Callable, Iterator, Mapping
 from enum import Flag, StrEnum, auto
 from pathlib import Path
-from typing import NamedTuple, ParamSpec, TypeVar
+from typing import NamedTuple, ParamSpec, TypeVar, get_args
 
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.questions.docstring import complete_docstring
+from foon_asp.questions.docstring import complete_docstring, docstring_entries
 from foon_asp.questions.in_hand import HELP, in_hand
 from foon_asp.questions.posing import Pose, one_problem
 from foon_asp.questions.result import Result
 
 TABLES = ("text", "json", "csv", "markdown")
 """The formats of a result that lists things: a row for each."""
+
+_DEFAULTS = {"constraints": (), "goal": (), "containers": "strict"}
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -27,6 +30,7 @@ class Kind(StrEnum):
     TEXT = "text"
     WHOLE = "whole number"
     FILE = "file"
+    WRITTEN = "file to write"
     SECONDS = "seconds"
     SIZE = "size"
     CONSTRAINT = "constraint"
@@ -43,7 +47,7 @@ class Part(Flag):
     QUESTION = auto()
     """The question: it is a parameter of the function."""
     COMMAND = auto()
-    """A parameter that holds for a whole command: limits, and rules, to which a session may add."""
+    """A parameter that holds for a whole command: limits and rules."""
     MORE = auto()
     """What else can be said for another parameter, and is among its values there: rules, for constraints."""
     TEXT = auto()
@@ -55,6 +59,9 @@ class Part(Flag):
 class Option(NamedTuple):
     """One thing that can be chosen, as plain data.
 
+    In the annotation of a parameter (``Annotated[int, Option(...)]``) the parameter gives the name and the
+    default, and the first sentence of its entry in the docstring the help, where the option has none.
+
     ``name`` is the parameter. ``flags`` are those of the command line, by default ``--name`` with dashes for
     underscores. A ``positional`` option has no flag and must be given, unless it is ``many``: such an option
     may be repeated. ``help`` describes the option on the command line and in Python; ``python`` adds what
@@ -63,8 +70,8 @@ class Option(NamedTuple):
     value in help, by default that of its type, and ``FILE`` for a file.
     """
 
-    name: str
-    help: str
+    name: str = ""
+    help: str = ""
     kind: Kind = Kind.TEXT
     part: Part = Part.QUESTION
     default: object = None
@@ -109,17 +116,6 @@ class Question:
         return form
 
 
-def described(*options: Option) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Make a decorator that completes the docstring of a function by the help of options."""
-
-    def decorate(ask: Callable[P, T]) -> Callable[P, T]:
-        texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in options}
-        ask.__doc__ = complete_docstring(ask, texts)
-        return ask
-
-    return decorate
-
-
 def question(
     *options: Option,
     help_: str,
@@ -131,19 +127,101 @@ def question(
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Make a decorator that describes a function for a command line, see :func:`question_of`.
 
-    A question is built for items that are used up if it has an option for them, or says so with ``used_up``.
+    The options of the command are ``options``, and after them those in the annotations of the parameters. A
+    question is built for items that are used up if it has an option for them, or says so with ``used_up``.
     """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
-        names = {option.name for option in options}
+        signature = expanded_signature(ask)
+        own = {option.name for option in options}
+        every = (*options, *(each for each in _options_of(ask) if each.name not in own))
+        names = {option.name for option in every}
         if not used_up and "items" not in names:
             ask = _for_lasting_items(ask)
         typed_in = command or ask  # a command line has read its values already, rules among them
-        ask = in_hand("time_limit" in names)(ask)
-        ask.__dict__["question"] = Question(options, help_, formats, suffixes or {}, pose, typed_in)
-        return described(*options)(ask)
+        signature = _without_metadata(signature)
+        ask = in_hand("time_limit" in names, signature)(ask)
+        ask.__dict__["question"] = Question(every, help_, formats, suffixes or {}, pose, typed_in)
+        texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in every}
+        ask.__doc__ = complete_docstring(ask, signature, texts)
+        return ask
 
     return decorate
+
+
+def asked_in_python(ask: Callable[P, R]) -> Callable[P, R]:
+    """Make a function take what every question takes in Python; its command is that of another question."""
+    signature = _without_metadata(expanded_signature(ask))
+    texts = {option.name: f"{option.help} {option.python}".rstrip() for option in _options_of(ask)}
+    ask = in_hand(True, signature)(ask)
+    ask.__doc__ = complete_docstring(ask, signature, HELP | texts)
+    return ask
+
+
+def described(*options: Option) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Make a decorator that completes the docstring of a function by the help of options."""
+
+    def decorate(ask: Callable[P, T]) -> Callable[P, T]:
+        texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in options}
+        ask.__doc__ = complete_docstring(ask, inspect.signature(ask), texts)
+        return ask
+
+    return decorate
+
+
+def expanded_signature(ask: Callable[..., object]) -> inspect.Signature:
+    """Return the signature of a function with the keywords of ``**how: Unpack[How]`` one by one."""
+    signature = inspect.signature(ask)
+    parameters: list[inspect.Parameter] = []
+    for parameter in signature.parameters.values():
+        if parameter.kind is not inspect.Parameter.VAR_KEYWORD:
+            parameters.append(parameter)
+            continue
+        for name, annotation in _keywords(parameter.annotation).items():
+            default = _DEFAULTS.get(name)
+            kind = inspect.Parameter.KEYWORD_ONLY
+            parameters.append(inspect.Parameter(name, kind, default=default, annotation=annotation))
+    return signature.replace(parameters=parameters)
+
+
+def _keywords(annotation: object) -> Mapping[str, object]:
+    """Return the annotations of the keywords in ``Unpack[...]``; none where anything is passed on."""
+    return {name: kind for each in get_args(annotation) for name, kind in each.__annotations__.items()}
+
+
+def _without_metadata(signature: inspect.Signature) -> inspect.Signature:
+    """Return a signature with the types alone of what is annotated with options."""
+    parameters = signature.parameters.values()
+    kinds = (getattr(each.annotation, "__origin__", None) for each in parameters)
+    return signature.replace(
+        parameters=[
+            each.replace(annotation=kind) if hasattr(each.annotation, "__metadata__") else each
+            for each, kind in zip(parameters, kinds, strict=True)
+        ]
+    )
+
+
+def _options_of(ask: Callable[..., object]) -> Iterator[Option]:
+    """Return the options in the annotations of the parameters of a function, complete."""
+    texts = docstring_entries(ask)
+    for parameter in expanded_signature(ask).parameters.values():
+        for option in getattr(parameter.annotation, "__metadata__", ()):
+            if isinstance(option, Option):
+                yield _completed(option, parameter, texts)
+
+
+def _completed(option: Option, parameter: inspect.Parameter, texts: Mapping[str, str]) -> Option:
+    if option.name:  # one that several questions share, which may have another default
+        default = parameter.default if isinstance(parameter.default, str | int) else option.default
+        return option._replace(default=(default,) if option.many and isinstance(default, str) else default)
+    kind = option.kind
+    if kind is Kind.TEXT:
+        kinds = {parameter.annotation.__origin__, *get_args(parameter.annotation.__origin__)}
+        kind = Kind.FLAG if bool in kinds else Kind.WHOLE if int in kinds and str not in kinds else kind
+    default = parameter.default if isinstance(parameter.default, str | int) else None
+    text = texts.get(parameter.name, "").partition(". ")[0].rstrip(".")
+    help_ = option.help or f"{text.replace('``', '')}."
+    return option._replace(name=parameter.name, kind=kind, default=default, help=help_)
 
 
 def _for_lasting_items(ask: Callable[P, R]) -> Callable[P, R]:

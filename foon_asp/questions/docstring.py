@@ -5,13 +5,26 @@ import re
 import textwrap
 from collections.abc import Callable, Mapping
 
-_PROBLEM = "The problem to ask about, made by :meth:`foon_asp.Foon.problem`."
+_PROBLEM = (
+    "The problem to ask about, made by :meth:`foon_asp.Foon.problem`; or the path of a recipe or a folder, "
+    "or data that were loaded."
+)
 _WIDTH = 100
 _ENTRY = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
 
 
-def complete_docstring(ask: Callable[..., object], texts: Mapping[str, str]) -> str | None:
-    """Give the docstring of a function with a description of each parameter, in their order.
+def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
+    """Return what the docstring of a function says of its parameters, by name."""
+    if ask.__doc__ is None:  # python -OO
+        return {}
+    own = inspect.cleandoc(ask.__doc__).partition("Parameters:\n")[2].partition("\n\n")[0]
+    return {name: " ".join(text.split()) for name, text in _ENTRY.findall(own)}
+
+
+def complete_docstring(
+    ask: Callable[..., object], signature: inspect.Signature, texts: Mapping[str, str]
+) -> str | None:
+    """Return the docstring of a function with a description of each parameter, in their order.
 
     ``texts`` has descriptions by name. The docstring as written has the sections ``Parameters``, ``Returns``,
     ``Raises`` and ``Example``. What its first section says of a parameter is taken instead of the text; if
@@ -19,16 +32,15 @@ def complete_docstring(ask: Callable[..., object], texts: Mapping[str, str]) -> 
     """
     if ask.__doc__ is None:  # python -OO
         return None
+    known = {"problem": _PROBLEM, **texts, **docstring_entries(ask)}
     written = inspect.cleandoc(ask.__doc__)
     before, heading, after = written.partition("Parameters:\n")
     if heading:
-        own, _, after = after.partition("\n\n")
+        after = after.partition("\n\n")[2]
     else:
         before, heading, after = written.partition("Returns:\n")
-        own, after = "", heading + after
-    known = {"problem": _PROBLEM, **texts}
-    known |= {name: " ".join(text.split()) for name, text in _ENTRY.findall(own)}
-    entries = (_entry(name, known[name]) for name in inspect.signature(ask).parameters if name in known)
+        after = heading + after
+    entries = (_entry(name, known[name]) for name in signature.parameters if name in known)
     return f"{before}Parameters:\n{''.join(entries)}\n{after}\n"
 
 

@@ -1,14 +1,13 @@
 """A question for planners: PDDL, and what its names stand for."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Unpack
+
+from msgspec import field
 
 from foon_asp.dataset.paths import File
 from foon_asp.deadline import Cancel
-from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.planning.name_map import map_json
@@ -19,23 +18,30 @@ from foon_asp.problem import Problem
 from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.arguments import Objectives, chosen_objectives, reading, whole
 from foon_asp.questions.contract import Kind, Option, Part, described, question
+from foon_asp.questions.how import Patience
 from foon_asp.questions.in_hand import in_hand
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
-from foon_asp.questions.result import Result
+from foon_asp.questions.result import AboutGoals
 from foon_asp.report.whole_file import write_whole
-from foon_asp.text.json_value import Json, json_text
+from foon_asp.results.table import Part as Shown
+from foon_asp.results.values_of import head_of
+from foon_asp.text.json_value import Json, json_text, schema_name
 
+FILES = ("domain.pddl", "problem.pddl", "map.json")
+"""What is written into a folder."""
 _FORMATS = ("pddl",)
 _MERGED = "set"
 _HOW = ("lasting", _MERGED, "used-up")
 
 
-@dataclass(frozen=True, repr=False)
-class Exported(Result):
-    """A planning task: ``domain`` and ``problem_file`` are PDDL, ``name_map`` is what the names stand for.
+class Exported(AboutGoals, frozen=True, kw_only=True, tag=schema_name("export")):
+    """A planning task in PDDL, and what its names stand for.
 
-    ``task`` has the same as values. ``written`` is the folder it was written into, or ``None``.
+    Attributes:
+        domain_file: The domain, in PDDL: a constant for each object node, an action for each unit.
+        problem_file: The problem, in PDDL: what is at hand, and the goals.
+        name_map: What the names of the planning task stand for.
 
     Example:
         >>> exported = foon_asp.export(foon_asp.load().problem("ice"))
@@ -43,39 +49,34 @@ class Exported(Result):
         (define (problem foon-goal)
     """
 
-    task: PlanningTask
-    written: Path | None = None
+    domain_file: str = field(name="domain")
+    problem_file: str = field(name="problem")
+    name_map: Json = field(name="map")
 
     @property
-    def problem(self) -> Problem:
-        """What is asked."""
-        return self.task.problem
+    def task(self) -> PlanningTask:
+        """The same as values."""
+        found: PlanningTask = self.__dict__["task"]
+        return found
 
-    @cached_property
+    def show(self) -> Iterator[Shown]:
+        """Return the problem; or what was written, where the files were."""
+        written: Path | None = self.__dict__.get("written")
+        if written is None:
+            yield from self.problem_file.splitlines()
+            return
+        task = self.task
+        yield f"{written}: {', '.join(FILES)} ({task.problem.conditions})"
+        yield f"{counted(len(task.actions), 'action')}, {counted(len(task.names), 'object node')}"
+        if task.problem.items is not None:
+            yield items_words(task)
+        yield from (f"costs of actions by {scale_words(scale)}" for scale in task.costs.scales)
+        if any(scale.rounded for scale in task.costs.scales):
+            yield "rounded costs may make a planner take a tree for the best that is not quite"
+
     def domain(self) -> str:
-        """The domain: a constant for each object node, an action for each unit."""
-        return domain_text(self.task)
-
-    @cached_property
-    def problem_file(self) -> str:
-        """The problem: what is at hand, and the goals."""
-        return problem_text(self.task)
-
-    @cached_property
-    def name_map(self) -> Json:
-        """What the names stand for, as plain values; docs/json.md describes it."""
-        return map_json(self.task)
-
-    def text(self) -> str:
-        """Give the domain and the problem; or say what was written."""
-        if self.written is None:
-            return self.domain + self.problem_file
-        return "\n".join(_report(self.task, self.written)) + "\n"
-
-    def json_dict(self) -> object:
-        """Give the domain, the problem and the map in one document."""
-        fields = {"domain": self.domain, "problem": self.problem_file, "map": self.name_map}
-        return document("export", self.problem, self.task.objectives, **fields)
+        """Return the domain, as ``--format domain`` prints it."""
+        return self.domain_file
 
     def write(self, file: File, format_: str | None = None) -> None:
         """Write ``domain.pddl``, ``problem.pddl`` and ``map.json`` into a folder.
@@ -94,39 +95,23 @@ class Exported(Result):
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise UserError(f"{folder}: cannot be created as a folder: {error.strerror or error}") from None
-        contents = {"domain.pddl": self.domain, "problem.pddl": self.problem_file}
-        for name, content in {**contents, "map.json": json_text(self.name_map)}.items():
+        contents = (self.domain_file, self.problem_file, json_text(self.name_map))
+        for name, content in zip(FILES, contents, strict=True):
             write_whole(folder / name, content.encode(errors="backslashreplace"))
 
     def __repr__(self) -> str:
         return f"<Exported: {counted(len(self.task.actions), 'action')}>"
 
 
-def _report(task: PlanningTask, folder: Path) -> Iterator[str]:
-    yield f"{folder}: domain.pddl, problem.pddl, map.json ({task.problem.conditions})"
-    yield f"{counted(len(task.actions), 'action')}, {counted(len(task.names), 'object node')}"
-    if task.problem.items is not None:
-        yield items_words(task)
-    yield from (f"costs of actions by {scale_words(scale)}" for scale in task.costs.scales)
-    if any(scale.rounded for scale in task.costs.scales):
-        yield "rounded costs may make a planner take a tree for the best that is not quite"
-
-
 def _export_and_write(
-    problem: Problem,
-    objectives: Objectives = "units",
-    *,
-    target: str = "pddl",
-    every_unit: bool = False,
-    items: str | None = None,
-    folder_written: File | None = None,
+    problem: Problem, *about: Any, folder_written: Path | None = None, **asked: Any
 ) -> Exported:
-    """Export as the command does, into a folder or to be shown."""
-    found = export(problem, objectives, target=target, every_unit=every_unit, items=items)
-    if folder_written is None:
-        return found
-    found.write(folder_written, target)
-    return Exported(found.task, Path(folder_written))
+    """Export as the command does, into a folder or to be printed."""
+    found = export(problem, *about, **asked)
+    if folder_written is not None:
+        found.write(folder_written)
+        found.__dict__["written"] = folder_written
+    return found
 
 
 def _posed(
@@ -147,13 +132,6 @@ def _merged(problem: Problem, items: str | None) -> bool:
 
 @question(
     GOALS,
-    Option(
-        "target",
-        "What to write: pddl, a domain and a problem.",
-        default="pddl",
-        flags=("--to",),
-        choices=_FORMATS,
-    ),
     OBJECTIVES._replace(
         help=OBJECTIVES.help.replace("What is best", "What actions cost"),
         python="A name, names separated by commas, or several names.",
@@ -169,25 +147,25 @@ def _merged(problem: Problem, items: str | None) -> bool:
     ),
     *ITEMS[1:],
     Option(
-        "every_unit",
-        "Write the whole network, instead of the units that the goals can need.",
-        Kind.FLAG,
-        flags=("--whole",),
-    ),
-    Option(
         "folder_written",
-        "The folder to write domain.pddl, problem.pddl and map.json into; by default PDDL to stdout.",
-        Kind.FILE,
+        "The folder to write domain.pddl, problem.pddl and map.json into; without it, the problem to stdout.",
+        Kind.WRITTEN,
         flags=("-o", "--output"),
         metavar="DIR",
     ),
     command=_export_and_write,
     pose=_posed,
+    formats=("text", "json", "domain"),
     help_="""
     \b
     foon-asp export --to pddl --goal 'greek salad' -o task
     fast-downward.py --plan-file plan task/domain.pddl task/problem.pddl --search 'astar(lmcut())'
     foon-asp read-plan plan --map task/map.json
+
+    \b
+    foon-asp export --goal ice                       the problem alone
+    foon-asp export --goal ice --format domain       the domain alone
+    foon-asp export --goal ice --format json         both, and the map of names
 
     While items last, no action deletes anything: the plan of least cost is the best task tree. Costs are
     whole numbers: exact where these fit into the 32 bits of planners, and otherwise rounded, as the
@@ -204,17 +182,19 @@ def export(
     problem: Problem,
     objectives: Objectives = "units",
     *,
-    target: str = "pddl",
-    every_unit: bool = False,
+    target: Annotated[str, Option(flags=("--to",), choices=_FORMATS)] = "pddl",
+    every_unit: Annotated[bool, Option(flags=("--whole",))] = False,
     items: str | None = None,
-    time_limit: float | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    **how: Unpack[Patience],
 ) -> Exported:
     """Write the goals of a problem as a planning task for other planners.
 
+    Parameters:
+        target: What to write: pddl, a domain and a problem.
+        every_unit: Write the whole network, instead of the units that the goals can need.
+
     Returns:
-        The PDDL of the ``domain`` and of the problem (``problem_file``), and the ``name_map`` by which
+        The PDDL as ``domain_file`` and ``problem_file``, and the ``name_map`` by which
         :func:`foon_asp.read_plan` reads plans back; ``write`` makes the three files.
 
     Raises:
@@ -231,7 +211,15 @@ def export(
     if every_unit:
         problem = whole(problem)
     with reading():
-        return Exported(planning_task(problem, chosen, every_unit, _merged(problem, items)))
+        task = planning_task(problem, chosen, every_unit, _merged(problem, items))
+        exported = Exported(
+            **head_of(task.problem, task.objectives),
+            domain_file=domain_text(task),
+            problem_file=problem_text(task),
+            name_map=map_json(task),
+        )
+    exported.__dict__["task"] = task
+    return exported
 
 
 @described()

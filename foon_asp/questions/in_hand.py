@@ -1,14 +1,19 @@
 """What every function takes in Python: a time limit, who hears of progress, and a token that ends it."""
 
 import functools
-from collections.abc import Callable
+import inspect
+from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from fractions import Fraction
+from os import PathLike
+from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
-from foon_asp.asp import Reporter
+from foon_asp.asp.reporter import Reporter
 from foon_asp.deadline import Deadline, seconds, stoppable
-from foon_asp.problem import Costs, Objective
+from foon_asp.errors import UserError
+from foon_asp.network import ObjectNode
+from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.problem.progress import OnProgress, Progress
 from foon_asp.questions.caller import asked_by, caller, is_python
 from foon_asp.typed import checker
@@ -16,7 +21,12 @@ from foon_asp.typed import checker
 P = ParamSpec("P")
 T = TypeVar("T")
 
+_POSING = ("goal", "containers")
+
 HELP = {
+    "goal": "A goal or several, by name or as :class:`ObjectNode`, where ``problem`` is a path or data; "
+    "without it, the goal of the files.",
+    "containers": "The container rule, ``strict`` or ``implied``, where ``problem`` is a path or data.",
     "time_limit": "Stop after this many seconds, with what was found by then.",
     "on_progress": "Is called with a :class:`Progress` whenever something is found.",
     "cancel": "A token that ends the question from another thread, with what was found by then.",
@@ -51,18 +61,23 @@ class _Listener(Reporter):
         self._tell(progress)
 
 
-def in_hand(takes_time: bool) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Make a decorator that sees to ``cancel`` and ``on_progress`` of a function.
+def in_hand(
+    takes_time: bool, signature: inspect.Signature | None = None
+) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Make a decorator that handles ``cancel`` and ``on_progress`` of a function.
 
-    So it does to ``time_limit``, unless the function ``takes_time`` limits itself.
+    It handles ``time_limit`` too, unless the function ``takes_time`` limits itself. Arguments are checked by
+    the ``signature``, by default that of the function.
     """
 
     def decorate(ask: Callable[P, T]) -> Callable[P, T]:
-        name, check = ask.__name__, checker(ask)
+        name, check = ask.__name__, checker(ask, signature)
+        parameters = (signature or inspect.signature(ask)).parameters
 
         @functools.wraps(ask)
         def asked(*about: P.args, **named: P.kwargs) -> T:
             if is_python():  # commands hand over what they have read
+                about = posed_in_python(name, parameters, about, named)
                 check(about, named)
             token: Any = named.pop("cancel", None)
             tell: Any = named.pop("on_progress", None)
@@ -79,6 +94,40 @@ def in_hand(takes_time: bool) -> Callable[[Callable[P, T]], Callable[P, T]]:
             ):
                 return ask(*about, **named)
 
+        if signature is not None:
+            asked.__dict__["__signature__"] = signature
         return asked
 
     return decorate
+
+
+def posed_in_python(
+    name: str, parameters: Mapping[str, object], about: tuple[Any, ...], named: dict[str, Any]
+) -> Any:
+    """Return the arguments of a question, with a problem in place of a path or of data.
+
+    Takes the names that pose the problem out of ``named``. Raises :class:`UserError` for a call that lacks
+    what the question is about, or names a goal beside a problem, which has its own.
+    """
+    from foon_asp.foon import Foon, load  # noqa: PLC0415 (commands ask about what they have read)
+
+    if "objective" in named and "objectives" in parameters:
+        named["objectives"] = named.pop("objective")
+    if "problem" not in parameters:
+        return about
+    first = about[0] if about else named.pop("problem", None)
+    if first is None:
+        raise UserError(f"{name} of what? {name}('eggs.txt'), or {name}(foon_asp.load(), goal='macaroni')")
+    names = [each for each in _POSING if each in named and each in parameters]
+    posing = {each: named.pop(each) for each in names}
+    if isinstance(first, Problem) and posing:
+        raise UserError(f"{name}: a problem has its own {' and '.join(posing)}; Foon.problem takes them")
+    if not isinstance(first, str | PathLike | Foon):
+        return (first, *about[1:])
+    if isinstance(first, str) and not Path(first).exists():
+        hint = f"a goal of the bundled kitchen: {name}(foon_asp.load(), goal={first!r})"
+        raise UserError(f"no such file or folder: {first} ({hint})")
+    foon = first if isinstance(first, Foon) else load(first)
+    goals = posing.pop("goal", ())
+    one = isinstance(goals, str | ObjectNode)
+    return (foon.problem(*([goals] if one else goals), **posing), *about[1:])

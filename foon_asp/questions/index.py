@@ -16,31 +16,16 @@ class Entry(NamedTuple):
 
 
 INDEX: Final[Mapping[str, Entry]] = {
-    "solve": Entry("Solve", "Find the best task tree for a goal, and prove that none is better.", ("solve",)),
-    "optima": Entry(
-        "Solve",
-        "Solve every goal of the goals file under several objectives and compare the optimal trees.",
-        ("optima", "Optima"),
-    ),
-    "search": Entry(
-        "Compare",
-        "Retrieve a task tree with a search of the literature, and say whether it executes.",
-        ("retrieve", "Retrieved"),
-    ),
+    "solve": Entry("Solve", "Find the best task tree for a goal, and prove it optimal.", ("solve",)),
     "compare": Entry(
         "Compare",
-        "Compare the searches of the literature with the optimum.",
-        ("compare_searches", "Compared"),
+        "Compare the published searches with the optimum.",
+        ("compare", "Compared"),
     ),
     "check": Entry(
         "Prove",
         "Simulate a task tree: does it execute, and in which order?",
         ("check", "Checked"),
-    ),
-    "certify": Entry(
-        "Prove",
-        "Write a certificate: a proof that `foon-asp verify` checks without a solver.",
-        ("certify", "Certified"),
     ),
     "verify": Entry(
         "Prove",
@@ -49,7 +34,7 @@ INDEX: Final[Mapping[str, Entry]] = {
     ),
     "why-not": Entry(
         "Explain",
-        "Explain why there is no task tree.",
+        "Explain why there is no task tree, or which rules clash.",
         ("why_not", "Explanation"),
     ),
     "shopping-list": Entry(
@@ -57,14 +42,9 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Find the fewest or cheapest object nodes to add to the kitchen so that a task tree exists.",
         ("shopping_list", "Shopping"),
     ),
-    "clash": Entry(
-        "Explain",
-        "Find a smallest set of constraints that cannot hold together, and the cheapest ones to drop.",
-        ("clash", "Clash"),
-    ),
     "alternatives": Entry(
-        "Explain",
-        "List other trees: all that are optimal, the next best, or those that differ most.",
+        "Solve",
+        "List other trees: all optimal, next best, or most different.",
         ("alternatives", "Alternatives"),
     ),
     "pareto": Entry(
@@ -81,11 +61,6 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Explain",
         "Find how wrong each success rate may be before another tree is the best.",
         ("sensitivity", "Sensitivity"),
-    ),
-    "menu": Entry(
-        "Solve",
-        "Solve several goals by one tree, and goal by goal, and say what is shared.",
-        ("menu", "Menu"),
     ),
     "assist": Entry(
         "Explain",
@@ -109,17 +84,12 @@ INDEX: Final[Mapping[str, Entry]] = {
     ),
     "schedule": Entry(
         "Solve",
-        "Find the shortest schedule of a plan for one or more agents, and prove it.",
+        "Find the shortest schedule of a plan, and prove it.",
         ("schedule", "Schedule"),
-    ),
-    "draw": Entry(
-        "Tools",
-        "Draw an optimal task tree, a given one, some functional units, or a whole network.",
-        ("draw", "Drawn"),
     ),
     "view": Entry(
         "Explain",
-        "Show a tree, other trees and the proof on a page for any browser, in one file.",
+        "Show a tree with its proof, or a network, as a page or a picture.",
         ("view", "View"),
     ),
     "trace": Entry(
@@ -127,30 +97,25 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Show what is in the kitchen after each step of a plan, and plan anew where a step failed.",
         ("trace", "Traced"),
     ),
-    "units": Entry(
+    "stats": Entry(
         "Data",
-        "List the functional units of a network, and say which of their inputs are used up.",
-        ("units", "Units"),
+        "Count what is in a network, or list its functional units.",
+        ("stats", "Stats"),
     ),
     "diff": Entry(
         "Compare",
-        "Show what two task trees have in common, what only one has, what each costs, and where they part.",
-        ("diff", "Difference"),
-    ),
-    "diff-network": Entry(
-        "Compare",
-        "Show what two networks have in common, and which units nearly agree and in what.",
-        ("diff_networks", "NetworkDifference", "Agreement"),
+        "Show what two task trees or two networks have in common, and in what they differ.",
+        ("diff", "TreeDifference", "NetworkDifference"),
     ),
 }
 
 
 def module_name(verb: str) -> str:
-    """Give the name of a question's module."""
+    """Return the name of a question's module."""
     return verb.replace("-", "_")
 
 
 def question_name(verb: str) -> str:
-    """Give the name that a question has in its module."""
+    """Return the name that a question has in its module."""
     names = INDEX[verb].python
     return names[0] if names else module_name(verb)

@@ -12,6 +12,9 @@ GOALS = Option(
     many=True,
     metavar="NAME",
 )
+GOAL_OF_PLAN = GOALS._replace(
+    help="A goal of the tree; without it, those of the answer, or what the last step makes."
+)
 EACH_GOAL = GOALS._replace(help="A goal, by label or in one-line notation; each goal is answered by itself.")
 CONTAINERS = Option(
     "containers",
@@ -44,6 +47,17 @@ ITEMS = (
         metavar="FILE",
     ),
 )
+PLAN_ITEMS = (
+    ITEMS[0]._replace(
+        help="Whether the plan uses up what is there (used-up), or all of it can be used again and again "
+        "(lasting).",
+        part=Part.PROBLEM | Part.QUESTION,
+        default="used-up",
+        python="With ``used-up``, a problem whose items are used up says what stays and what is in stock.",
+    ),
+    *ITEMS[1:],
+)
+"""How a plan is read."""
 OBJECTIVES = Option(
     "objectives",
     f"What is best, the most important first: {', '.join(Objective)}.",

@@ -2,46 +2,42 @@
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Unpack
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import better_than
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.settings import Bounded
-from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Cancel
-from foon_asp.document.json_document import costs_json, document, figures_json, steps_json
+from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
-from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.arguments import (
-    Constants,
-    Objectives,
-    asked_with,
-    chosen_objectives,
-    settings,
-    usual_objectives,
-)
+from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, usual_objectives
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
-from foon_asp.questions.result import Ending, NothingToDrawError, Result
+from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
+from foon_asp.questions.result import AboutGoals, Ending, NothingToDrawError
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import (
-    changes_text,
-    costs_text,
-    figure_text,
-    goal_lines,
-    missing,
-    success_texts,
-    unit_lines,
+from foon_asp.report.answer import costs_text, figure_text, success_texts
+from foon_asp.report.used_up_note import used_up_note
+from foon_asp.results.table import Part as Shown
+from foon_asp.results.table import Table
+from foon_asp.results.values import (
+    CostedTree,
+    Measures,
+    Step,
+    UsedUpRun,
+    Value,
+    changed_motions,
+    step_lines,
+    steps_not_in,
 )
-from foon_asp.report.stacked import is_narrow, stacked_lines
+from foon_asp.results.values_of import costed_tree, head_of
+from foon_asp.text.json_value import schema_name
 
 _FEWEST, _MOST = 2, 3  # objectives
 
@@ -49,58 +45,72 @@ Box = tuple[int | Fraction | None, ...]
 """For each objective but the first, what plans cost less than; ``None`` allows any cost."""
 
 
-class Point(NamedTuple):
-    """A tree of the front by unit ids in an order that executes, and what it costs."""
+class Point(Value, frozen=True):
+    """A point of the front with its smallest tree.
 
-    units: tuple[int, ...]
+    Attributes:
+        measures: What the tree costs by each of the objectives, exact.
+        costs: What it costs by every objective.
+        used_up: Whether the steps, each done once, run where items are used up.
+        units: The steps, in an order that executes.
+        gone: The ids of the units that only the point before has.
+        new: The ids of the units that the point before does not have.
+    """
+
+    measures: Measures
     costs: Costs
+    used_up: UsedUpRun | None
+    units: tuple[Step, ...]
+    gone: tuple[int | None, ...]
+    new: tuple[int | None, ...]
+
+    @property
+    def ids(self) -> tuple[int, ...]:
+        """The units by id in the whole network, in an order that executes."""
+        return tuple(step.id for step in self.units if step.id is not None)
 
 
-@dataclass(frozen=True, repr=False)
-class Front(Result):
+class Front(AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
     """The Pareto front: trees of which none is as good as another by every objective and better by one.
 
-    ``problem`` and ``objectives`` are those asked about. Each of ``points`` is one combination of measures,
-    with its smallest tree: ``units`` by id, and ``costs``. The best by the first objective come first;
-    :attr:`task_trees` has the trees as values. ``complete`` tells whether every tree is as good as one of
-    these or worse. If not, a limit was reached and other points may exist, but these stay on the front.
-    ``seconds`` is the time it took, ``encodings`` the folder that replaced the built-in encodings, if any.
+    Attributes:
+        encodings: The folder that replaced the built-in encodings, if any.
+        complete: Whether there are no other points. If not, a limit was reached; these stay on the front.
+        points: The points, the best by the first objective first.
+        seconds: The time it took.
 
     Example:
         >>> front = foon_asp.pareto(foon_asp.load().problem("ice"))
         >>> [point.costs.units for point in front.points], front.complete
         ([2, 3], True)
-        >>> front.measures(front.points[0])
-        (2, Fraction(161, 250))
+        >>> front.values[0], front.task_trees[0]
+        ((2, Fraction(161, 250)), <Tree for ice; crushed; in [drinking glass]: 2 units>)
     """
 
-    problem: Problem
-    objectives: tuple[Objective, ...]
-    points: tuple[Point, ...]
+    ROWS = "points"
+
+    encodings: Path | None
     complete: bool
+    points: tuple[Point, ...]
     seconds: float
-    encodings: Path | None = None
 
-    def measures(self, point: Point) -> tuple[int | Fraction, ...]:
-        """Give the measures of a point by each objective, exact.
-
-        Parameters:
-            point: The point.
-        """
-        return tuple(map(point.costs.measure, self.objectives))
+    @property
+    def problem(self) -> Problem:
+        """The problem that was asked about."""
+        found: Problem = self.__dict__["problem"]
+        return found
 
     @property
     def values(self) -> tuple[tuple[int | Fraction, ...], ...]:
         """Where the points stand: for each its measure by every objective, exact."""
-        return tuple(map(self.measures, self.points))
+        return tuple(tuple(map(point.costs.measure, self.objectives)) for point in self.points)
 
     @property
     def task_trees(self) -> tuple[Tree, ...]:
-        """The trees as values, in the same order."""
-        return tuple(
-            Tree.of(self.problem, point.units, f"point {number}: {costs_text(point.costs)}")
-            for number, point in enumerate(self.points, 1)
-        )
+        """The trees as values for other questions, in the same order."""
+        ids = (self.problem.network.units_of_numbers(point.ids) for point in self.points)
+        claims = (f"point {number}: {costs_text(point.costs)}" for number, point in enumerate(self.points, 1))
+        return tuple(Tree.of(self.problem, *each) for each in zip(ids, claims, strict=True))
 
     @property
     def ending(self) -> Ending:
@@ -109,46 +119,73 @@ class Front(Result):
             return Ending.LIMIT
         return Ending.DONE if self.points else Ending.NEGATIVE
 
-    def text(self, trees: bool = False) -> str:
-        """Give the points as a table, each with what its tree does differently from the one above.
+    def show(self, trees: bool = False) -> Iterator[Shown]:
+        """Return the points as a table, each with what its tree does differently from the one above.
 
         Parameters:
             trees: Whether to list the units, too: those of the first tree, and those that go and come with
                 each other one.
         """
-        lines = [*goal_lines(self.problem), _headline(self)]
+        yield from self.goal_lines()
+        yield self._claim()
         if self.points:
-            lines += ["", *_table(self)]
-        if trees:
-            for number, point in enumerate(self.points):
-                lines += ["", f"point {number + 1}: {costs_text(point.costs)}", *_units(self, number)]
-        return "\n".join(line.rstrip() for line in lines) + "\n"
+            yield ""
+            yield self._table()
+        if not trees:
+            yield from self._used_up_lines()
+            return
+        for number, (point, tree) in enumerate(zip(self.points, self.task_trees, strict=True)):
+            yield from ("", f"point {number + 1}: {costs_text(point.costs)}")
+            yield from used_up_note(self.problem, tree)
+            yield from step_lines(self._gone(number), "-") if number else step_lines(point.units)
+            yield from step_lines(self._new(number), "+")
 
-    def json_dict(self) -> object:
-        """Give the points, each with its measures, all that its tree costs, and its units."""
-        network = self.problem.network
-        points = []
-        for number, point in enumerate(self.points):
-            gone, new = _changes(self, number)
-            measures = dict(zip(self.objectives, self.measures(point), strict=True))
-            points.append(
-                {
-                    "measures": figures_json(measures),
-                    "costs": costs_json(point.costs),
-                    "units": steps_json(self.problem, point.units),
-                    "gone": list(map(network.unit_number, gone)),
-                    "new": list(map(network.unit_number, new)),
-                }
-            )
-        return document(
-            "pareto",
-            self.problem,
-            self.objectives,
-            encodings=None if self.encodings is None else str(self.encodings),
-            complete=self.complete,
-            points=points,
-            seconds=round(self.seconds, 6),
-        )
+    def _claim(self) -> str:
+        rule = self.conditions
+        if self.encodings is not None:
+            rule += f", as {self.encodings} has it"
+        if not self.points and self.complete:
+            return f"infeasible: proved that no task tree exists ({rule})"
+        if not self.points:
+            return f"unknown: stopped at a limit before any point of the front was found ({rule})"
+        *first, last = self.objectives
+        by = f"{', '.join(first)} and {last}"
+        points = counted(len(self.points), "point")
+        if not self.complete:
+            return f"at least {points} on the Pareto front of {by} ({rule}; stopped at a limit)"
+        if len(self.points) == 1:
+            every = "both" if len(self.objectives) == 2 else "each"
+            return f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved ({rule})"
+        return f"{points} on the Pareto front of {by}, and no others: proved ({rule})"
+
+    def _table(self) -> Table:
+        columns = [[str(number) for number in range(1, len(self.points) + 1)]]
+        for objective in self.objectives:
+            measures = [point.costs.measure(objective) for point in self.points]
+            if multiplies(objective):
+                columns.append(success_texts([Fraction(measure) for measure in measures]))
+            else:
+                columns.append([figure_text(objective, measure) for measure in measures])
+        every = range(len(self.points))
+        columns.append([changed_motions(self._gone(number), self._new(number)) for number in every])
+        changes = "units that go (-) and come (+)" if len(self.points) > 1 else ""
+        rows = list(zip(*columns, strict=True))
+        return Table(["point", *self.objectives, changes], rows, frozenset({len(self.objectives) + 1}))
+
+    def _gone(self, number: int) -> list[Step]:
+        return steps_not_in(self.points[number - 1].units, self.points[number].units) if number else []
+
+    def _new(self, number: int) -> list[Step]:
+        return steps_not_in(self.points[number].units, self.points[number - 1].units) if number else []
+
+    def _used_up_lines(self) -> Iterator[str]:
+        """Return a line that names the points whose trees would not run if items were used up."""
+        runs = (each.used_up is None or each.used_up.runs is not False for each in self.points)
+        points = [str(number) for number, each in enumerate(runs, 1) if not each]
+        if points:
+            several = f"trees of points {', '.join(points)} do"
+            which = several if len(points) > 1 else f"tree of point {points[0]} does"
+            yield from ("", f"note: the {which} not run with each item used once, see --items used-up")
 
     def write_chart(self, file: File) -> None:
         """Draw the front into a file.
@@ -160,14 +197,20 @@ class Front(Result):
             NothingToDrawError: if there is no point.
             UserError: for another file name, or if the packages of ``foon-asp[pictures]`` are missing.
         """
-        from foon_asp.report.front_chart import Plotted, write_front_chart  # noqa: PLC0415 (seldom asked for)
+        from foon_asp.pictures.front_chart import Plotted, write_front_chart  # noqa: PLC0415
 
         if not self.points:
             raise NothingToDrawError("there is no point to draw")
-        objects = self.problem.network.objects
-        goals = " + ".join(objects[goal].label for goal in self.problem.goals)
-        plotted = Plotted(goals, self.problem.conditions, self.objectives, self.values, self.complete)
+        goals = " + ".join(goal.label for goal in self.goals)
+        plotted = Plotted(goals, self.conditions, self.objectives, self.values, self.complete)
         write_front_chart(plotted, Path(file))
+
+
+class _Point(NamedTuple):
+    """A tree of the front by unit ids in an order that executes, and what it costs."""
+
+    units: tuple[int, ...]
+    costs: Costs
 
 
 @question(
@@ -183,12 +226,11 @@ class Front(Result):
     Option(
         "charts",
         "A file for a chart of the front (.svg or .png).",
-        Kind.FILE,
+        Kind.WRITTEN,
         Part.CHART,
         flags=("--chart",),
         many=True,
     ),
-    *HOW,
     formats=TABLES,
     help_="""
     \b
@@ -203,18 +245,7 @@ class Front(Result):
     found by then are on the front, too.
     """,
 )
-def pareto(
-    problem: Problem,
-    objectives: Objectives = (),
-    *,
-    constraints: Files = (),
-    constants: Constants | None = None,
-    encodings: File | None = None,
-    time_limit: float | None = None,
-    memory_limit: int | str | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
-) -> Front:
+def pareto(problem: Problem, objectives: Objectives = (), **how: Unpack[How]) -> Front:
     """Find all trade-offs between two or three objectives (the Pareto front), with a tree for each.
 
     The limits are for the whole question.
@@ -234,15 +265,15 @@ def pareto(
         >>> [(point.costs.units, round(float(point.costs.success), 4)) for point in front.points]
         [(9, 0.4988), (10, 0.5955), (11, 0.6293)]
     """
-    given = usual_objectives(problem, objectives, ("units", "success"), ("units", "inputs"))
-    asked = chosen_objectives(problem, given)
-    if not _FEWEST <= len(asked) <= _MOST:
+    usual = usual_objectives(problem, objectives, ("units", "success"), ("units", "inputs"))
+    chosen = chosen_objectives(problem, usual)
+    if not _FEWEST <= len(chosen) <= _MOST:
         raise UserError(
-            f"found {counted(len(asked), 'objective')}, "
+            f"found {counted(len(chosen), 'objective')}, "
             f"expected {_FEWEST} or {_MOST} to trade against each other"
         )
-    how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    problem = asked_with(problem, how)
+    settings = settings_of(how)
+    problem = asked_with(problem, settings)
     # One objective leads: success, which no sum can bound, if it is there, else one that is a fraction
     # and may have to be rounded, else the first. Each tree is
     # the best by the leading objective, then by the others, among those that are better than every tree
@@ -251,40 +282,60 @@ def pareto(
     # no tree is left, each tree there is was left out first with some tree that is as good as it by the
     # others, and no worse by the leading objective, by which that tree was the best of those that were
     # left. So every point of the front is there.
-    leading = min(asked, key=lambda objective: (not multiplies(objective), objective.row.whole))
-    order = leading, *(objective for objective in asked if objective is not leading)
+    leading = min(chosen, key=lambda objective: (not multiplies(objective), objective.row.whole))
+    order = leading, *(objective for objective in chosen if objective is not leading)
     began = time.monotonic()
-    found: list[Point] = []
+    found: list[_Point] = []
     complete = True
     next_best = _best_trees if problem.items is None else _best_plans
     try:
-        for outcome in next_best(problem, order, how, found):
+        for outcome in next_best(problem, order, settings, found):
             if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:
                 complete = False
                 break
-            point = Point(outcome.units, outcome.costs)
-            _require_apart(Postconditions(problem, asked, how), point, found)
+            point = _Point(outcome.units, outcome.costs)
+            _require_apart(Postconditions(problem, chosen, settings), point, found)
             found.append(point)
     except KeyboardInterrupt:
         complete = False  # what was found stands
-    found.sort(key=lambda point: point.costs.key(asked))
-    seconds = time.monotonic() - began
-    return Front(problem, asked, tuple(found), complete, seconds, how.replaced)
+    found.sort(key=lambda point: point.costs.key(chosen))
+    seconds = round(time.monotonic() - began, 6)
+    front = Front(
+        **head_of(problem, chosen),
+        encodings=settings.replaced,
+        complete=complete,
+        points=tuple(_points(problem, chosen, found)),
+        seconds=seconds,
+    )
+    front.__dict__["problem"] = problem
+    return front
+
+
+def _points(problem: Problem, objectives: Sequence[Objective], found: Sequence[_Point]) -> Iterator[Point]:
+    """Return trees as points of the front, each with what it does differently from the one before."""
+    before: CostedTree | None = None
+    for units, costs in found:
+        tree = costed_tree(problem, units, costs)
+        gone = () if before is None else tuple(step.id for step in steps_not_in(before.units, tree.units))
+        new = () if before is None else tuple(step.id for step in steps_not_in(tree.units, before.units))
+        measures = {objective: costs.measure(objective) for objective in objectives}
+        yield Point(measures, costs, tree.used_up, tree.units, gone, new)
+        before = tree
 
 
 def _best_trees(
-    problem: Problem, order: tuple[Objective, ...], how: Settings, found: Sequence[Point]
+    problem: Problem, order: tuple[Objective, ...], settings: Settings, found: Sequence[_Point]
 ) -> Iterator[Outcome]:
-    """Give the best tree that is better than each point found by one of the objectives but the first.
+    """Yield the best tree that is better than each point found by one of the objectives but the first.
 
     It takes one search more than there are points. An outcome without a proof is the last.
     """
     reporter = caller().reporter
     while True:
-        now = how
+        now = settings
         if found:
             known = _nearest([point.costs for point in found], order[1:])
-            now = how._replace(bounded=better_than(known, order[1:]))
+            now = settings._replace(bounded=better_than(known, order[1:]))
         outcome = solve(problem, order, now, _Silent(reporter) if found else reporter)
         if outcome.status is Status.INFEASIBLE:
             return
@@ -292,9 +343,9 @@ def _best_trees(
 
 
 def _best_plans(
-    problem: Problem, order: tuple[Objective, ...], how: Settings, found: Sequence[Point]
+    problem: Problem, order: tuple[Objective, ...], settings: Settings, found: Sequence[_Point]
 ) -> Iterator[Outcome]:
-    """Give the best plan as :func:`_best_trees` gives trees.
+    """Yield the best plan as :func:`_best_trees` gives trees.
 
     What is better than each point found is divided into boxes, which are below one cost by each objective.
     The best plan of a box stays the best of it until the box is divided.
@@ -306,7 +357,7 @@ def _best_plans(
         for box in boxes:
             if box not in solved:
                 below = tuple({o: most} for o, most in zip(others, box, strict=True) if most is not None)
-                now = how._replace(bounded=Bounded(below=below))
+                now = settings._replace(bounded=Bounded(below=below))
                 solved[box] = solve(problem, order, now, _Silent(reporter) if found else reporter)
                 if solved[box].status not in {Status.OPTIMAL, Status.INFEASIBLE}:
                     yield solved[box]
@@ -338,7 +389,7 @@ def _divided(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list[Box]
     return [part for part in parts if not any(holds(box, part) for box in parts)]
 
 
-def _require_apart(holds: Postconditions, point: Point, found: Sequence[Point]) -> None:
+def _require_apart(holds: Postconditions, point: _Point, found: Sequence[_Point]) -> None:
     """Require that a point of the front is as good as no other, and that no other is as good as it."""
     key = point.costs.key(holds.levels)
     for other in found:
@@ -378,67 +429,3 @@ class _Silent(Reporter):
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
         self._reporter.bound(objective, bound)
-
-
-def _headline(front: Front) -> str:
-    rule = front.problem.conditions
-    if front.encodings is not None:
-        rule += f", as {front.encodings} has it"
-    if not front.points:
-        if front.complete:
-            return f"infeasible: proved that no task tree exists ({rule})"
-        return f"unknown: stopped at a limit before any point of the front was found ({rule})"
-    *first, last = front.objectives
-    by = f"{', '.join(first)} and {last}"
-    number = len(front.points)
-    points = counted(number, "point")
-    if not front.complete:
-        return f"at least {points} on the Pareto front of {by} ({rule}; stopped at a limit)"
-    if number == 1:
-        every = "both" if len(front.objectives) == 2 else "each"
-        return f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved ({rule})"
-    return f"{points} on the Pareto front of {by}, and no others: proved ({rule})"
-
-
-def _table(front: Front) -> Iterator[str]:
-    """Align numbers to the right, and put the words beside them."""
-    columns = [["point", *(str(number + 1) for number in range(len(front.points)))]]
-    for objective in front.objectives:
-        figures = [point.costs.measure(objective) for point in front.points]
-        texts = (
-            success_texts([Fraction(f) for f in figures])
-            if multiplies(objective)
-            else [figure_text(objective, f) for f in figures]
-        )
-        columns.append([str(objective), *map(str, texts)])
-    widths = [max(map(len, column)) for column in columns]
-    network = front.problem.network
-    changes = (_changes(front, number) for number in range(len(front.points)))
-    words = ["", *(changes_text(network, gone, new) for gone, new in changes)]
-    if len(front.points) > 1:
-        words[0] = "units that go (-) and come (+)"
-    if is_narrow():
-        headings, *rows = zip(*columns, words, strict=True)
-        yield from stacked_lines([*headings[:-1], "changes"], rows)
-        return
-    for *cells, note in zip(*columns, words, strict=True):
-        row = "  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True))
-        yield f"{row}    {note}"
-
-
-def _changes(front: Front, number: int) -> tuple[list[int], list[int]]:
-    """Give the units that only the tree before has, and those that only this one has."""
-    if not number:
-        return [], []
-    before, point = front.points[number - 1], front.points[number]
-    return missing(before.units, point.units), missing(point.units, before.units)
-
-
-def _units(front: Front, number: int) -> Iterator[str]:
-    network = front.problem.network
-    if not number:
-        yield from unit_lines(network, front.points[0].units)
-        return
-    gone, new = _changes(front, number)
-    yield from unit_lines(network, gone, "-")
-    yield from unit_lines(network, new, "+")

@@ -3,14 +3,14 @@
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.items import items_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.network import ObjectNode
 from foon_asp.problem import Problem
-from foon_asp.questions.result import Result
 
 if TYPE_CHECKING:
     from foon_asp.foon import Foon
@@ -23,18 +23,22 @@ class Command(Protocol):
     def dataset(self) -> Dataset:
         """The data that it names; read when it is first looked at."""
 
-    def ask(self, words: str, without: Sequence[str]) -> Result:
-        """Ask a question that is written as a command; ``without`` names options that it must not have.
+    @property
+    def level(self) -> int:
+        """The level at which object nodes are compared."""
 
-        What stands beside it counts where it does not say it itself; a question that names data of its own
-        takes none from there.
-        """
+    @property
+    def names_data(self) -> bool:
+        """Whether it names a network."""
 
     def given(self, option: str) -> bool:
         """Whether an option, by name, stands in its own words."""
 
+    def unnamed_goals(self) -> list[ObjectNode]:
+        """Return the goals that are answered one by one where none is named."""
+
     def add_sources(self, sources: Sequence[Path]) -> None:
-        """Add networks that are named without an option, before the data are read."""
+        """Add networks that are named without an option; the data are read anew."""
 
     def reading(self) -> AbstractContextManager[object]:
         """Stop what is read in a ``with`` block at the limits of the command."""
@@ -56,60 +60,14 @@ def one_problem(
     stock: File | None = None,
     stays: File | None = None,
 ) -> tuple[Problem]:
-    """Pose one problem, whose tree makes all goals that are named."""
-    dataset = command.dataset
-    with command.reading():
-        how = items_of(dataset, items, stock, stays)
-        return (dataset.problem(dataset.goals(goals_named), containers, items=how),)
+    """Pose one problem, whose tree makes all goals that are named.
 
-
-def one_problem_or_nearby(
-    command: Command,
-    goals_named: Sequence[str],
-    containers: str,
-    items: str = "lasting",
-    stock: File | None = None,
-    stays: File | None = None,
-) -> tuple[Problem]:
-    """Pose one problem; what its goals can need of a large store is read when it is looked at."""
+    What the goals can need of a large store is read when it is looked at.
+    """
     dataset = command.dataset
     with command.reading():
         how = items_of(dataset, items, stock, stays)
         return (dataset.nearby(dataset.goals(goals_named), containers, how),)
-
-
-def the_data(command: Command) -> "tuple[Foon]":
-    """Ask about the data as a whole."""
-    from foon_asp.foon import Foon  # noqa: PLC0415 (for few questions)
-
-    return (Foon(command.dataset, "the data"),)
-
-
-def no_data(command: Command, **named: object) -> tuple[object, ...]:
-    """Ask about something that the question names itself; its command has no options for data."""
-    return tuple(named.values())
-
-
-def each_goal_or_nearby(
-    command: Command,
-    goals_named: Sequence[str],
-    containers: str,
-    items: str = "lasting",
-    stock: File | None = None,
-    stays: File | None = None,
-) -> tuple[Problem]:
-    """Pose the same as :func:`each_goal`; of a large store, what they can need is read when looked at."""
-    dataset = command.dataset
-    with command.reading():
-        how = items_of(dataset, items, stock, stays)
-        return (dataset.nearby(_each(dataset, goals_named), containers, how),)
-
-
-def _each(dataset: Dataset, goals_named: Sequence[str]) -> tuple[int, ...]:
-    goals = dataset.each_goal(goals_named)
-    if not goals:
-        raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
-    return tuple(dict.fromkeys(goals))
 
 
 def each_goal(
@@ -123,5 +81,41 @@ def each_goal(
     """Pose goals that are a question of their own each: those that are named, or all of the goals file."""
     dataset = command.dataset
     with command.reading():
+        goals = dict.fromkeys(dataset.each_goal(goals_named))
+        if not goals:
+            raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
         how = items_of(dataset, items, stock, stays)
-        return (dataset.problem(_each(dataset, goals_named), containers, items=how),)
+        return (dataset.nearby(tuple(goals), containers, how),)
+
+
+def one_problem_or_each(command: Command, all_goals: bool, **how: Any) -> tuple[Problem]:
+    """Pose one problem, or with ``all_goals`` each goal by itself."""
+    return (each_goal if all_goals else one_problem)(command, **how)
+
+
+def the_data(command: Command) -> "tuple[Foon]":
+    """Ask about the data as a whole."""
+    from foon_asp.foon import Foon  # noqa: PLC0415 (for few questions)
+
+    return (Foon(command.dataset, "the data"),)
+
+
+def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
+    """Return whether a picture is of a tree for goals: some are named, or a recipe alone, as for ``solve``.
+
+    Raises :class:`UserError` for a recipe with several goals, since a picture is of one tree.
+    """
+    if goals_named or not command.given("sources"):
+        return bool(goals_named)
+    goals = command.unnamed_goals()
+    if len(goals) > 1:
+        raise UserError(
+            f"no goal is named, and there are {len(goals)}, too many for one picture: name one (--goal), or "
+            "give the file as --network FILE to see the whole network"
+        )
+    return True
+
+
+def no_data(command: Command, **named: object) -> tuple[object, ...]:
+    """Ask about something that the question names itself; its command has no options for data."""
+    return tuple(named.values())

@@ -1,34 +1,37 @@
 """A plan of another planner, read back into a task tree and executed."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
 
 from foon_asp.dataset.items import items_of
 from foon_asp.dataset.paths import File
 from foon_asp.deadline import Cancel
-from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.planning.name_map import map_of, read_name_map
 from foon_asp.planning.plan_file import PlanStep, read_plan_text
 from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import ITEMS, Problem
 from foon_asp.problem.progress import OnProgress
-from foon_asp.proof.replay import replay_for
-from foon_asp.proof.simulation import Verdict, simulate_for
+from foon_asp.proof.simulation import Verdict
 from foon_asp.questions.arguments import reading, whole
 from foon_asp.questions.check import Checked
-from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.contract import Part as Belongs
 from foon_asp.questions.posing import Command
+from foon_asp.questions.posing_plan import units_in
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
-from foon_asp.text.json_value import Json
+from foon_asp.results.table import Part
+from foon_asp.text.json_value import schema_name
 from foon_asp.text.plain_file import read_plain_text
 
 
-@dataclass(frozen=True, repr=False)
-class PlanRead(Checked):
-    r"""A plan as a ``tree``, and the ``simulation`` of it with what stops it.
+class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan")):
+    r"""A plan as a ``tree``, and what stops it.
+
+    Attributes:
+        sound: Whether the plan executes as it is written, with units of the network alone.
 
     Example:
         >>> import pathlib, tempfile
@@ -38,31 +41,24 @@ class PlanRead(Checked):
         False
     """
 
-    @property
-    def sound(self) -> bool:
-        """Whether the plan executes as it is written, with units of the network alone."""
-        as_listed = self.replay is not None or self.simulation.verdict is Verdict.AS_LISTED
-        return as_listed and self.executes and not self.foreign
+    sound: bool
 
     @property
     def ending(self) -> Ending:
         """Done for a sound plan."""
         return Ending.DONE if self.sound else Ending.NEGATIVE
 
-    def text(self) -> str:
-        """Say whether the plan executes, what stops it at which line, and what it costs."""
-        return ("" if self.sound else "refused: ") + super().text()
-
-    def json_dict(self) -> Json:
-        """Give the same; positions count from 1."""
-        return {**super().json_dict(), **document("read-plan"), "sound": self.sound}
+    def show(self) -> Iterator[Part]:
+        """Return whether the plan executes, what stops it at which line, and what it costs."""
+        first, *others = super().show()
+        yield from (first if self.sound else f"refused: {first}", *others)
 
     def foon(self) -> str:
-        """Give the tree as FOON text; empty where the plan is refused."""
+        """Return the tree as FOON text; empty where the plan is refused."""
         return str(self.tree) if self.sound else ""
 
     def remark(self, format_: str) -> str:
-        """Say why a plan is refused."""
+        """Return why a plan is refused."""
         return "" if self.sound else self.text().rstrip()
 
 
@@ -73,6 +69,9 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
             "name the map of names with --map: foon-asp export wrote it beside the PDDL (map.json)"
         )
     found, dataset = read_name_map(names), command.dataset
+    units = set(found.units.values())
+    if not command.names_data and 2 * units_in(dataset.data.network, units) < len(units):
+        raise UserError(f"{names}: it is not of the bundled kitchen: name the data that were exported")
     if dataset.names.level != found.level:
         raise UserError(
             f"{names}: is about level {found.level}, and the data are read at level {dataset.names.level}: "
@@ -89,7 +88,7 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
         "names",
         "The map of names that `foon-asp export` wrote beside the PDDL.",
         Kind.FILE,
-        Part.PROBLEM | Part.QUESTION,
+        Belongs.PROBLEM | Belongs.QUESTION,
         flags=("--map",),
         metavar="map.json",
         python="Without it, the names are those that :func:`foon_asp.export` gives to the whole network.",
@@ -103,8 +102,9 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
     foon-asp read-plan plan --map task/map.json
     foon-asp read-plan plan --map task/map.json --format foon > tree.txt
 
-    Plans of Fast Downward, pyperplan, planners of the IPC (numbered, or with times) and unified-planning are
-    read. The goals and the container rule are those of the map; the plan is executed step by step.
+    Plans of Fast Downward, Metric-FF, pyperplan, planners of the IPC (numbered, or with times) and
+    unified-planning are read; of the first two also their log, with the plan in it. The goals and the
+    container rule are those of the map; the plan is executed step by step.
 
     Exits with 0 when the plan executes as it is written and makes the goals; with 1 when it does not, with
     the line and the reason; with 2 for a line that is no step, or an action that the map does not have.
@@ -127,7 +127,7 @@ def read_plan(
         plan: The path of the file that the planner wrote, or a plan of unified-planning.
 
     Returns:
-        The ``tree``, whether it is ``sound``, and the ``simulation`` with what stops it.
+        The ``tree``, whether it is ``sound``, and what stops it.
 
     Raises:
         UserError: for a file that cannot be read, a line that is no step of a plan, or an action that the
@@ -154,5 +154,6 @@ def read_plan(
         places = dict(reversed(steps))  # of the first execution
         steps = [PlanStep(unit, places[unit]) for unit in dict.fromkeys(unit for unit, _ in steps)]
     tree = Tree.given(problem, [unit for unit, _ in steps], [place for _, place in steps])
-    replay = None if problem.items is None else replay_for(tree.problem, tree)
-    return PlanRead(tree, simulate_for(tree.problem, tree), replay)
+    checked = Checked.of(tree)
+    sound = checked.verdict is Verdict.AS_LISTED and not checked.not_in_network
+    return PlanRead.of(tree, sound=sound)

@@ -4,30 +4,31 @@ Motions and pairs of items are asked about too, where somebody wants to know.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
 from functools import partial
 from itertools import combinations
-from typing import NamedTuple
+from typing import Annotated, Any, Unpack
 
-from foon_asp.asp import Reporter, Settings, Status
+from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp import solve as find
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Cancel
-from foon_asp.document.json_document import costs_json, document, figures_json, mention_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.network.spelling import near_labels
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
-from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.answer import Answer, WithOutcome
-from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
+from foon_asp.questions.answer import Answer, WithAnswer
+from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.options import HOW, ITEMS, TREE
+from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.options import ITEMS, TREE
 from foon_asp.questions.result import Ending
-from foon_asp.report.answer import costs_text, goal_lines, headline, success_text
+from foon_asp.report.answer import costs_text, success_text
+from foon_asp.results.table import Part as Shown
+from foon_asp.results.values import Measures, Mention, Node, Value
+from foon_asp.results.values_of import head_of, mention_of, node_of
+from foon_asp.text.json_value import schema_name
 
 
 class Part(StrEnum):
@@ -39,100 +40,110 @@ class Part(StrEnum):
     PAIR = "pair"
 
 
-class Regret(NamedTuple):
-    """The best that is left without one part of a question.
-
-    ``id`` is that of a unit (of a motion, its first) or of an object node of the kitchen. ``status`` and
-    ``costs`` are those of the optimum without it; ``costs`` is ``None`` where there is no tree. ``other`` is
-    the second item of a pair.
-    """
-
-    part: Part
-    id: int
-    status: Status
-    costs: Costs | None
-    other: int | None = None
-
-    def loss(self, best: Costs, objective: Objective) -> int | Fraction | None:
-        """Say how much worse it is by an objective: by how much more, or for ``success`` by what share.
-
-        ``None`` where there is no tree without this.
-        """
-        if self.costs is None:
-            return None
-        ours, theirs = best.measure(objective), self.costs.measure(objective)
-        if multiplies(objective):
-            return 1 - Fraction(theirs) / Fraction(ours) if ours else Fraction(0)
-        return theirs - ours
-
-
 _TITLES = {
     Part.UNIT: "without the unit",
     Part.MOTION: "without all units of the motion",
     Part.ITEM: "without from the kitchen",
     Part.PAIR: "without both from the kitchen, where each alone can be done without",
 }
+_WIDTH = 8  # of a loss
 
 
-@dataclass(frozen=True, repr=False)
-class Regrets(WithOutcome):
-    """An optimal tree as the ``outcome``, and what its parts are worth, the greatest loss first.
+class Regret(Value, frozen=True):
+    """The best that is left without one part of a question.
 
-    Each of ``regrets`` has ``part`` (``unit``, ``motion``, ``item`` or ``pair``), the ``id`` of that unit or
-    object node in the problem's network, and ``status`` and ``costs`` of the optimum without it; ``json()``
-    has names, too. ``regrets`` is empty if there is no tree, or if it was not proved the best.
+    Attributes:
+        unit: The unit that is left out, or null.
+        motion: The motion all units of which are left out, or null.
+        item: The kitchen item that is left out, or null.
+        second_item: The other kitchen item of a pair, or null.
+        costs: What the best tree costs then; null where there is no tree.
+        loss: By how much the best tree is then worse, or for success by what share.
+    """
+
+    unit: Mention | None
+    motion: str | None
+    item: Node | None
+    second_item: Node | None
+    status: Status
+    costs: Costs | None
+    loss: Measures | None
+
+    @property
+    def part(self) -> Part:
+        """What is left out."""
+        if self.item is not None:
+            return Part.ITEM if self.second_item is None else Part.PAIR
+        return Part.MOTION if self.unit is None else Part.UNIT
+
+    def __str__(self) -> str:
+        if self.unit is not None:
+            return f"{self.unit.id}  {self.unit}"
+        return self.motion or " and ".join(str(node) for node in (self.item, self.second_item) if node)
+
+    def loss_text(self, objective: Objective, what: str = "tree") -> str:
+        """Return in a few words how much worse the best tree is by an objective.
+
+        Parameters:
+            objective: The objective, one of those asked for.
+            what: What there is none of without the part, a tree or a plan.
+        """
+        if self.status is Status.INFEASIBLE:
+            return f"no {what}"
+        loss = None if self.loss is None else self.loss[objective]
+        if loss is None:
+            return "unknown"
+        if not loss:
+            return "nothing"
+        if multiplies(objective):
+            text = success_text(Fraction(loss * 100))
+            return f"≈ -{text[2:]} %" if text.startswith("≈") else f"-{text} %"
+        return f"{int(loss):+} {objective}"  # less by ``kitchen`` where an item is made that is not at hand
+
+
+class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
+    """What each unit and each item of the best tree is worth.
+
+    Attributes:
+        regrets: The greatest loss first; empty if there is no tree, or if it was not proved the best.
 
     Example:
         >>> found = foon_asp.regret(foon_asp.load().problem("ice"))
-        >>> len(found.regrets), found.outcome.costs.units
+        >>> len(found.regrets), found.answer.costs.units
         (6, 2)
+        >>> last = found.regrets[-1]
+        >>> str(last.part), last.unit.motion, last.loss_text(foon_asp.Objective.UNITS)
+        ('unit', 'crush', '+1 units')
     """
 
-    outcome: Answer
+    ROWS = "regrets"
+
+    answer: Answer
     regrets: tuple[Regret, ...]
 
     @property
     def ending(self) -> Ending:
         """Done when every answer is proved."""
         proved = all(regret.status in {Status.OPTIMAL, Status.INFEASIBLE} for regret in self.regrets)
-        return self.outcome.ending if proved else Ending.LIMIT
+        return self.answer.ending if proved else Ending.LIMIT
 
-    def text(self) -> str:
-        """Give the optimum, and under it what is missed most first."""
-        lines = [*goal_lines(self.outcome.problem), headline(self.outcome)]
+    def show(self) -> Iterator[Shown]:
+        """Return the optimum, and under it what is missed most first."""
+        yield from (*self.goal_lines(), *self.answer.headlines())
+        what = "tree" if self.items == "lasting" else "plan"
         for part, title in _TITLES.items():
             regrets = [regret for regret in self.regrets if regret.part is part]
             if regrets:
-                lines += ["", title, *(line for regret in regrets for line in _lines(self.outcome, regret))]
-        return "\n".join(lines) + "\n"
-
-    def json_dict(self) -> object:
-        """Give the answer and the regrets."""
-        best = self.outcome
-        regrets = [_json(best, regret) for regret in self.regrets]
-        return document("regret", best.problem, best.objectives, answer=best.json_dict(), regrets=regrets)
+                yield from ("", title)
+            for regret in regrets:
+                yield f"  {regret.loss_text(self.objectives[0], what).ljust(_WIDTH)}    {regret}"
+                if regret.costs is not None and regret.costs != self.answer.costs:
+                    yield f"       the best is then {costs_text(regret.costs, self.objectives)}"
 
 
 @question(
     *TREE,
     *ITEMS,
-    Option(
-        "units",
-        "The id of a unit to ask about as well.",
-        Kind.WHOLE,
-        flags=("--unit",),
-        many=True,
-        metavar="ID",
-    ),
-    Option(
-        "motions",
-        "A motion to ask about as well: the optimum without all of its units.",
-        flags=("--motion",),
-        many=True,
-        metavar="MOTION",
-    ),
-    Option("pairs", "Ask about pairs of kitchen items as well.", Kind.FLAG, default=False),
-    *HOW,
     formats=TABLES,
     help_="""
     \b
@@ -148,28 +159,23 @@ def regret(
     problem: Problem,
     objectives: Objectives = "units",
     *,
-    units: Iterable[int] = (),
-    motions: str | Iterable[str] = (),
-    pairs: bool = False,
-    constraints: Files = (),
-    constants: Constants | None = None,
-    encodings: File | None = None,
-    time_limit: float | None = None,
-    memory_limit: int | str | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    units: Annotated[Iterable[int], Option(kind=Kind.WHOLE, flags=("--unit",), many=True, metavar="ID")] = (),
+    motions: Annotated[str | Iterable[str], Option(flags=("--motion",), many=True, metavar="MOTION")] = (),
+    pairs: Annotated[bool, Option()] = False,
+    **how: Unpack[How],
 ) -> Regrets:
     """Find the optimum without each unit of the best tree, and without each kitchen item that it uses.
 
     The limits are for the whole question.
 
     Parameters:
-        units: Ids of other units to ask about, as in ``json()``.
-        motions: Motions to ask about, each without all of its units.
-        pairs: Whether to ask about any two items that the tree takes and that can be done without alone.
+        units: A unit to ask about as well, by its id.
+        motions: A motion to ask about as well, the optimum without all of its units.
+        pairs: Ask about pairs of kitchen items as well. Only those that the tree takes and that can be done
+            without alone.
 
     Returns:
-        The best tree as the ``outcome``, and the ``regrets``, of which the greatest loss comes first.
+        The best tree as the ``answer``, and the ``regrets``, of which the greatest loss comes first.
 
     Raises:
         UserError: for a wrong argument or constraint, or a unit or motion that the network does not have.
@@ -177,69 +183,86 @@ def regret(
     Example:
         >>> found = foon_asp.regret(foon_asp.load().problem("ice"))
         >>> worst = found.regrets[0]
-        >>> str(worst.part), str(worst.status)
-        ('item', 'infeasible')
+        >>> str(worst.item), str(worst.status)
+        ('ice; cubed; in [ice cube tray]', 'infeasible')
     """
-    chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    more, moved = tuple(units), tuple([motions] if isinstance(motions, str) else motions)
-    problem = whole(problem) if more or moved else asked_with(problem, how)
-    found = [problem.network.unit_of_number(number) for number in more]
+    chosen, settings = chosen_objectives(problem, objectives), settings_of(how)
+    numbers, moved = tuple(units), tuple([motions] if isinstance(motions, str) else motions)
+    problem = whole(problem) if numbers or moved else asked_with(problem, settings)
+    network = problem.network
+    found = [network.unit_of_number(number) for number in numbers]
     if None in found:
-        raise UserError(f"there is no unit {more[found.index(None)]} in the network")
+        raise UserError(f"there is no unit {numbers[found.index(None)]} in the network")
     of_motion = {motion: _units_of(problem, motion) for motion in moved}
-    outcome = find(problem, chosen, how, caller().reporter)
-    if outcome.units is None or outcome.status is not Status.OPTIMAL:
-        return Regrets(Answer._make(outcome), ())
-    tree = set(outcome.units)
-    taken = sorted({o for unit in tree for o in problem.needs[unit] if o in problem.kitchen})
-    regrets = []
-    own = how.constraints == () and how.replaced is None  # else rules may ask for what is missing
-    holds = Postconditions(problem, levels(chosen), how)
+    best = find(problem, chosen, settings, caller().reporter)
+    head, answer = head_of(problem, chosen), Answer.of(best)
+    if best.units is None or best.status is not Status.OPTIMAL:
+        return Regrets(**head, answer=answer, regrets=())
+    regrets: list[Regret] = []
+    own = settings.constraints == () and settings.replaced is None  # else rules may ask for what is missing
+    holds = Postconditions(problem, levels(chosen), settings)
 
-    def without(
-        part: Part, id_: int, leave_out: Callable[[], Problem], how: Settings, other: int | None = None
-    ) -> None:
+    def without(leave_out: Callable[[], Problem], **parts: Any) -> Regret:
         try:
-            with how.begun.watched("leaving out a part"):  # which takes a while in a large network
+            with settings.begun.watched("leaving out a part"):  # which takes a while in a large network
                 fewer = leave_out()
         except KeyboardInterrupt:
-            regrets.append(Regret(part, id_, Status.UNKNOWN, None, other))
-            return
-        left = find(fewer, chosen, how, Reporter())
+            left = None
+        else:
+            left = find(fewer, chosen, settings, Reporter())
+        regrets.append(_regret(best, left, **parts))
         # an item that is not at hand is not taken, so a tree that makes it has fewer by ``kitchen``
-        if own and (part in {Part.UNIT, Part.MOTION} or Objective.KITCHEN not in chosen):
-            holds.no_better(left, outcome, f"with the {part} {id_}")
-        regrets.append(Regret(part, id_, left.status, left.costs, other))
+        if left and own and ("item" not in parts or Objective.KITCHEN not in chosen):
+            holds.no_better(left, best, f"without {regrets[-1]}")
+        return regrets[-1]
 
-    alone = how._replace(session=None)  # another network: a program kept for it would be of no use
-    for unit in sorted(tree.union(unit for unit in found if unit is not None)):
-        without(Part.UNIT, unit, partial(_without_units, problem, [unit]), alone)
-    for of_one in of_motion.values():
-        without(Part.MOTION, of_one[0], partial(_without_units, problem, of_one), alone)
-    for o in taken:
-        without(Part.ITEM, o, partial(_kitchen_without, problem, o), how)
-    if pairs:
-        spared = [each.id for each in regrets if each.part is Part.ITEM and each.costs is not None]
-        for o, other in combinations(spared, 2):
-            without(Part.PAIR, o, partial(_kitchen_without, problem, o, other), how, other)
-    order = (*chosen, Objective.UNITS)
-    regrets.sort(key=lambda each: _worst_first(each, order))
-    return Regrets(Answer._make(outcome), tuple(regrets))
+    for unit in sorted({*best.units, *(unit for unit in found if unit is not None)}):
+        without(partial(_without_units, problem, [unit]), unit=mention_of(network, unit))
+    for motion, of_one in of_motion.items():
+        without(partial(_without_units, problem, of_one), motion=motion)
+    taken = sorted({o for unit in best.units for o in problem.needs[unit] if o in problem.kitchen})
+    alone = {o: without(partial(_kitchen_without, problem, o), item=node_of(network, o)) for o in taken}
+    spared = [o for o in taken if alone[o].costs is not None]
+    for o, other in combinations(spared if pairs else (), 2):
+        nodes = {"item": node_of(network, o), "second_item": node_of(network, other)}
+        without(partial(_kitchen_without, problem, o, other), **nodes)
+    regrets.sort(key=lambda each: _worst_first(each, (*chosen, Objective.UNITS)))
+    return Regrets(**head, answer=answer, regrets=tuple(regrets))
 
 
-def regret_of(best: Answer, part: Part, id_: int, how: Settings) -> Regret:
-    """Find the optimum without one unit or one kitchen item of a problem that was answered."""
-    unit = part is Part.UNIT
-    fewer = _without_units(best.problem, [id_]) if unit else _kitchen_without(best.problem, id_)
-    left = find(fewer, best.objectives, how, Reporter())
-    return Regret(part, id_, left.status, left.costs)
+def regret_of(best: Answer, settings: Settings, unit: int | None = None, item: int | None = None) -> Regret:
+    """Find the optimum without one unit or one kitchen item, by id, of a problem that was answered."""
+    network, outcome = best.problem.network, best.outcome
+    if unit is not None:
+        left = find(_without_units(best.problem, [unit]), best.objectives, settings, Reporter())
+        return _regret(outcome, left, unit=mention_of(network, unit))
+    assert item is not None
+    left = find(_kitchen_without(best.problem, item), best.objectives, settings, Reporter())
+    return _regret(outcome, left, item=node_of(network, item))
 
 
-def loss_text(best: Answer, regret: Regret) -> str:
-    """Say in one line how much worse it is without a part, and what the best is then."""
-    left = "" if regret.costs is None else f"; the best is then {costs_text(regret.costs, best.objectives)}"
-    return f"{_loss(best, regret).strip()}{left}"
+def _regret(
+    best: Outcome,
+    left: Outcome | None,
+    unit: Mention | None = None,
+    motion: str | None = None,
+    item: Node | None = None,
+    second_item: Node | None = None,
+) -> Regret:
+    """Return what is left of the best without some parts; ``None`` is left where a limit came first."""
+    status, costs = (Status.UNKNOWN, None) if left is None else (left.status, left.costs)
+    loss: Measures | None = None
+    if costs is not None and status is Status.OPTIMAL and best.costs is not None:
+        loss = {each: _loss(best.costs, costs, each) for each in best.objectives}
+    return Regret(unit, motion, item, second_item, status, costs, loss)
+
+
+def _loss(best: Costs, left: Costs, objective: Objective) -> int | Fraction:
+    """Return by how much it is worse by an objective, or for ``success`` by what share."""
+    ours, theirs = best.measure(objective), left.measure(objective)
+    if multiplies(objective):
+        return 1 - Fraction(theirs) / Fraction(ours) if ours else Fraction(0)
+    return theirs - ours
 
 
 def _kitchen_without(problem: Problem, *gone: int) -> Problem:
@@ -249,7 +272,7 @@ def _kitchen_without(problem: Problem, *gone: int) -> Problem:
 
 
 def _without_units(problem: Problem, gone: Sequence[int]) -> Problem:
-    """Give a problem over the network without some units; rates of their own go with the others."""
+    """Return a problem over the network without some units; rates of their own go with the others."""
     kept = [unit for unit in range(len(problem.network)) if unit not in gone]
     rates = problem.own_rates
     own = {place: rates[unit] for place, unit in enumerate(kept) if unit in rates} if rates else {}
@@ -257,7 +280,7 @@ def _without_units(problem: Problem, gone: Sequence[int]) -> Problem:
 
 
 def _units_of(problem: Problem, motion: str) -> list[int]:
-    """Give the units of a motion; raises :class:`UserError` if there are none."""
+    """Return the units of a motion; raises :class:`UserError` if there are none."""
     motions = problem.network.motions
     found = [unit for unit, each in enumerate(motions) if each == motion]
     if not found:
@@ -269,56 +292,7 @@ def _units_of(problem: Problem, motion: str) -> list[int]:
 
 def _worst_first(
     regret: Regret, objectives: tuple[Objective, ...]
-) -> tuple[bool, tuple[int | Fraction, ...], Part, int]:
+) -> tuple[bool, tuple[int | Fraction, ...], Part]:
     costs = regret.costs
     key = () if costs is None else tuple(-figure for figure in costs.key(objectives))
-    return costs is not None, key, regret.part, regret.id
-
-
-def _lines(best: Answer, regret: Regret) -> Iterator[str]:
-    network = best.problem.network
-    if regret.part is Part.UNIT:
-        name = f"{network.unit_number(regret.id)}  {network.motions[regret.id]}"
-        name += f"    [{network.sources[regret.id][0]}]"
-    elif regret.part is Part.MOTION:
-        name = network.motions[regret.id]
-    else:
-        items = (regret.id,) if regret.other is None else (regret.id, regret.other)
-        name = " and ".join(str(network.objects[o]) for o in items)
-    yield f"  {_loss(best, regret)}    {name}"
-    if regret.costs is not None and best.costs is not None and regret.costs != best.costs:
-        yield f"       the best is then {costs_text(regret.costs, best.objectives)}"
-
-
-def _loss(best: Answer, regret: Regret) -> str:
-    if regret.status is Status.INFEASIBLE:
-        return "no tree " if best.problem.items is None else "no plan "
-    if regret.status is not Status.OPTIMAL:
-        return "unknown "
-    first = best.objectives[0]
-    assert best.costs is not None
-    loss = regret.loss(best.costs, first)
-    if not loss:
-        return "nothing "
-    if multiplies(first):
-        text = success_text(Fraction(loss * 100))
-        return f"≈ -{text[2:]} %" if text.startswith("≈") else f"-{text} %"
-    return f"{int(loss):+} {first}"  # less by ``kitchen`` where an item is made that is not at hand
-
-
-def _json(best: Answer, regret: Regret) -> object:
-    network = best.problem.network
-    assert best.costs is not None
-    losses = {}
-    if regret.status is Status.OPTIMAL:
-        losses = figures_json({each: regret.loss(best.costs, each) for each in best.objectives})
-    part = regret.part
-    return {
-        "unit": mention_json(network, regret.id) if part is Part.UNIT else None,
-        "motion": network.motions[regret.id] if part is Part.MOTION else None,
-        "item": nodes_json(network, [regret.id])[0] if part in {Part.ITEM, Part.PAIR} else None,
-        "second_item": None if regret.other is None else nodes_json(network, [regret.other])[0],
-        "status": str(regret.status),
-        "costs": costs_json(regret.costs),
-        "loss": losses or None,
-    }
+    return costs is not None, key, regret.part

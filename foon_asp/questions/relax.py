@@ -2,64 +2,129 @@
 
 import contextlib
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, Self, Unpack
+
+from msgspec import structs
 
 from foon_asp.asp import Reporter, Settings, Status
 from foon_asp.dataset.paths import File, Files, files
-from foon_asp.deadline import Cancel, Deadline
-from foon_asp.document.json_document import document, fraction_json, fraction_text
+from foon_asp.deadline import Deadline
 from foon_asp.network import counted
-from foon_asp.planning.strips_task import REACHED, StripsTask
+from foon_asp.planning.strips_task import DERIVED, StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Costs, Objective, Problem
-from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.answer import Answer, answered
+from foon_asp.questions.answer import Answer, answered, of_status
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.options import LIMITS
+from foon_asp.questions.how import Limits
 from foon_asp.questions.posing import no_data
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Document, Ending
 from foon_asp.report.whole_file import write_whole
+from foon_asp.results.plain import fraction_text
+from foon_asp.results.table import Part
+from foon_asp.results.values import Value
+from foon_asp.text.json_value import schema_name
 
 if TYPE_CHECKING:
     from foon_asp.certificate import Certificate
 
-TASK = Option(
-    "task",
-    "DOMAIN.pddl PROBLEM.pddl, or TASK.sas as Fast Downward's translator writes it.",
-    Kind.FILE,
-    default=(),
-    many=True,
-    metavar="TASK...",
-    positional=True,
-    python="One path or two.",
-)
+
+class PlannedAction(Value, frozen=True):
+    """An action of a plan, and what it costs."""
+
+    action: str
+    cost: Fraction
+
+    def __str__(self) -> str:
+        return self.action
 
 
-@dataclass(frozen=True, repr=False)
-class Relaxed(Result):
-    """The cheapest plan of a ``task`` without deletes, with an ``answer`` in which actions are units.
+class Relaxed(Document, frozen=True, kw_only=True, tag=schema_name("relax")):
+    """The cheapest plan of a planning task without its deletes.
 
-    ``certificate`` proves it, if one was asked for and found, and ``place`` is the file it was written to.
+    Attributes:
+        task: The name of the file.
+        facts: How many there are.
+        actions: How many can ever run.
+        status: optimal: proved that no plan is cheaper, however many actions it has; infeasible: proved that
+            there is no plan; feasible and unknown: stopped at a limit with or without one.
+        stopped: For feasible and unknown: at which limit, and while doing what.
+        certificate: The file with a proof, where one was written.
+        cost: What the plan costs; null where there is none.
+        lower_bound: What no plan costs less than: proved.
+        plan: The actions, in an order that executes where nothing is deleted; null where there is no plan.
+        seconds: The time of each phase.
 
     Example:
         >>> import pathlib, tempfile
         >>> folder = pathlib.Path(tempfile.mkdtemp())
         >>> foon_asp.export(foon_asp.load().problem("ice")).write(folder)
-        >>> foon_asp.relax([folder / "domain.pddl", folder / "problem.pddl"]).plan
-        ('(u26-twist)', '(u27-crush)')
-        >>> foon_asp.relax([folder / "domain.pddl", folder / "problem.pddl"]).pddl().splitlines()[0]
+        >>> found = foon_asp.relax([folder / "domain.pddl", folder / "problem.pddl"])
+        >>> [str(action) for action in found.plan]
+        ['(u26-twist)', '(u27-crush)']
+        >>> found.pddl().splitlines()[0]
         '(u26-twist)'
     """
 
-    task: StripsTask
-    answer: Answer
-    certificate: "Certificate | None" = None
-    place: str | None = None
+    task: str
+    facts: int
+    actions: int
+    status: Status
+    stopped: str | None
+    certificate: str | None
+    cost: Fraction | None
+    lower_bound: Fraction | None
+    plan: tuple[PlannedAction, ...] | None
+    seconds: dict[str, float]
+
+    @classmethod
+    def of(cls, task: StripsTask, answer: Answer) -> Self:
+        """Return what the answer to a task as a problem says of it.
+
+        Parameters:
+            task: The task.
+            answer: The answer, in which facts are object nodes and actions are units.
+        """
+        objective, problem = answer.objectives[0], answer.problem
+        cost = None if answer.costs is None else Fraction(answer.costs.measure(objective))
+        bound = answer.outcome.bounds.get(objective)
+        proved = answer.status in {Status.OPTIMAL, Status.INFEASIBLE} or None is not cost == bound
+        names = ((problem.network.motions[unit], unit) for unit in answer.ids or ())
+        relaxed = cls(
+            task=task.name,
+            facts=len(task.facts),
+            actions=task.action_count,
+            status=Status.OPTIMAL if proved and answer else answer.status,
+            stopped=None if proved else answer.stopped,
+            certificate=None,
+            cost=cost,
+            lower_bound=None if bound is None else Fraction(bound),
+            plan=tuple(
+                PlannedAction(name, Fraction(problem.figure(objective, unit)))
+                for name, unit in names
+                if name != DERIVED
+            )
+            if answer
+            else None,
+            seconds=answer.seconds,
+        )
+        relaxed.__dict__.update(answer=answer, strips=task)
+        return relaxed
+
+    @property
+    def answer(self) -> Answer:
+        """The answer, in which facts are object nodes and actions are units."""
+        found: Answer = self.__dict__["answer"]
+        return found
+
+    @property
+    def strips(self) -> StripsTask:
+        """The task that was read."""
+        found: StripsTask = self.__dict__["strips"]
+        return found
 
     @property
     def problem(self) -> Problem:
@@ -67,154 +132,88 @@ class Relaxed(Result):
         return self.answer.problem
 
     @property
-    def cost(self) -> Fraction | None:
-        """What the plan costs; ``None`` where there is none."""
-        costs = self.answer.costs
-        return None if costs is None else Fraction(costs.measure(self._objective))
-
-    @property
-    def lower_bound(self) -> Fraction | None:
-        """What no plan costs less than, as far as it is proved."""
-        bound = self.answer.bounds.get(self._objective)
-        return None if bound is None else Fraction(bound)
-
-    @property
     def proved(self) -> bool:
-        """Whether it is proved that no plan is cheaper, however many actions it has, or that none exists."""
-        if self.answer.status in {Status.OPTIMAL, Status.INFEASIBLE}:
-            return True
-        return self.cost is not None and self.cost == self.lower_bound
-
-    @property
-    def plan(self) -> tuple[str, ...] | None:
-        """The actions in an order that executes where nothing is deleted; ``None`` where there is no plan."""
-        units = self.answer.units
-        return None if units is None else tuple(name for name, _ in self._steps())
+        """Whether it is proved that no plan is cheaper, or that none exists."""
+        return self.status in {Status.OPTIMAL, Status.INFEASIBLE}
 
     @property
     def ending(self) -> Ending:
         """Done when the plan is proved to be the cheapest."""
-        if not self.proved:
-            return Ending.LIMIT
-        return Ending.NEGATIVE if self.answer.units is None else Ending.DONE
-
-    def text(self) -> str:
-        """Give the cost, what is proved of it, and the plan."""
-        return "\n".join(self._lines()) + "\n"
-
-    def pddl(self) -> str:
-        """Give the plan as planners write them; empty where there is none."""
-        if self.cost is None:
-            return ""
-        kind = "unit cost" if self._objective is Objective.UNITS else "general cost"
-        return "\n".join([*(self.plan or ()), f"; cost = {fraction_text(self.cost)} ({kind})"]) + "\n"
-
-    def remark(self, format_: str) -> str:
-        """Say what is claimed, where that is not the cheapest plan."""
-        return "" if self.ending is Ending.DONE else self._headline()
-
-    def json_dict(self) -> object:
-        """Give the same; docs/json.md describes it."""
-        answer = self.answer
-        status = Status.OPTIMAL if self.proved and answer.units is not None else answer.status
-        return document(
-            "relax",
-            task=self.task.name,
-            facts=len(self.task.facts),
-            actions=len(self.task.actions),
-            status=str(status),
-            stopped=None if self.proved else answer.stopped,
-            certificate=self.place if self.certificate else None,
-            cost=fraction_json(self.cost),
-            lower_bound=fraction_json(self.lower_bound),
-            plan=None
-            if answer.units is None
-            else [{"action": name, "cost": fraction_json(cost)} for name, cost in self._steps()],
-            seconds={phase: round(seconds, 6) for phase, seconds in answer.seconds.items()},
-        )
+        return of_status(self.status)
 
     @property
-    def _objective(self) -> Objective:
-        return self.answer.objectives[0]
-
-    def _steps(self) -> Iterator[tuple[str, Fraction]]:
-        for unit in self.answer.units or ():
-            name = self.problem.network.motions[unit]
-            if name != REACHED:
-                yield name, Fraction(self.problem.figure(self._objective, unit))
-
-    def _headline(self) -> str:
+    def claim(self) -> str:
+        """What is proved of the cost, in one line."""
+        if self.status is Status.INFEASIBLE:
+            return "infeasible: proved that there is no plan, even where nothing is deleted"
         if self.cost is None:
-            if self.answer.status is Status.INFEASIBLE:
-                return "infeasible: proved that there is no plan, even where nothing is deleted"
-            return f"unknown: stopped at {self.answer.stopped or 'a limit'}, before any plan was found"
+            return f"unknown: stopped at {self.stopped or 'a limit'}, before any plan was found"
         cost = fraction_text(self.cost)
-        if self.proved:
+        if self.status is Status.OPTIMAL:
             return f"h+ = {cost}: proved that no plan is cheaper where nothing is deleted"
         bound = "nothing" if self.lower_bound is None else fraction_text(self.lower_bound)
-        return f"h+ is at most {cost}, and at least {bound}: stopped at {self.answer.stopped or 'a limit'}"
+        return f"h+ is at most {cost}, and at least {bound}: stopped at {self.stopped or 'a limit'}"
 
-    def _lines(self) -> Iterator[str]:
-        task = self.task
-        yield f"task: {task.name}, {counted(len(task.facts), 'fact')}, {counted(len(task.actions), 'action')}"
-        yield self._headline()
+    def show(self) -> Iterator[Part]:
+        """Return the cost, what is proved of it, and the plan."""
+        yield f"task: {self.task}, {counted(self.facts, 'fact')}, {counted(self.actions, 'action')}"
+        yield self.claim
         if self.certificate is not None:
-            yield f"proof: certificate ({self.place})"
-        elif self.place is not None:
-            yield "no certificate was found, and nothing is written"
+            yield f"proof: certificate ({self.certificate})"
         if self.plan:
             yield ""
-        for number, (name, cost) in enumerate(self._steps(), 1):
-            yield f"{number:>3}  {name}" + ("" if cost == 1 else f"    [{fraction_text(cost)}]")
+        for number, step in enumerate(self.plan or (), 1):
+            yield f"{number:>3}  {step}" + ("" if step.cost == 1 else f"    [{fraction_text(step.cost)}]")
 
-    def __repr__(self) -> str:
-        return f"<Relaxed: {self._headline()}>"
+    def pddl(self) -> str:
+        """Return the plan as planners write them; empty where there is none."""
+        if self.cost is None:
+            return ""
+        kind = "unit cost" if self.strips.unit_cost else "general cost"
+        lines = [*map(str, self.plan or ()), f"; cost = {fraction_text(self.cost)} ({kind})"]
+        return "\n".join(lines) + "\n"
+
+    def remark(self, format_: str) -> str:
+        """Return the claim, where that is not the cheapest plan."""
+        return "" if self.ending is Ending.DONE else self.claim
 
 
 @question(
-    TASK,
-    Option(
-        "certificate_file",
-        "Also write a proof, which `foon-asp verify FILE TASK...` checks.",
-        Kind.FILE,
-        flags=("--certificate",),
-        metavar="FILE",
-    ),
-    *LIMITS,
     pose=no_data,
     formats=("text", "json", "pddl"),
     help_="""
     \b
-    foon-asp relax domain.pddl problem.pddl
+    foon-asp relax problem.pddl
     foon-asp relax output.sas --certificate proof.json
     foon-asp verify proof.json output.sas
     foon-asp relax domain.pddl problem.pddl --format pddl > relaxed.plan
 
     Without deletes, an action is a functional unit and a fact an object node, so the cheapest plan is the
-    best task tree. Its cost is h+, a lower bound on every plan of the task. STRIPS is read, with action
-    costs, negation, equality, quantifiers and disjunctions; conditional effects, axioms and numeric fluents
-    are refused.
+    best task tree. Its cost is h+, a lower bound on every plan of the task. PDDL is read by Fast Downward's
+    translator, which pip install 'foon-asp[pddl]' brings along: STRIPS with types, whole action costs, ADL
+    and derived predicates. The domain may be left out where it stands beside the problem.
 
     Exits with 0 when the cost is proved, 1 when there is no plan, 2 for bad input, 3 when stopped at a
     limit.
     """,
 )
 def relax(
-    task: Files = (),
+    task: Annotated[Files, Option(kind=Kind.FILE, many=True, metavar="TASK...", positional=True)] = (),
     *,
-    certificate_file: File | None = None,
-    time_limit: float | None = None,
-    memory_limit: int | str | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    certificate_file: Annotated[
+        File | None, Option(kind=Kind.WRITTEN, flags=("--certificate",), metavar="FILE")
+    ] = None,
+    **how: Unpack[Limits],
 ) -> Relaxed:
     """Find the cheapest plan of a planning task without its deletes, and prove that none is cheaper.
 
     Parameters:
-        certificate_file: The path of the file to write a certificate to.
+        task: PROBLEM.pddl with DOMAIN.pddl, or TASK.sas as Fast Downward's translator writes it. One path or
+            two.
+        certificate_file: Also write a proof, which ``foon-asp verify FILE TASK...`` checks.
 
     Returns:
-        The ``plan``, its ``cost``, whether that is ``proved``, and the task as a ``problem``.
+        The ``plan``, its ``cost``, what is proved of it as ``status``, and the task as a ``problem``.
 
     Raises:
         UserError: for a file that cannot be read, and for what is beyond a delete relaxation.
@@ -224,18 +223,21 @@ def relax(
         >>> folder = pathlib.Path(tempfile.mkdtemp())
         >>> foon_asp.export(foon_asp.load().problem("macaroni")).write(folder)
         >>> relaxed = foon_asp.relax([folder / "domain.pddl", folder / "problem.pddl"])
-        >>> str(relaxed.cost), relaxed.proved
-        ('9', True)
+        >>> str(relaxed.cost), str(relaxed.status)
+        ('9', 'optimal')
     """
-    deadline = begin(time_limit, memory_limit)
-    read = read_task(files(task), deadline)
-    found = solved(read, deadline)
+    deadline = begin(how.get("time_limit"), how.get("memory_limit"))
+    found = solved(read_task(files(task), deadline), deadline)
     if certificate_file is None:
         return found
     certificate = _certificate(found, deadline)
-    if certificate is not None:
-        write_whole(Path(certificate_file), certificate.text().encode())
-    return replace(found, certificate=certificate, place=str(certificate_file))
+    if certificate is None:
+        caller().reporter.warning("no certificate was found, and nothing is written")
+        return found
+    write_whole(Path(certificate_file), certificate.text().encode())
+    written = structs.replace(found, certificate=str(certificate_file))
+    written.__dict__.update(found.__dict__)
+    return written
 
 
 def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
@@ -246,7 +248,7 @@ def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
     own = Deadline(within=deadline)
     reporter = _Enough(caller().reporter, task.objective, own)
     answer = answered(task.problem(), (task.objective,), Settings(deadline=own), reporter)
-    return Relaxed(task, answer)
+    return Relaxed.of(task, answer)
 
 
 class _Enough(Reporter):
@@ -279,15 +281,15 @@ def _certificate(found: Relaxed, deadline: Deadline) -> "Certificate | None":
     """Look for a proof of the cost alone; at a limit or ctrl-C there is none."""
     from foon_asp.certificate import certify, certify_infeasible  # noqa: PLC0415 (slow to import)
 
-    answer, units = found.answer, found.answer.units
+    answer, units = found.answer, found.answer.ids
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
-        if units is not None and found.proved:
+        if found.status is Status.OPTIMAL and units is not None:
             return certify(
                 *(answer.problem, answer.objectives, units),
                 expired=lambda: deadline.passed,
-                cuts=answer.cuts,
-                cases=answer.cases,
+                cuts=answer.outcome.cuts,
+                cases=answer.outcome.cases,
             )
-        if answer.status is Status.INFEASIBLE:
+        if found.status is Status.INFEASIBLE:
             return certify_infeasible(answer.problem)
     return None

@@ -1,42 +1,45 @@
 """When to do each step of a plan, and who does it: the shortest schedule."""
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
+from typing import Annotated, Any, Unpack
+
+from msgspec import field
 
 from foon_asp.asp import Status
-from foon_asp.dataset.items import items_of
 from foon_asp.dataset.paths import File
-from foon_asp.deadline import Cancel
-from foon_asp.document.json_document import document, fraction_json, listed_unit_json
 from foon_asp.errors import BugError, UserError
-from foon_asp.network import FunctionalUnit, ObjectNode, counted
+from foon_asp.network import FunctionalUnit, counted
+from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
 from foon_asp.planning.scheduling import Found, shortest, timed_steps
 from foon_asp.problem import Number, Problem, exact
-from foon_asp.problem.progress import OnProgress
-from foon_asp.proof.replay import replay_for, waits
+from foon_asp.proof.replay import Shortage, replay_for, replayable, waits
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.proof.timetable import Means, TimedStep, ToolName, timetable_fault
+from foon_asp.proof.timetable import Means, ToolName, timetable_fault
+from foon_asp.proof.timetable import TimedStep as Timed
+from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.questions.answer import of_status
-from foon_asp.questions.arguments import at_least, begin
+from foon_asp.questions.arguments import at_least, begin, read_as
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS
-from foon_asp.questions.posing import Command
-from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
-from foon_asp.questions.tree import Tree, read_answer
-from foon_asp.report.answer import goal_lines
-from foon_asp.report.gantt import Gantt, GanttRow, ShownGantt, gantt_lines, time_text
-from foon_asp.report.renderable import Renderable
-from foon_asp.report.replay import shortage_text
-from foon_asp.report.robot_steps import replayable
+from foon_asp.questions.how import Limits
+from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
+from foon_asp.questions.posing_plan import a_plan
+from foon_asp.questions.result import AboutGoals, Ending, NothingToDrawError, NoTreeError, Result
+from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
+from foon_asp.report.whole_file import utf_8, write_whole
+from foon_asp.results.table import Part as Shown
+from foon_asp.results.table import Table
+from foon_asp.results.timed_step import TimedStep, Tool
+from foon_asp.results.values import Value
+from foon_asp.results.values_of import head_of, lack_of
 from foon_asp.text.clip_times import median_clips
-from foon_asp.text.duration_list import Duration, read_durations
+from foon_asp.text.duration_list import Duration, read_default, read_durations, template_text
 from foon_asp.text.item_list import stated_name
-from foon_asp.text.json_value import Json
+from foon_asp.text.json_value import schema_name
 from foon_asp.text.line import LineError
 from foon_asp.text.tool_list import read_tools
 
@@ -44,17 +47,45 @@ Durations = str | PathLike[str] | Mapping[str, Number | Duration]
 Tools = str | PathLike[str] | Mapping[ToolName, int | None]
 
 
-@dataclass(frozen=True, repr=False)
-class Schedule(Result):
-    """When the steps of a ``plan`` are done, and by whom.
+class MotionTime(Value, frozen=True):
+    """How long a motion takes.
 
-    ``status`` says what is proved: that the schedule is a shortest one (``optimal``), or that there is none
-    (``infeasible``). ``timetable`` has the steps of the plan, in its order, and is empty without a schedule.
-    ``makespan`` and ``lower_bound`` are in seconds: how long it takes, ``None`` without a schedule, and what
-    none takes less than. ``lacking`` says how many there would have to be of some tools, so that there is
-    one: at least, where it is proved that there is none, and else how many are enough. ``means`` is what
-    there is to work with, and ``after`` has for each step those that it waits for, by position. ``stopped``
-    is the limit that came first, in words, if one did.
+    Attributes:
+        passive: Whether nobody has to stand by.
+    """
+
+    motion: str
+    seconds: Fraction
+    passive: bool
+
+
+class LackingTool(Value, frozen=True):
+    """A tool of which there are too few.
+
+    Attributes:
+        tool: A label, or a vessel with what is in it.
+        there: How many there are.
+        needed: How many there have to be, at least (infeasible), or how many are enough (unknown).
+    """
+
+    tool: str
+    there: int
+    needed: int
+
+
+class Schedule(AboutGoals, frozen=True, kw_only=True, tag=schema_name("schedule")):
+    """When the steps of a plan are done, and by whom.
+
+    Attributes:
+        status: optimal: proved a shortest schedule; infeasible: proved that there is none; feasible and
+            unknown: stopped at a limit with or without one.
+        stopped: The limit that came first, and what was being done; null if none did.
+        makespan: How long it takes, in seconds; null without a schedule.
+        lower_bound: No schedule takes less, in seconds.
+        agents: How many there are.
+        durations: Of each motion of the plan.
+        timetable: The steps of the plan, in its order; none without a schedule.
+        lacking: Without a schedule, the tools of which there are too few.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -64,74 +95,54 @@ class Schedule(Result):
         (Fraction(40, 1), [Fraction(0, 1), Fraction(10, 1)])
     """
 
-    plan: Tree
-    means: Means
-    status: Status
-    timetable: tuple[TimedStep, ...]
-    lower_bound: Fraction
-    lacking: Mapping[ToolName, int]
-    after: tuple[frozenset[int], ...]
-    stopped: str | None = None
+    ROWS = "timetable"
 
-    @property
-    def makespan(self) -> Fraction | None:
-        """How long it takes, in seconds; ``None`` without a schedule."""
-        if self.status not in {Status.OPTIMAL, Status.FEASIBLE}:
-            return None
-        return max((step.end for step in self.timetable), default=Fraction(0))
+    status: Status
+    stopped: str | None
+    makespan: Fraction | None
+    lower_bound: Fraction
+    agents: int
+    durations: tuple[MotionTime, ...]
+    timetable: tuple[TimedStep, ...] = field(name="steps")
+    lacking: tuple[LackingTool, ...]
 
     @property
     def ending(self) -> Ending:
         """Done when the schedule is proved to be a shortest one."""
         return of_status(self.status)
 
-    def text(self) -> str:
-        """Give how long it takes, what is proved, and a chart in letters, for 79 columns."""
-        return "\n".join([*self._head(), *gantt_lines(self._gantt()), *self._foot()]) + "\n"
+    @property
+    def gantt(self) -> Gantt:
+        """The steps as a chart shows them."""
+        return Gantt(" + ".join(map(str, self.goals)), self.timetable, self.makespan or Fraction(0))
 
-    def renderable(self) -> Renderable | None:
-        """Give the same, as wide as a console; ``None`` without a chart."""
-        if not self.timetable:
-            return None
-        return ShownGantt(self._head(), self._gantt(), [*self._foot()])
-
-    def json_dict(self) -> Json:
-        """Give the steps with their times in seconds; steps count from 1."""
-        problem, means = self.plan.problem, self.means
-        steps = []
-        for number, step in enumerate(self.timetable, 1):
-            unit = listed_unit_json(
-                problem.network, self.plan.units[number - 1], self.plan.places[number - 1]
-            )
-            steps.append(
-                {
-                    "step": number,
-                    **{key: unit[key] for key in ("id", "motion", "source")},
-                    "start": fraction_json(step.start),
-                    "end": fraction_json(step.end),
-                    "agent": step.agent,
-                    "tools": [{"tool": str(tool.name), "number": tool.number} for tool in step.tools],
-                    "after": [earlier + 1 for earlier in sorted(self.after[number - 1])],
-                }
-            )
-        durations = [
-            {"motion": motion, "seconds": fraction_json(Fraction(each.seconds)), "passive": each.passive}
-            for motion, each in means.durations.items()
+    def show(self) -> Iterator[Shown]:
+        """Return how long it takes, what is proved, a table of the steps, and what each agent does."""
+        yield from self.goal_lines()
+        agents = counted(self.agents, "agent")
+        if self.makespan is not None:
+            found, proved = ("shortest", ", proved") if self.status is Status.OPTIMAL else ("best found", "")
+            yield f"{found} for {agents}: {time_text(self.makespan)}{proved}"
+            alone = sum((step.end - step.start for step in self.timetable), Fraction(0))
+            yield f"{counted(len(self.timetable), 'step')}, one after the other {time_text(alone)}"
+        elif self.status is Status.INFEASIBLE:
+            yield f"no schedule for {agents}, proved: more tools have to be in use at once than there are"
+            yield "if the kitchen has as many of them, say so in a file for --tools:"
+        else:
+            yield f"no schedule found for {agents}; with so many tools there is one (a file for --tools):"
+        yield from (f"  {lack.tool}\t{lack.needed}" for lack in self.lacking)
+        if self.stopped is not None:
+            yield f"none takes less than {time_text(self.lower_bound)}; stopped by {self.stopped}"
+        if not self.timetable or self.makespan is None:
+            return
+        rows = [
+            (str(step.step), time_text(step.start), time_text(step.end), str(step.agent or "-"), step.name)
+            for step in self.gantt.in_order
         ]
-        return document(
-            "schedule",
-            problem,
-            status=str(self.status),
-            makespan=fraction_json(self.makespan),
-            lower_bound=fraction_json(self.lower_bound),
-            agents=means.agents,
-            durations=durations,
-            steps=steps,
-            lacking=[
-                {"tool": str(name), "there": means.number_of(problem, name), "needed": needed}
-                for name, needed in self.lacking.items()
-            ],
-        )
+        yield from ("", Table(("step", "start", "end", "agent", ""), rows, left=frozenset({4})), "")
+        for agent in range(1, self.agents + 1):
+            own = (step.end - step.start for step in self.timetable if step.agent == agent)
+            yield f"agent {agent} works {time_text(sum(own, Fraction(0)))} of {time_text(self.makespan)}"
 
     def write_chart(self, file: File) -> None:
         """Draw a Gantt chart into a file.
@@ -143,98 +154,45 @@ class Schedule(Result):
             NothingToDrawError: if there is no step.
             UserError: for another file name, or if the packages of ``foon-asp[pictures]`` are missing.
         """
-        from foon_asp.report.gantt_chart import write_gantt  # noqa: PLC0415 (seldom asked for)
+        from foon_asp.pictures.gantt_chart import write_gantt  # noqa: PLC0415 (seldom asked for)
 
         if not self.timetable:
             raise NothingToDrawError("there is no step in a schedule")
-        write_gantt(self._gantt(), Path(file))
-
-    def _gantt(self) -> Gantt:
-        units = self.plan.units[: len(self.timetable)]
-        rows = [
-            GanttRow(number, unit.motion, _thing(unit), step.start, step.end, step.agent)
-            for number, (unit, step) in enumerate(zip(units, self.timetable, strict=True), 1)
-        ]
-        goals = " + ".join(str(goal) for goal in self.plan.problem.goal_nodes)
-        return Gantt(goals, tuple(rows), self.makespan or Fraction(0))
-
-    def _head(self) -> list[str]:
-        agents = counted(self.means.agents, "agent")
-        lines = [*goal_lines(self.plan.problem)]
-        if self.makespan is not None:
-            alone = sum((step.end - step.start for step in self.timetable), Fraction(0))
-            proved = ", proved" if self.status is Status.OPTIMAL else ""
-            found = "shortest" if proved else "best found"
-            lines.append(f"{found} for {agents}: {time_text(self.makespan)}{proved}")
-            lines.append(f"{counted(len(self.timetable), 'step')}, one after the other {time_text(alone)}")
-        elif self.status is Status.INFEASIBLE:
-            lines.append(
-                f"no schedule for {agents}, proved: more tools have to be in use at once than there are"
-            )
-            lines.append("if the kitchen has as many of them, say so in a file for --tools:")
-            lines += [f"  {name}\t{needed}" for name, needed in self.lacking.items()]
-        else:
-            lines.append(
-                f"no schedule found for {agents}; with so many tools there is one (a file for --tools):"
-            )
-            lines += [f"  {name}\t{needed}" for name, needed in self.lacking.items()]
-        if self.status in {Status.FEASIBLE, Status.UNKNOWN}:
-            lines.append(f"none takes less than {time_text(self.lower_bound)}; stopped by {self.stopped}")
-        return [*lines, ""] if self.timetable else lines
-
-    def _foot(self) -> Iterator[str]:
-        """Say what there is to do for each agent."""
-        if not self.timetable or self.makespan is None:
-            return
-        work = dict.fromkeys(range(1, self.means.agents + 1), Fraction(0))
-        for step in self.timetable:
-            if step.agent is not None:
-                work[step.agent] += step.end - step.start
-        yield ""
-        for agent, seconds in work.items():
-            yield f"agent {agent} works {time_text(seconds)} of {time_text(self.makespan)}"
+        write_gantt(self.gantt, Path(file))
 
 
-def _thing(unit: FunctionalUnit) -> str:
-    """Name what a unit is about: the first that it makes."""
-    made = [node for node in unit.outputs if node not in unit.inputs] or list(unit.outputs)
-    return made[0].label if made else ""
+class WrittenDurations(Result):
+    """A file of durations that was written to be filled in; ``unknown`` is how many are to be said."""
+
+    def __init__(self, file: Path, unknown: int) -> None:
+        self.file, self.unknown = file, unknown
+
+    def text(self) -> str:
+        """Return what to do with it."""
+        todo = f"say {counted(self.unknown, 'duration')} in place of SECONDS" if self.unknown else "change it"
+        return f"wrote {self.file}: {todo}, and give it as --durations\n"
+
+    def json_dict(self) -> object:
+        """Refuse: the file is what was asked for.
+
+        Raises:
+            UserError: always.
+        """
+        raise UserError("--durations-template writes a file, and has no other format")
 
 
-def _posed(
-    command: Command,
-    plan: Path,
-    goals_named: tuple[str, ...],
-    containers: str,
-    items: str,
-    stock: File | None,
-    stays: File | None,
-) -> tuple[Problem, Tree]:
-    """Pose what a plan is for, as an answer says it where the command does not, and read the plan."""
-    answer = read_answer(plan)
-    listed = answer.units or ()
-    if not command.given("containers"):
-        containers = answer.containers or containers
-    if not command.given("items"):
-        items = answer.items or items
-    dataset = command.dataset
-    with command.reading():
-        if goals_named:
-            goals = dataset.goals(goals_named)
-        elif answer.goals:
-            goals = dataset.named_goals(answer.goals)
-        elif listed:
-            goals = dataset.named_goals(_last_made(listed[-1][0]))
-        else:
-            raise UserError(f"{plan}: there is no step; name a goal with --goal")
-        how = items_of(dataset, items, stock, stays)
-        problem = dataset.problem(goals, containers, items=how)
-    return problem, Tree.given(problem, [unit for unit, _ in listed], [place for _, place in listed])
-
-
-def _last_made(unit: FunctionalUnit) -> list[ObjectNode]:
-    made = [node for node in unit.outputs if node not in unit.inputs]
-    return made[:1] or list(unit.outputs)
+def _schedule_or_template(
+    problem: Problem, plan: Tree, *, durations_template: Path | None = None, **asked: Any
+) -> Result:
+    """Schedule as ``foon-asp schedule`` does, or write which durations it needs."""
+    if durations_template is None:
+        return schedule(problem, plan, **asked)
+    if durations_template.exists():
+        raise UserError(f"{durations_template} is there already: name a new file, or remove it")
+    known = _known_durations(plan, asked["durations"], asked["from_video"], asked["default_duration"])
+    template = {unit.motion: known.get(unit.motion) for unit in plan.units}
+    write_whole(durations_template, utf_8(template_text(template)))
+    return WrittenDurations(durations_template, sum(each is None for each in template.values()))
 
 
 @question(
@@ -247,45 +205,29 @@ def _last_made(unit: FunctionalUnit) -> list[ObjectNode]:
         positional=True,
     ),
     Option(
-        "durations",
-        "How long each motion takes: lines of a motion, a tab, a number of seconds (or 25 min, 1.5 h), and "
-        "behind another tab the word passive if nobody has to stand by.",
-        Kind.FILE,
+        "durations_template",
+        "Only write a file for --durations with the motions of the plan, to be filled in.",
+        Kind.WRITTEN,
         metavar="FILE",
-        python="Or seconds by motion, or a :class:`Duration`.",
     ),
-    Option("agents", "How many agents work, each at one step at a time.", Kind.WHOLE, default=1, least=1),
-    Option(
-        "tools",
-        "How many there are of tools and vessels: lines of a label, a tab, and a number or the word free. Of "
-        "other utensils there is one each.",
-        Kind.FILE,
-        metavar="FILE",
-        python="Or numbers by label or object node, ``None`` for what is free.",
-    ),
-    Option(
-        "from_video",
-        "Take the medians of the clips of the annotations for motions without a duration.",
-        Kind.FLAG,
-        default=False,
-    ),
-    GOALS._replace(help="A goal of the plan; without it, those of the answer, or what the last step makes."),
+    GOAL_OF_PLAN,
     CONTAINERS,
-    *ITEMS,
+    *PLAN_ITEMS,
     Option(
         "charts",
         "A file for a Gantt chart (.svg or .png).",
-        Kind.FILE,
+        Kind.WRITTEN,
         Part.CHART,
         flags=("--chart",),
         many=True,
     ),
-    *LIMITS,
-    pose=_posed,
+    pose=a_plan,
+    command=_schedule_or_template,
     formats=TABLES,
     help_="""
     \b
     foon-asp solve --goal 'greek salad' --items used-up --format json > plan.json
+    foon-asp schedule plan.json --durations-template durations.txt      then fill it in
     foon-asp schedule plan.json --durations durations.txt --agents 2
     foon-asp schedule plan.json --durations durations.txt --agents 2 --tools tools.txt --chart plan.svg
 
@@ -296,6 +238,9 @@ def _last_made(unit: FunctionalUnit) -> list[ObjectNode]:
       bake    30 min  passive    stove   free
     (tabs between the columns)
 
+    Each item is used once, so the plan has to run so, in the order listed or in another; with --items
+    lasting, what is there can be used again.
+
     An agent does one step at a time; a passive one goes on by itself, and needs none. A step waits for those
     that make what it takes, and for those that look at what it uses up.
 
@@ -304,8 +249,9 @@ def _last_made(unit: FunctionalUnit) -> list[ObjectNode]:
     kitchen to the last one that needs it as it was left: a bowl, as long as there is something in it that
     the plan needs. Vessels that the kitchen has with something in them are counted each by themselves.
 
-    Durations are yours: a motion without one is an error that names it. Those of --from-video are times of
-    clips, and not of what happens in them. OR-Tools looks for the schedule: pip install 'foon-asp[schedule]'.
+    Durations are yours: a motion without one is an error that names it, but for --default-duration. Those of
+    --from-video are times of clips, and not of what happens in them. OR-Tools looks for the schedule: pip
+    install 'foon-asp[schedule]'.
 
     Exits with 0 when the schedule is proved to be a shortest one, with 1 when there is none or the plan does
     not run, with 3 when a limit or ctrl-C came first; the best schedule and its bound are printed then.
@@ -315,14 +261,20 @@ def schedule(
     problem: Problem,
     plan: str | PathLike[str] | Iterable[FunctionalUnit],
     *,
-    durations: Durations | None = None,
-    agents: int = 1,
-    tools: Tools | None = None,
-    from_video: bool = False,
-    time_limit: float | None = None,
-    memory_limit: int | str | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    durations: Annotated[Durations | None, Option(kind=Kind.FILE, metavar="FILE")] = None,
+    agents: Annotated[int, Option(least=1)] = 1,
+    tools: Annotated[Tools | None, Option(kind=Kind.FILE, metavar="FILE")] = None,
+    from_video: Annotated[bool, Option()] = False,
+    default_duration: Annotated[
+        Number | None,
+        Option(
+            "default_duration",
+            "How long motions take that have no other duration: 60, 25 min or 1.5 h.",
+            metavar="SECONDS",
+        ),
+    ] = None,
+    items: str = "used-up",
+    **how: Unpack[Limits],
 ) -> Schedule:
     """Find the shortest schedule of a plan: when each step starts, who does it, and with which tools.
 
@@ -330,7 +282,15 @@ def schedule(
 
     Parameters:
         plan: The path of a file (FOON text, or an answer in JSON), or functional units in the order of
-            execution. A tree in which items last may be in any order.
+            execution; it is put in an order that runs, if that one does not.
+        durations: How long each motion takes: lines of a motion, a tab, a number of seconds (or 25 min,
+            1.5 h), and behind another tab the word passive if nobody has to stand by. Or seconds by motion,
+            or a :class:`Duration`.
+        agents: How many agents work, each at one step at a time.
+        tools: How many there are of tools and vessels: lines of a label, a tab, and a number or the word
+            free; of other utensils there is one each. Or numbers by label or object node, ``None`` for what
+            is free.
+        from_video: Take the medians of the clips of the annotations for motions without a duration.
 
     Returns:
         The ``timetable`` of the steps, the ``makespan``, and what is proved as ``status``.
@@ -346,32 +306,56 @@ def schedule(
         >>> str(found.status), str(found.makespan)
         ('optimal', '40')
     """
-    deadline = begin(time_limit, memory_limit)
+    deadline = begin(how.get("time_limit"), how.get("memory_limit"))
     at_least(agents, 1, "agents")
-    tree = Tree.read(problem, plan) if isinstance(plan, str | PathLike) else _tree(problem, plan)
-    if tree.problem.items is None:
-        tree = _in_order(tree)
+    problem = read_as(problem, items)
+    tree = _in_order(posed_tree(problem, plan))
     replayed = replayable(tree.problem, tree)
     replay = replay_for(replayed, tree)
     if replay.shortage is not None:
-        listed = list(zip(tree.units, tree.places, strict=True))
-        raise NoTreeError(f"the plan does not run: {shortage_text(listed, replay.shortage)}")
-    means = Means(_durations(tree, durations, from_video), agents, _tools(tools))
+        raise NoTreeError(_shortage_text(tree, replay.shortage))
+    means = Means(_durations(tree, durations, from_video, default_duration), agents, _tools(tools))
     task = schedule_task(replayed, tree.units, replay, means)
     found = shortest(task, deadline)
-    steps = () if found.starts is None else tuple(timed_steps(task, found.starts))
-    if found.starts is not None and (fault := timetable_fault(replayed, tree.units, steps, means)):
+    timed = () if found.starts is None else tuple(timed_steps(task, found.starts))
+    if found.starts is not None and (fault := timetable_fault(replayed, tree.units, timed, means)):
         raise BugError(f"the schedule does not hold: {fault}")
+    after = [tuple(earlier + 1 for earlier in sorted(each)) for each in waits(replay)]
     return Schedule(
-        tree,
-        means,
-        _status(found),
-        steps,
-        found.bound * task.tick,
-        found.lacking,
-        tuple(map(frozenset, waits(replay))),
-        deadline.stopped,
+        **head_of(tree.problem),
+        status=_status(found),
+        stopped=None if found.proved else deadline.stopped,
+        makespan=None if found.starts is None else max((step.end for step in timed), default=Fraction(0)),
+        lower_bound=found.bound * task.tick,
+        agents=agents,
+        durations=tuple(
+            MotionTime(motion, Fraction(each.seconds), each.passive)
+            for motion, each in means.durations.items()
+        ),
+        timetable=tuple(_timed_steps(tree, timed, after)),
+        lacking=tuple(
+            LackingTool(str(name), means.number_of(tree.problem, name), needed)
+            for name, needed in found.lacking.items()
+        ),
     )
+
+
+def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, ...]]) -> Iterator[TimedStep]:
+    for number, (unit, step, earlier) in enumerate(zip(tree.units, timed, after, strict=False), 1):
+        named = tree.step_unit(number)
+        made = [node for node in unit.outputs if node not in unit.inputs] or unit.outputs
+        yield TimedStep(
+            number,
+            named.id,
+            named.motion,
+            named.source,
+            made[0].label if made else None,
+            step.start,
+            step.end,
+            step.agent,
+            tuple(Tool(str(tool.name), tool.number) for tool in step.tools),
+            earlier,
+        )
 
 
 def _status(found: Found) -> Status:
@@ -380,50 +364,78 @@ def _status(found: Found) -> Status:
     return Status.UNKNOWN if found.starts is None else Status.FEASIBLE
 
 
-def _tree(problem: Problem, plan: Iterable[FunctionalUnit]) -> Tree:
-    return plan if isinstance(plan, Tree) and plan.problem is problem else Tree.given(problem, plan)
-
-
 def _in_order(tree: Tree) -> Tree:
-    """Give a tree in an order that executes, if it has one."""
-    simulation = simulate_for(tree.problem, tree)
-    if simulation.verdict is not Verdict.REORDERED:
-        return tree
-    order = simulation.order
-    return replace(
-        tree, units=tuple(tree.units[n] for n in order), places=tuple(tree.places[n] for n in order)
-    )
+    """Return a tree in an order that executes; one in which items last is as it is listed, if it has none."""
+    if tree.problem.items is None:
+        simulation = simulate_for(tree.problem, tree)
+        order = simulation.order if simulation.verdict is Verdict.REORDERED else range(len(tree))
+    else:
+        run = used_up_run(tree.problem, tree)
+        if run.order is None:
+            assert run.shortage is not None
+            raise NoTreeError(f"{_shortage_text(tree, run.shortage)}\n{OTHER_READING}")
+        order = run.order
+    return tree.in_order(order)
 
 
-def _durations(tree: Tree, given: Durations | None, from_video: bool) -> dict[str, Duration]:
-    """Give the durations of the motions of a plan; raises :class:`UserError` with all that have none."""
-    known: dict[str, Duration] = {}
+def _shortage_text(tree: Tree, shortage: Shortage) -> str:
+    return f"the plan does not run: {tree.lack_text(lack_of(tree.problem.network, shortage))}"
+
+
+def _durations(
+    tree: Tree, given: Durations | None, from_video: bool, default: Number | None
+) -> dict[str, Duration]:
+    """Return the durations of the motions of a plan; raises :class:`UserError` with all that have none."""
+    known = _known_durations(tree, given, from_video, default)
+    motions = dict.fromkeys(unit.motion for unit in tree.units)
+    missing = [motion for motion in motions if motion not in known]
+    if missing:
+        place = "in a file for --durations (durations=)" if given is None else "in the durations"
+        ways = [
+            *(
+                []
+                if from_video
+                else ["--from-video takes them from clips of the annotations, as far as they are known there"]
+            ),
+            "--default-duration 60 counts each as 60 seconds",
+            "--durations-template FILE writes these lines into a file",
+        ]
+        lines = "".join(f"\n  {motion}\tSECONDS" for motion in missing)
+        raise UserError(
+            f"no duration is known of {counted(len(missing), 'motion')} of the plan: say how long they take, "
+            f"{place}, a tab before the seconds{lines}\n" + "\n".join(ways)
+        )
+    return {motion: known[motion] for motion in motions}
+
+
+def _known_durations(
+    tree: Tree, given: Durations | None, from_video: bool, default: Number | None
+) -> dict[str, Duration]:
+    """Return the durations that are known: stated, of clips, or the default; a warning tells the last two."""
+    if isinstance(given, str | PathLike):
+        known = dict(read_durations(Path(given)))
+    else:
+        known = {motion: _duration(each, motion) for motion, each in (given or {}).items()}
+    motions = dict.fromkeys(unit.motion for unit in tree.units)
     if from_video:
         problem = tree.problem.whole
         files = dict.fromkeys(Path(copy.file) for copies in problem.network.sources for copy in copies)
         clips = median_clips((file for file in files if file.is_file()), caller().lenient)
-        known = {motion: Duration(seconds) for motion, seconds in clips.items()}
-    if isinstance(given, str | PathLike):
-        stated: Mapping[str, Duration] = read_durations(Path(given))
-    else:
-        stated = {motion: _duration(each, motion) for motion, each in (given or {}).items()}
-    motions = dict.fromkeys(unit.motion for unit in tree.units)
-    timed = [motion for motion in motions if motion in known and motion not in stated]
-    if timed:
-        shown = ", ".join(f"{motion} {time_text(Fraction(known[motion].seconds))}" for motion in timed)
-        caller().reporter.warning(
-            f"warning: these durations are medians of clips, and not of what happens in them: {shown}"
-        )
-    known |= stated
-    missing = [motion for motion in motions if motion not in known]
-    if missing:
-        place = "in a file for --durations (durations=)" if given is None else "in the durations"
-        lines = "".join(f"\n  {motion}\tSECONDS" for motion in missing)
-        raise UserError(
-            f"no duration is known of {counted(len(missing), 'motion')} of the plan: say how long they take, "
-            f"{place}, a tab before the seconds{lines}"
-        )
-    return {motion: known[motion] for motion in motions}
+        timed = [motion for motion in motions if motion in clips and motion not in known]
+        if timed:
+            shown = ", ".join(f"{motion} {time_text(Fraction(clips[motion]))}" for motion in timed)
+            caller().reporter.warning(
+                f"warning: these durations are medians of clips, and not of what happens in them: {shown}"
+            )
+        known |= {motion: Duration(clips[motion]) for motion in timed}
+    if default is not None:
+        each = Duration(read_default(default)) if isinstance(default, str) else _duration(default, "default")
+        others = [motion for motion in motions if motion not in known]
+        if others:
+            time = time_text(Fraction(each.seconds))
+            caller().reporter.warning(f"warning: these motions count as {time} each: {', '.join(others)}")
+        known |= dict.fromkeys(others, each)
+    return known
 
 
 def _duration(given: Number | Duration, motion: str) -> Duration:

@@ -1,39 +1,35 @@
-"""How the searches of the literature are asked for: their options, and what these are read as."""
+"""How the published searches are asked for: their options, and what these are read as."""
 
 from collections.abc import Iterable
 
 from foon_asp.errors import UserError
 from foon_asp.questions.arguments import at_least
 from foon_asp.questions.contract import Kind, Option
-from foon_asp.search import Count, Search, SearchSettings, Ties, find_searches
+from foon_asp.searches import Count, Search, SearchSettings, Ties, find_searches
 
-SEARCHING = (
-    Option(
-        "ties",
-        "Which of several equally good units to take, in the order of the files: first or last.",
-        default="first",
-        choices=tuple(map(str, Ties)),
-    ),
-    Option(
-        "count",
-        "What greedy-inputs counts: ingredients (input nodes and their ingredients) or nodes (without them).",
-        default="ingredients",
-        choices=tuple(map(str, Count)),
-    ),
-    Option(
-        "depth_limit",
-        "The greatest depth that ids tries before it gives up.",
-        Kind.WHOLE,
-        metavar="N",
-        least=0,
-    ),
+TIES = Option(
+    "ties",
+    "Which of several equally good units to take, in the order of the files: first or last.",
+    choices=tuple(map(str, Ties)),
+)
+COUNT = Option(
+    "count",
+    "What greedy-inputs counts: ingredients (input nodes and their ingredients) or nodes (without them).",
+    choices=tuple(map(str, Count)),
+)
+DEPTH = Option(
+    "depth_limit",
+    "The greatest depth that ids tries before it gives up.",
+    Kind.WHOLE,
+    metavar="N",
+    least=0,
 )
 
 
 def searched(names: Iterable[str]) -> list[Search]:
-    """Find searches by name, and all where none is named.
+    """Return the searches with some names, or all if no name is given.
 
-    Raises :class:`UserError` for another name, and where a package offers one by a name that is taken.
+    Raises :class:`UserError` for another name, and if a package offers one by a name that is taken.
     """
     known = find_searches()
     names = list(dict.fromkeys(names)) or list(known)
@@ -44,7 +40,7 @@ def searched(names: Iterable[str]) -> list[Search]:
 
 
 def known_searches(rated: bool) -> list[Search]:
-    """Give all searches, without the one that has to know rates where none are known."""
+    """Return all searches, without the one that needs rates if these are not ``rated``."""
     return [search for search in searched(()) if rated or search.name != "greedy-success"]
 
 
@@ -56,7 +52,7 @@ def search_settings(
     time_limit: float | None,
     memory_limit: int | None,
 ) -> SearchSettings:
-    """Put together how to search; the limits, in seconds and bytes, are those of each search."""
+    """Return the settings of searches; the limits, in seconds and bytes, are those of each search."""
     for name, given, known in (("ties", ties, [*map(str, Ties)]), ("count", count, [*map(str, Count)])):
         if given not in known:
             raise UserError(f"found {name}={given!r}, expected one of {', '.join(known)}")

@@ -1,129 +1,78 @@
 """The best tree for a problem, and the proof that none is better."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import Annotated, Unpack
 
 from foon_asp.asp import Reporter
-from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Cancel
+from foon_asp.dataset.nearby import shown
+from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer, answered_under
-from foon_asp.questions.arguments import (
-    Constants,
-    Objectives,
-    chosen_objectives,
-    constraint_weights,
-    read,
-    settings,
-    whole,
-)
-from foon_asp.questions.contract import TABLES, Kind, Option, not_built, question
-from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES, RULES, SOFT
-from foon_asp.questions.posing import one_problem_or_nearby
+from foon_asp.questions.arguments import Objectives, chosen_objectives, constraint_weights, read, whole
+from foon_asp.questions.contract import TABLES, Kind, Option, Part, not_built, question
+from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.options import ITEMS, SOFT, TREE
+from foon_asp.questions.posing import one_problem_or_each
 from foon_asp.questions.result import Result
 from foon_asp.reduce import Reduction, parse_reductions
 
-if TYPE_CHECKING:
-    from foon_asp.engines import Engine
-    from foon_asp.questions.certify import Certified
-    from foon_asp.questions.solve_soft import SoftAnswer
 
-
-def solve_and_more(
+def solve_or_each(
     problem: Problem,
     objectives: Objectives = "units",
     *,
-    constraints: Files = (),
-    constants: Constants | None = None,
-    encodings: File | None = None,
     soft: Mapping[File, int] | None = None,
-    time_limit: float | None = None,
-    memory_limit: int | str | None = None,
     reductions: str = "all",
-    certificate_file: File | None = None,
+    certificate: File | None = None,
     cross_check: bool = False,
     clingo_options: Sequence[str] = (),
+    all_goals: bool = False,
+    **how: Unpack[How],
 ) -> Result:
-    """Solve as ``foon-asp solve`` does: also under soft constraints, with a certificate, or checked.
+    """Solve as ``foon-asp solve`` does: all goals by one tree, or each by itself."""
+    if not all_goals:
+        return solve(
+            problem,
+            objectives,
+            soft=soft or None,
+            reductions=reductions,
+            certificate=certificate,
+            cross_check=cross_check,
+            clingo_options=clingo_options,
+            **how,
+        )
+    from foon_asp.questions.all_goals import solve_all_goals  # noqa: PLC0415
 
-    What only some answers need is imported for these.
-    """
-    how = settings(constraints, constants, encodings, time_limit, memory_limit)._replace(
-        reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
-    )
-    chosen = chosen_objectives(problem, objectives)
-    if problem.items is not None and soft:
-        raise not_built("solve --soft")
-    if soft and certificate_file is not None:
-        raise UserError("soft constraints have no certificates; leave one of them out")
-    engines: tuple[Engine, ...] = ()
-    if cross_check:
-        from foon_asp.engines import find_engines  # noqa: PLC0415
-
-        problem, engines = whole(problem), find_engines()
-    found: Answer | SoftAnswer | Certified
-    if soft:
-        from foon_asp.questions.solve_soft import softly_answered  # noqa: PLC0415
-
-        found = softly_answered(read(problem), chosen, how, constraint_weights(soft))
-    elif certificate_file is not None:
-        from foon_asp.questions.certify import certified  # noqa: PLC0415
-
-        found = certified(problem, chosen, how).written(certificate_file)
-    else:
-        found = answered_under(problem, chosen, how)
-    if not cross_check:
-        return found
-    from foon_asp.questions.cross_check import checked_or_reported  # noqa: PLC0415
-
-    return checked_or_reported(found, how, constraint_weights(soft or {}), engines)
+    if soft or certificate is not None or cross_check:
+        raise UserError(
+            "--all-goals lists what each goal costs: ask for soft constraints, a certificate or a "
+            "cross-check of one goal (--goal)"
+        )
+    return solve_all_goals(problem, objectives, **how)
 
 
 @question(
-    GOALS,
-    OBJECTIVES,
-    CONTAINERS,
+    *TREE,
     *ITEMS,
-    *RULES,
-    SOFT,
-    *LIMITS,
     Option(
-        "reductions",
-        f"Reductions before the search; safe keeps every optimal tree. LIST: {', '.join(Reduction)}.",
-        default="all",
-        flags=("--reduce",),
-        metavar="all|safe|none|LIST",
-    ),
-    Option(
-        "certificate_file",
-        "Also write a proof of the answer that `foon-asp verify` checks without a solver.",
-        Kind.FILE,
-        flags=("--certificate",),
-    ),
-    Option(
-        "cross_check",
-        "Also ask other engines: bare clingo, HiGHS, Fast Downward and those of packages, if installed.",
+        "all_goals",
+        "Solve every goal that --goal or the goals file names by itself, under each --objective by itself.",
         Kind.FLAG,
-    ),
-    Option(
-        "clingo_options",
-        "Options to pass to clingo unchanged.",
-        Kind.OPTIONS,
-        many=True,
-        metavar="[RECIPE|DIR|STORE]... [-- CLINGO OPTIONS]",
-        positional=True,
+        Part.PROBLEM | Part.QUESTION,
+        default=False,
     ),
     formats=(*TABLES, "foon", "steps"),
-    pose=one_problem_or_nearby,
-    command=solve_and_more,
+    pose=one_problem_or_each,
+    command=solve_or_each,
     help_="""
     \b
     foon-asp solve --goal 'greek salad'
     foon-asp solve --goal macaroni --objective success --containers implied
     foon-asp solve --goal ice --constraint forbid_motion -c forbidden_motion=crush
+    foon-asp solve --goal 'greek salad' --certificate proof.json
     foon-asp solve --goal ice --soft forbid_motion.lp=3 -c forbidden_motion=crush
+    foon-asp solve --all-goals --objective units --objective success
 
     Rules without a head (:- ...) in a --soft file may be broken: each way to break one, with other values of
     its variables, costs the weight. The lowest sum of weights comes before all objectives.
@@ -136,33 +85,61 @@ def solve(
     problem: Problem,
     objectives: Objectives = "units",
     *,
-    constraints: Files = (),
-    constants: Constants | None = None,
-    encodings: File | None = None,
-    time_limit: float | None = None,
-    memory_limit: int | str | None = None,
-    reductions: str = "all",
-    clingo_options: Sequence[str] = (),
+    soft: Annotated[Mapping[File, int] | None, SOFT] = None,
+    reductions: Annotated[
+        str,
+        Option(
+            help="Reductions before the search; safe keeps every optimal tree. "
+            f"LIST: {', '.join(Reduction)}.",
+            flags=("--reduce",),
+            metavar="all|safe|none|LIST",
+        ),
+    ] = "all",
+    certificate: Annotated[
+        File | None, Option(help="Also write a proof, which `foon-asp verify` checks.", kind=Kind.WRITTEN)
+    ] = None,
+    cross_check: Annotated[bool, Option()] = False,
+    clingo_options: Annotated[
+        Sequence[str],
+        Option(
+            help="Options to pass to clingo unchanged; --stats prints its statistics.",
+            kind=Kind.OPTIONS,
+            many=True,
+            metavar="[RECIPE|DIR|STORE]... [-- CLINGO OPTIONS]",
+            positional=True,
+        ),
+    ] = (),
     reporter: Reporter | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    **how: Unpack[How],
 ) -> Answer:
     """Find the best task tree for the goals of a problem, and prove that no other is better.
 
-    At a limit, or when interrupted, the answer is the best tree so far, with a bound on the best one.
+    At a limit, or when interrupted, the answer is the best tree so far, with a bound on the best one. Under
+    ``soft`` constraints it is the best tree of those that pay least for the constraints they break.
 
     Parameters:
         reductions: What reduces the network before the search: ``all``, ``none``, ``safe`` (all that keep
             every optimal tree), or names of reductions separated by commas.
+        certificate: The path of a file to write a certificate to: a proof of the answer that
+            :func:`foon_asp.verify` checks without a solver. It is about the whole network. Of a store, no
+            more is read than the proof touches where no rule is given: then it names the digests that the
+            store states. Where items are used up, it says what every plan costs at least, and has a plan of
+            that cost, or of more: then it claims a ``bound``.
+        cross_check: Also ask other engines: bare clingo, HiGHS, Fast Downward and those of packages, if
+            installed. Each has its part of what is left of the ``time_limit``, or a minute without one.
         clingo_options: Options to pass to clingo, for example ``["--opt-strategy=bb"]``.
         reporter: Receives trees, bounds and warnings during the search. Without it, a warning about a
             constraint is a :class:`FoonWarning`.
 
     Returns:
-        The answer, with its ``status``, ``costs`` and ``tree``.
+        The answer, with its ``status``, ``costs``, ``units`` and ``tree``; under ``soft`` constraints it has
+        the ``penalty`` and in how many ways each is broken, too. Its ``certificate`` is ``None`` where none
+        was asked for or found.
 
     Raises:
-        UserError: for a wrong argument or constraint, or an objective that needs rates or prices not given.
+        BugError: if a built-in engine finds a different optimum.
+        UserError: for a wrong argument, constraint or weight, or an objective that needs rates or prices not
+            given.
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("macaroni"), "success")
@@ -172,7 +149,32 @@ def solve(
         ['open', 'turn on', 'fill']
     """
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit, memory_limit)._replace(
+    settings = settings_of(how)._replace(
         reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
     )
-    return answered_under(problem, chosen, how, reporter)
+    weights = constraint_weights(soft or {})
+    if soft is not None and problem.items is not None:
+        raise not_built("solve --soft")
+    if soft is not None and certificate is not None:
+        raise UserError("soft constraints have no certificates; leave one of them out")
+    if cross_check:  # what only some answers need is imported for these
+        from foon_asp.engines import find_engines  # noqa: PLC0415
+        from foon_asp.questions.cross_check import cross_checked  # noqa: PLC0415
+
+        problem, engines = whole(problem), find_engines()
+    several = soft is None and len(shown(problem).goals) > 1  # of a large store no more is read for that
+    if soft is not None:
+        from foon_asp.questions.solve_soft import softly_answered  # noqa: PLC0415
+
+        answer = softly_answered(read(problem), chosen, settings, weights)
+    elif certificate is not None:
+        from foon_asp.questions.certifying import certified  # noqa: PLC0415
+
+        answer = certified(problem, chosen, settings, certificate)
+    else:
+        answer = answered_under(problem, chosen, settings, reporter)
+    if several:
+        from foon_asp.questions.several_goals import with_goals_apart  # noqa: PLC0415
+
+        answer = with_goals_apart(answer, settings, problem)
+    return cross_checked(answer, settings, weights, engines) if cross_check else answer

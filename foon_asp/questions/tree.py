@@ -1,22 +1,27 @@
 """Task trees that know what they are for, and show themselves."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
-from foon_asp.network import FunctionalUnit, ObjectNode, Source, TaskTree, counted, unit_at_level
-from foon_asp.problem import Problem, given_outputs
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, TaskTree, counted, unit_at_level
+from foon_asp.problem import Problem
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import NoTreeError
-from foon_asp.report.drawing import Drawing, draw_tree
-from foon_asp.report.notebook import picture_bundle, svg_text
-from foon_asp.report.tree_drawing import given_tree, plan_drawing
+from foon_asp.results.values import Lack, Unit
+from foon_asp.results.values_of import listed_unit
 from foon_asp.text.answer_file import ListedTree, read_listed_tree
 from foon_asp.text.diagnostics import summarize
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_units
+
+if TYPE_CHECKING:  # what a tree that is not drawn can do without
+    from foon_asp.pictures.drawing import Drawing
+
+OTHER_READING = "if what is there can be used again: --items lasting"
+"""How else a plan that lacks a copy can be read."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -74,7 +79,7 @@ class Tree(TaskTree):
 
     @classmethod
     def read(cls, problem: Problem, file: str | PathLike[str]) -> Self:
-        """Read a tree from FOON text, or from an answer of foon-asp in JSON.
+        """Read a tree from FOON text, from an answer of foon-asp in JSON, or from the atoms of clingo.
 
         Parameters:
             problem: The problem that the tree is for, whatever goals an answer names.
@@ -83,8 +88,14 @@ class Tree(TaskTree):
         Raises:
             UserError: for a file that is not understood or has no tree.
         """
-        listed, _ = read_listed(Path(file))
+        listed, _ = read_listed(Path(file), lambda: problem.whole.network)
         return cls.given(problem, [unit for unit, _ in listed], [place for _, place in listed])
+
+    @property
+    def ids(self) -> tuple[int, ...]:
+        """The units that are in the network, by id, in the order listed."""
+        ids = map(self.problem.network.unit_id, self.units)
+        return tuple(unit for unit in ids if unit is not None)
 
     def __str__(self) -> str:
         return write_units(self.units, filter(None, [f"Task tree for: {self._goals()}", self.claim]))
@@ -92,8 +103,52 @@ class Tree(TaskTree):
     def __repr__(self) -> str:
         return f"<Tree for {self._goals()}: {counted(len(self), 'unit')}>"
 
-    def drawing(self) -> Drawing:
+    def lack_text(self, lack: Lack) -> str:
+        """Return in words which copy is missing, at which step, and which steps used up those there were.
+
+        Parameters:
+            lack: The copy that is missing.
+        """
+        if lack.position is None:
+            text = f"every step runs, but in the end no copy is left of the goal: {lack.missing}"
+        else:
+            text = f"step {lack.position}, {self.step_text(lack.position)}, lacks a copy of {lack.missing}"
+        if not lack.used_up_by:
+            return f"{text}; there never was one"
+        takers = (f"step {number} ({self.units[number - 1].motion})" for number in lack.used_up_by)
+        return f"{text}; used up by {', '.join(takers)}"
+
+    def in_order(self, order: Iterable[int]) -> "Tree":
+        """Return the tree in another order, without a claim.
+
+        Parameters:
+            order: The positions of the units, from 0, in the new order.
+        """
+        order = tuple(order)
+        places = tuple(self.places[place] for place in order)
+        return Tree(tuple(self.units[place] for place in order), self.problem, places)
+
+    def step_unit(self, position: int) -> Unit:
+        """Return the unit of a step as a value, which the network of the problem may have or not.
+
+        Parameters:
+            position: The number of the step, from 1.
+        """
+        return listed_unit(self.problem.network, self.units[position - 1], self.places[position - 1])
+
+    def step_text(self, position: int) -> str:
+        """Return the motion of a step and where it was read.
+
+        Parameters:
+            position: The number of the step, from 1.
+        """
+        return f"{self.units[position - 1].motion}    [{self.places[position - 1].short}]"
+
+    def drawing(self) -> "Drawing":
         """Give what the picture shows; units of a tree without a claim are numbered as they execute."""
+        from foon_asp.pictures.tree_drawing import plan_drawing, tree_drawing  # noqa: PLC0415
+        from foon_asp.report.used_up_note import used_up_note  # noqa: PLC0415
+
         if self.problem.items is not None:
             return plan_drawing(self.problem, self.units, caption=self.claim)
         network = self.problem.network
@@ -101,11 +156,8 @@ class Tree(TaskTree):
         kitchen = {node for node in met.union(self.problem.goal_nodes) if self.problem.at_hand(node)}
         goals = self.problem.goal_nodes
         rule, utensils = self.problem.containers, self.problem.utensils
-        if self.claim:
-            gives = [given_outputs(unit, rule, utensils, network) for unit in self.units]
-            caption = (f"Task tree for {self._goals()}", self.claim)
-            return draw_tree(self.units, kitchen, goals, caption, gives)
-        return given_tree("", self, kitchen, goals, rule, utensils, network)
+        claim = [self.claim, *used_up_note(self.problem, self.units)] if self.claim else ()
+        return tree_drawing(self, kitchen, goals, rule, utensils, network, claim)
 
     def svg(self) -> str:
         """Give the picture as SVG.
@@ -113,7 +165,9 @@ class Tree(TaskTree):
         Raises :class:`UserError` without the packages of ``foon-asp[pictures]``, and for a tree too large
         for a picture.
         """
-        return svg_text(self.drawing())
+        from foon_asp.pictures.graphviz import svg_picture  # noqa: PLC0415
+
+        return svg_picture(self.drawing())
 
     def _goals(self) -> str:
         return " + ".join(map(str, self.problem.goal_nodes))
@@ -122,15 +176,27 @@ class Tree(TaskTree):
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
         """Give what a notebook shows: the picture."""
+        from foon_asp.pictures.notebook import picture_bundle  # noqa: PLC0415
+
         return picture_bundle(self, self.drawing())
 
 
-def read_listed(file: Path) -> tuple[Sequence[tuple[FunctionalUnit, Source]], Sequence[ObjectNode]]:
+def posed_tree(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Tree:
+    """Make a tree for a problem from the path of a file, from units, or from a tree with its places."""
+    if isinstance(tree, str | PathLike):
+        return Tree.read(problem, tree)
+    return Tree.given(problem, tree, tree.places if isinstance(tree, Tree) else ())
+
+
+def read_listed(
+    file: Path, network: Callable[[], Network]
+) -> tuple[Sequence[tuple[FunctionalUnit, Source]], Sequence[ObjectNode]]:
     """Read the units of a tree with their places in the order listed, and the goals, which an answer knows.
 
+    ``network`` is called where the file has ids, and returns the network that these are of.
     Who asks hears of what was assumed. Raises :class:`UserError` as :meth:`Tree.read`.
     """
-    listed = read_answer(file)
+    listed = read_answer(file).with_units(file, network)
     return listed.units or (), listed.goals
 
 

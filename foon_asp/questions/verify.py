@@ -1,73 +1,180 @@
 """Is a certificate right? Without any solver."""
 
 from codecs import BOM_UTF8
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from foon_asp.deadline import Cancel, Deadline, LimitError
-from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
+from foon_asp.escapes import escaped
 from foon_asp.foon import Foon
-from foon_asp.network import Network
-from foon_asp.problem import Problem, kitchen_needed
+from foon_asp.network import Network, counted
+from foon_asp.problem import ContainerRule, Problem, kitchen_needed, parse_objectives
 from foon_asp.problem.progress import OnProgress
 from foon_asp.proof import verify as proof
+from foon_asp.proof.constraint import OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.posing import DATA, Command, the_data
-from foon_asp.questions.result import Ending, Result
-from foon_asp.report.certified import stated_text, verified_json, verified_text
+from foon_asp.questions.result import AboutGoals, Document, Ending
+from foon_asp.report.certified import bound_text, looked_at, trusted_text
+from foon_asp.results.table import Part as Shown
+from foon_asp.results.values import Measures
+from foon_asp.results.values_of import goals_of, nodes_of
+from foon_asp.text.json_value import schema_name
 from foon_asp.text.plain_file import read_beginning
 
 if TYPE_CHECKING:  # the solver and the linear programs, which this has to do without
     from foon_asp.certificate import Certificate
 
 _SECONDS = 60.0  # for what clingo checks
+_NAMED_BY = {
+    "network": "--network FILE",
+    "kitchen": "--kitchen FILE",
+    "rates": "--rates FILE",
+    "utensils": "--utensils FILE",
+    "prices": "--unit-prices FILE",
+    "level": "--level N",
+    "task": "DOMAIN.pddl PROBLEM.pddl",
+}
 
 
-@dataclass(frozen=True, repr=False)
-class VerifiedCertificate(Result):
-    """What a certificate proves: ``verified`` has its ``claim``, ``goals``, ``tree`` and ``costs``.
+class OtherDataError(proof.RefusedError):
+    """The certificate is about other data than those named; ``part`` is what differs."""
 
-    ``network`` is the network that it is about, ``content`` the certificate as plain values. ``with_clingo``
-    says that clingo checked what is otherwise taken on trust, as ``verified.trusted`` lists it.
-    ``starting_kitchen`` are the ids of the object nodes that can be needed, where no kitchen was given.
-    ``stated`` names the digests that were not computed, because a store states them: they are trusted.
+    def __init__(self, part: str, message: str) -> None:
+        super().__init__(message)
+        self.part = part
+
+
+class VerifiedCertificate(AboutGoals, frozen=True, kw_only=True, tag=schema_name("verify")):
+    """What a certificate proves about the data that it was checked with.
+
+    Attributes:
+        verified: True; a certificate that is refused has no claim.
+        claim: optimal: no tree is better than this one; bound: no tree costs less than the bound;
+            infeasible: there is no tree.
+        bound: The bound in words, or null.
+        costs: What the tree costs by the objectives of the claim; null without a tree.
+        rules: The ready-made constraints that the claim is about, with their values.
+        trusted: What is taken on trust, in words: what measures and rules of the user's own say, and digests
+            that a store states.
+        checked: What clingo checked of it.
+        not_covered: The constraints that the claim is not about.
+        tree: The units of the tree, by id; null without a tree.
+        proved_by: How many cuts the proof has, and of plans the balance of how many nodes.
+        used_up: What the claim says in words of items that are used up, beside the rule; null where items
+            last.
 
     Example:
+        >>> import pathlib, tempfile
         >>> foon = foon_asp.load()
-        >>> certificate = foon_asp.certify(foon.problem("ice")).certificate
-        >>> foon_asp.verify(foon, certificate).verified.claim
-        'optimal'
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "proof.json"
+        >>> _ = foon_asp.solve(foon.problem("ice"), certificate=file)
+        >>> found = foon_asp.verify(foon, file)
+        >>> found.claim, found.tree, found.proved_by
+        ('optimal', (26, 27), '2 cuts')
     """
 
-    verified: proof.Verified
-    network: Network = field(compare=False)  # the content has its digest
-    content: Mapping[str, Any]
-    with_clingo: bool = False
-    starting_kitchen: tuple[int, ...] | None = None
-    stated: tuple[str, ...] = ()
+    verified: bool
+    claim: str
+    bound: str | None
+    costs: Measures | None
+    rules: tuple[str, ...]
+    trusted: tuple[str, ...]
+    checked: tuple[str, ...]
+    not_covered: tuple[str, ...]
+    tree: tuple[int, ...] | None
+    proved_by: str
+    used_up: tuple[str, ...] | None
 
-    def text(self) -> str:
-        """Say what is proved, as ``foon-asp verify`` does."""
-        starting, content = self.starting_kitchen is not None, dict(self.content)
-        said = verified_text(self.verified, self.network, content, self.with_clingo, starting)
-        return said + stated_text(self.stated)
+    @classmethod
+    def of(
+        cls,
+        verified: proof.Verified,
+        network: Network,
+        content: Mapping[str, Any],
+        with_clingo: bool = False,
+        starting: Sequence[int] | None = None,
+        stated: Sequence[str] = (),
+    ) -> Self:
+        """Return what was verified of a certificate about a network.
 
-    def json_dict(self) -> object:
-        """Say what is proved, as ``foon-asp verify --format json`` does."""
-        found = verified_json(self.verified, self.network, self.with_clingo, self.starting_kitchen)
-        return {**found, "stated_digests": list(self.stated)}
+        Parameters:
+            verified: What was verified.
+            network: The network.
+            content: The certificate as plain values.
+            with_clingo: Whether clingo checked what is otherwise taken on trust.
+            starting: The object nodes that can be needed, by id, where no kitchen was given.
+            stated: The digests that were not computed, because a store states them.
+        """
+        own, items = proof.trusted(content), verified.used_up
+        said = [] if own is None else [trusted_text(own, verified.tree is not None)]
+        for each in verified.trusted:
+            costs = (
+                f"the costs of {counted(len(each.costs), 'unit')} by {each.name}, and that none is below 0"
+            )
+            said.append(f"{costs}; rules with SHA-256 {each.sha256}")
+        trusted = () if with_clingo else [f"{each} (--with-clingo checks it)" for each in said]
+        names = f"{', '.join(stated[:-1])} and {stated[-1]}" if len(stated) > 1 else "".join(stated)
+        digests = [f"the digests of {names} that the store states (--full computes them)"] if stated else []
+        objectives = parse_objectives(verified.objectives, [each.name for each in verified.trusted])
+        return cls(
+            goals=goals_of(network, verified.goals),
+            containers=ContainerRule(verified.containers),
+            items="lasting" if items is None else "used-up",
+            level=verified.level,
+            objectives=objectives,
+            starting_kitchen=None if starting is None else nodes_of(network, starting),
+            verified=True,
+            claim=verified.claim,
+            bound=bound_text(content) if verified.claim == "bound" else None,
+            costs=None if verified.costs is None else dict(zip(objectives, verified.costs, strict=True)),
+            rules=tuple(_rule_text(rule) for rule in verified.rules if rule["rule"] != OWN),
+            trusted=(*trusted, *digests),
+            checked=tuple(said) if with_clingo else (),
+            not_covered=verified.not_covered,
+            tree=verified.tree,
+            proved_by=looked_at(content),
+            used_up=None if items is None else tuple(_items_lines(items, network)),
+        )
+
+    def show(self) -> Iterator[Shown]:
+        """Return the goals, the claim, and what it rests on."""
+        yield from (f"goal: {goal}" for goal in self.goals)
+        tree, trees = ("task tree", "trees") if self.items == "lasting" else ("plan", "plans")
+        under = self.conditions
+        if _are_facts(map(str, self.goals)):
+            tree, under = "plan", "nothing is deleted"
+        yield from self.used_up or ()
+        if self.claim == "infeasible":
+            yield f"verified: there is no {tree} ({under})"
+        elif self.bound is not None:
+            yield f"verified: a bound on all {tree}s ({under}): {self.bound}"
+        else:
+            figures = ", ".join(_figure(objective, cost) for objective, cost in (self.costs or {}).items())
+            yield f"verified: no {tree} is better by {', then '.join(self.objectives)} ({under}): {figures}"
+        yield from (f"among the {trees} that keep to {rule}" for rule in self.rules)
+        yield from (f"not covered, so among all {trees}: {name}" for name in self.not_covered)
+        yield from (f"taken on trust: {said}" for said in self.trusted)
+        yield from (f"checked with clingo: {said}" for said in self.checked)
+        yield f"proof: {self.proved_by}, checked without a solver"
 
 
-@dataclass(frozen=True, repr=False)
-class Refused(Result):
-    """What ``foon-asp verify`` gives for a certificate that is wrong: the first fault that is found."""
+class Refused(Document, frozen=True, kw_only=True, tag=schema_name("refused")):
+    """The first fault of a certificate that is wrong, as ``foon-asp verify`` shows it.
 
+    Attributes:
+        verified: False.
+        reason: The fault.
+    """
+
+    verified: bool
     reason: str
 
     @property
@@ -75,13 +182,31 @@ class Refused(Result):
         """The check failed."""
         return Ending.NEGATIVE
 
-    def text(self) -> str:
-        """Say why."""
-        return f"refused: {self.reason}\n"
+    def show(self) -> Iterator[Shown]:
+        """Return the reason."""
+        yield f"refused: {self.reason}"
 
-    def json_dict(self) -> object:
-        """Say why."""
-        return document("verify", verified=False, reason=self.reason)
+
+def _items_lines(used_up: proof.UsedUp, network: Network) -> Iterator[str]:
+    nodes = network.objects
+    if used_up.stock:
+        yield "in stock: " + ", ".join(f"{copies} x {nodes[o]}" for o, copies in used_up.stock.items())
+    for stays, said in ((True, "stay"), (False, "be used up")):
+        named = [name for name, each in used_up.stays.items() if each is stays]
+        if named:
+            names = (name if isinstance(name, str) else str(nodes[name]) for name in named)
+            yield f"said to {said}: {', '.join(names)}"
+
+
+def _rule_text(rule: Rule) -> str:
+    """Return a rule with its values; a line end in one could say what was verified."""
+    values = {name: value if isinstance(value, list) else [value] for name, value in rule.items()}
+    given = (f"{name}: {', '.join(map(str, value))}" for name, value in values.items() if name != "rule")
+    return escaped(f"{rule['rule']} ({'; '.join(given)})")
+
+
+def _figure(objective: str, cost: int | Fraction | None) -> str:
+    return f"success {cost} ≈ {float(cost or 0):.4g}" if objective == "success" else f"{cost} {objective}"
 
 
 def _posed(command: Command, more: Sequence[Path]) -> tuple[Foon | Problem]:
@@ -105,29 +230,30 @@ def _is_task(file: Path) -> bool:
     return begins.startswith((b"(", b";", BEGINNING.encode()))
 
 
+def _are_facts(names: Iterable[str]) -> bool:
+    """Return whether names of goals are of facts of a planning task, which are written in parentheses."""
+    return all(name.startswith("(") and name.endswith(")") for name in names)
+
+
 def verify_or_refuse(
     data: Foon | Problem, certificate: Path, *, with_clingo: bool = False, full: bool = False
 ) -> VerifiedCertificate | Refused:
-    """Check a certificate as ``foon-asp verify`` does."""
+    """Check a certificate as ``foon-asp verify`` does.
+
+    Raises:
+        UserError: for one of other data, with what to name.
+    """
     try:
         return verify(data, certificate, with_clingo=with_clingo, full=full)
+    except OtherDataError as other:
+        raise UserError(f"{certificate} is about other data ({other}): add {_NAMED_BY[other.part]}") from None
     except proof.RefusedError as refused:
-        return Refused(str(refused))
+        return Refused(verified=False, reason=str(refused))
 
 
 @question(
     Option(
         "certificate", "The file with the certificate.", Kind.FILE, metavar="CERTIFICATE", positional=True
-    ),
-    Option(
-        "with_clingo",
-        "Check with clingo what is otherwise taken on trust: costs by measures, and rules of your own.",
-        Kind.FLAG,
-    ),
-    Option(
-        "full",
-        "Read all of a store, and compute the digests that are otherwise taken as the store states them.",
-        Kind.FLAG,
     ),
     Option(
         "more",
@@ -153,42 +279,45 @@ def verify_or_refuse(
     a measure of your own, and what rules of your own say, is taken on trust, unless --with-clingo checks it;
     with --measure, the rules have to be those of the certificate. Of a store, what the certificate speaks of
     is read, and the digests are those that the store states, unless --full computes them. Exits with 0 when
-    the certificate is right and with 1 when it is refused.
+    the certificate is right, with 1 when it is refused, and with 2 when it is about other data.
     """,
 )
 def verify(
     data: Foon | Problem,
     certificate: "Certificate | str | PathLike[str]",
     *,
-    with_clingo: bool = False,
-    full: bool = False,
+    with_clingo: Annotated[bool, Option()] = False,
+    full: Annotated[bool, Option()] = False,
     time_limit: float | None = None,
     on_progress: OnProgress | None = None,
     cancel: Cancel | None = None,
 ) -> VerifiedCertificate:
     """Check a certificate against the data it is about, without any solver.
 
-    What units cost by a measure of the user's own is taken on trust, and ``verified.trusted`` lists it. So is
-    what rules of the user's own say.
+    What units cost by a measure of the user's own is taken on trust, and so is what rules of the user's own
+    say: ``trusted`` says it in words.
 
     Parameters:
         data: The data, as loaded, or a problem made from them.
-        certificate: The path of a certificate, or one that :func:`foon_asp.certify` found.
-        with_clingo: Whether clingo checks what is otherwise taken on trust.
-        full: Whether all of a store is read, and its digests computed, in place of trusting those it states.
+        certificate: The path of a certificate, or the ``certificate`` of an answer.
+        with_clingo: Check with clingo what is otherwise taken on trust: costs by measures, and rules of your
+            own.
+        full: Read all of a store, and compute the digests that are otherwise taken as the store states them.
 
     Returns:
-        What the certificate proves, as ``verified``.
+        What the certificate proves.
 
     Raises:
         RefusedError: for a certificate that is wrong or is about other data, with the first fault found.
         UserError: for a file that cannot be read.
 
     Example:
+        >>> import pathlib, tempfile
         >>> foon = foon_asp.load()
-        >>> certificate = foon_asp.certify(foon.problem("ice")).certificate
-        >>> foon_asp.verify(foon, certificate).verified.cuts
-        2
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "proof.json"
+        >>> _ = foon_asp.solve(foon.problem("ice"), certificate=file)
+        >>> foon_asp.verify(foon, file).proved_by
+        '2 cuts'
     """
     if isinstance(certificate, str | PathLike):
         try:
@@ -199,10 +328,18 @@ def verify(
     elif isinstance(getattr(certificate, "content", None), Mapping):
         content = proof.read_certificate(certificate.text())
     else:
-        raise UserError(f"found certificate={certificate!r}, expected a path or what certify found")
+        raise UserError(
+            f"found a certificate of type {type(certificate).__name__}, expected a path or that of an answer"
+        )
     dataset = (data if isinstance(data, Foon) else Foon.of(data)).dataset
-    subject = dataset.subject(everything=full or _looks_at_all(content))
-    verified = verify_any(content, subject)
+    subject = dataset.subject(full or _looks_at_all(content), _goal_ids(content))
+    try:
+        verified = verify_any(content, subject)
+    except proof.RefusedError as refused:
+        part = _other_part(content, subject)
+        if part is None:
+            raise
+        raise OtherDataError(part, str(refused)) from None
     for measure in verified.trusted:
         ours = dataset.measures.get(measure.name)
         if ours is not None and ours.text != measure.rules:
@@ -217,10 +354,30 @@ def verify(
             check_with_clingo(content, own, problem, Deadline(_SECONDS))
     starting = None
     if not subject.trusted and dataset.data.starting:
-        starting = tuple(
-            kitchen_needed(dataset.problem(verified.goals, verified.containers, everything=True))
-        )
-    return VerifiedCertificate(verified, subject.network, content, with_clingo, starting, subject.trusted)
+        starting = kitchen_needed(dataset.problem(verified.goals, verified.containers, everything=True))
+    return VerifiedCertificate.of(verified, subject.network, content, with_clingo, starting, subject.trusted)
+
+
+def _other_part(content: Any, subject: proof.Subject) -> str | None:
+    """Return the first part of the data, as digests name it, that a sealed certificate is not about.
+
+    It is ``task`` for a certificate about a planning task.
+    """
+    with suppress(RecursionError, KeyError, TypeError, AttributeError):  # of what is no certificate
+        if content["seal"] == proof.seal(content):
+            found = {"level": subject.network.level, **subject.digests()}
+            stated = {**content["digests"], "level": content["level"]}
+            del found["sources"]  # which only some rules look at
+            other = next((name for name, part in found.items() if stated.get(name, part) != part), None)
+            return other and ("task" if _are_facts(goal["node"] for goal in content["goals"]) else other)
+    return None
+
+
+def _goal_ids(content: Any) -> list[int]:
+    """Return the ids of the goals that a certificate names, as far as they are ids; it is checked later."""
+    goals = content.get("goals") if isinstance(content, dict) else None
+    ids = [goal.get("id") for goal in goals if isinstance(goal, dict)] if isinstance(goals, list) else []
+    return [o for o in ids if type(o) is int]
 
 
 def _looks_at_all(content: Any) -> bool:

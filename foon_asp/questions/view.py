@@ -1,39 +1,62 @@
-"""A page that shows a tree and what else is known: one file, for any browser, without a network."""
+"""A tree, some units or a whole network to look at: a page for any browser, or a picture."""
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from foon_asp.asp import Settings
 from foon_asp.asp.postconditions import Postconditions
+from foon_asp.dataset.nearby import shown
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
-from foon_asp.network import counted
-from foon_asp.problem import Objective, Problem, levels
+from foon_asp.network import FunctionalUnit, TaskTree, counted, unit_at_level
+from foon_asp.pictures.dot import dot_text
+from foon_asp.pictures.drawing import Drawing
+from foon_asp.pictures.graphml import graphml_text
+from foon_asp.pictures.mermaid import mermaid_markdown, mermaid_text
+from foon_asp.pictures.notebook import picture_bundle
+from foon_asp.pictures.page import Page, network_json, view_json
+from foon_asp.pictures.painting import painted
+from foon_asp.pictures.tree_drawing import network_drawing, tree_drawing
+from foon_asp.problem import ContainerRule, Objective, Problem, container_rule, levels
 from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.alternatives import Alternatives, alternatives
-from foon_asp.questions.answer import Answer, answered
+from foon_asp.questions.answer import Answer, answered, answered_under
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
-from foon_asp.questions.certify import Certified, certified
-from foon_asp.questions.contract import Option, Part, question, question_of
+from foon_asp.questions.caller import caller
+from foon_asp.questions.certifying import certified
+from foon_asp.questions.contract import Kind, Option, Part, question, question_of
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
 from foon_asp.questions.pareto import Front, pareto
-from foon_asp.questions.posing import Command, one_problem, the_data
-from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.search import Retrieved, retrieve
+from foon_asp.questions.posing import Command, is_for_goals, one_problem, the_data
+from foon_asp.questions.result import Ending, NothingToDrawError, Result
+from foon_asp.questions.search import Retrieved, search
 from foon_asp.questions.searching import known_searches
 from foon_asp.questions.shopping_list import Shopping, shopping_list
+from foon_asp.questions.tree import posed_tree, read_listed
 from foon_asp.questions.why_not import Explanation, why_not
-from foon_asp.report.page import Page, network_json, view_json
-from foon_asp.report.proof_cases import proof_json
 from foon_asp.report.whole_file import utf_8, write_whole
+from foon_asp.results.plain import plain
+from foon_asp.results.proof_cases import ProofCases
 from foon_asp.text.json_value import Json
 
 _BEST = 5  # trees, the best and those after it
+_MERMAID_PAGE = ".md"
+_PAGES = ("html", "json")
+_PICTURES = ("svg", "png", "pdf", "dot", "mermaid", "graphml")
+_FOR_THE_BEST = {
+    "objectives": "--objective",
+    "beside": "--beside",
+    "constraints": "--constraint",
+    "rules": "--rule",
+    "constants": "-c",
+    "encodings": "--encodings",
+}
 
 
 class Beside(StrEnum):
@@ -48,23 +71,28 @@ class Beside(StrEnum):
 
 @dataclass(frozen=True, repr=False)
 class View(Result):
-    """A page about an ``answer``; :meth:`html` gives it, and :meth:`write` writes it into a file.
+    """A page about an ``answer``, and the picture of its tree; :meth:`write` writes either into a file.
 
-    Beside it the page shows what is not empty here: the trees of ``searches``, the certificate that is
-    ``certified``, the answer ``without_rules``, ``alternatives``, the ``front``; where there is no tree,
+    Beside the answer the page shows what is not empty here: the trees of ``searches``, the certificate that
+    is ``certified``, the answer ``without_rules``, ``alternatives``, the ``front``; where there is no tree,
     ``why_not`` and the ``shopping`` that would help; and the whole ``network`` of a problem. Beside a plan it
     shows the answer where items are ``lasting``, which no plan is better than, and the certificate is about
-    that one. A page about a network alone has no ``answer``.
+    that one. A page about a network alone has no ``answer``. Of a given tree and of some units there is only
+    a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large, or if the
+    packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError` if there is
+    no tree.
 
     Example:
         >>> page = foon_asp.view(foon_asp.load().problem("ice"))
         >>> page.html().splitlines()[0]
         '<!DOCTYPE html>'
+        >>> page.dot().splitlines()[0]
+        'digraph foon {'
     """
 
     answer: Answer | None
     searches: tuple[Retrieved, ...] = ()
-    certified: Certified | None = None
+    certified: Answer | None = None
     lasting: Answer | None = None
     without_rules: Answer | None = None
     alternatives: Alternatives | None = None
@@ -72,6 +100,7 @@ class View(Result):
     why_not: Explanation | None = None
     shopping: Shopping | None = None
     network: Problem | None = None
+    picture: Drawing | None = None
 
     @property
     def ending(self) -> Ending:
@@ -79,18 +108,21 @@ class View(Result):
         return Ending.DONE if self.answer is None else self.answer.ending
 
     def text(self) -> str:
-        """Give the answer in words, or how large the network is."""
-        if self.answer is not None:
-            return self.answer.text()
-        assert self.network is not None
-        network = self.network.network
-        return f"{counted(len(network), 'unit')}, {counted(len(network.objects), 'object node')}\n"
+        """Give the answer in words, or what the picture is about."""
+        return self._drawn().caption[0] + "\n" if self.answer is None else self.answer.text()
 
     def json_dict(self) -> Json:
-        """Give what is in the page: the documents of the answers as they are."""
+        """Give what is in the page: the documents of the answers as they are.
+
+        Raises:
+            UserError: for a given tree or some units, which have no page.
+        """
+        if self.picture is not None:
+            raise UserError(f"a given tree and units have no page: choose one of {', '.join(_PICTURES)}")
+        certificate = None if self.certified is None else self.certified.certificate
         proof = None
-        if self.certified is not None and self.certified.certificate is not None:
-            proof = proof_json(self.certified.answer.problem, self.certified.certificate.content)
+        if self.certified is not None and certificate is not None:
+            proof = plain(ProofCases.of(self.certified.problem, certificate.content))
         others: dict[str, Result | None] = {
             "lasting": self.lasting,
             "without_rules": self.without_rules,
@@ -109,16 +141,18 @@ class View(Result):
         )
 
     def _trees(self) -> Iterator[tuple[Problem, Iterable[int]]]:
-        bought = None if self.shopping is None else self.shopping.outcome
+        bought = None if self.shopping is None else self.shopping.answer
         for answer in (self.answer, self.lasting, self.without_rules, bought):
             if answer is not None:
-                yield answer.problem, answer.units or ()
+                yield answer.problem, answer.ids or ()
         for found in self.searches:
-            yield found.problem, found.retrieval.units if found.simulation else ()
+            yield found.problem, found.ids
         if self.alternatives is not None:
-            yield from ((self.alternatives.problem, tree.units) for tree in self.alternatives.trees)
+            other = self.alternatives.problem
+            yield from ((other, other.network.units_of_numbers(tree.ids)) for tree in self.alternatives.trees)
         if self.front is not None:
-            yield from ((self.front.problem, point.units) for point in self.front.points)
+            front = self.front.problem
+            yield from ((front, front.network.units_of_numbers(point.ids)) for point in self.front.points)
 
     def html(self) -> str:
         """Give the page, a document by itself."""
@@ -128,32 +162,78 @@ class View(Result):
         about = self.text() if self.answer is None else " + ".join(map(str, self.answer.problem.goal_nodes))
         return Page(f"{about.strip()} - foon-asp", self.text(), self.json_dict())
 
+    def dot(self) -> str:
+        """Give the picture in DOT, Graphviz' language."""
+        return dot_text(self._drawn())
+
+    def png(self) -> bytes:
+        """Give the picture as PNG."""
+        return painted(self._drawn(), "png")
+
+    def pdf(self) -> bytes:
+        """Give the picture as PDF."""
+        return painted(self._drawn(), "pdf")
+
+    def mermaid(self) -> str:
+        """Give the picture as a Mermaid flowchart."""
+        return mermaid_text(self._drawn())
+
+    def graphml(self) -> str:
+        """Give the nodes and arrows of the picture as GraphML, for Gephi, networkx and the like."""
+        return graphml_text(self._drawn())
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture shows."""
+        if self.answer is not None:
+            return self.answer.drawing()
+        if self.network is None:
+            return self.picture
+        network = self.network.network
+        caption = [
+            f"A network of {counted(len(network), 'unit')}, {counted(len(network.objects), 'object node')}"
+        ]
+        return network_drawing(network, range(len(network)), self.network.kitchen, (), caption)
+
+    def _drawn(self) -> Drawing:
+        drawing = self.drawing()
+        if drawing is None:
+            raise NothingToDrawError("there is no tree to draw")
+        return drawing
+
     def remark(self, format_: str) -> str:
         """Say what is claimed, where that is not the best tree."""
         return "" if self.answer is None else self.answer.remark(format_)
 
     def write(self, file: File, format_: str | None = None) -> None:
-        """Write the page into a file.
+        """Write the page or the picture; a file that ends in ``.md`` is a page with a Mermaid flowchart.
 
         Parameters:
             file: The path of the file.
-            format_: ``html``, or ``json`` for what is in the page; without it, the end of the file name
-                chooses one.
+            format_: ``html``, ``json`` for what is in the page, ``svg``, ``png``, ``pdf``, ``dot``,
+                ``mermaid`` or ``graphml``; without it, the end of the file name chooses one.
 
         Raises:
-            UserError: for another format, or a file that cannot be written.
+            NothingToDrawError: for a picture, if there is no tree.
+            UserError: for another format, a picture that cannot be made, or a file that cannot be written.
         """
+        file = Path(file)
         how = question_of(view)
-        form = format_ or how.format_of(Path(file))
+        form = format_ or how.format_of(file)
         if form not in how.formats:
             raise UserError(f"found the format {form!r}, expected one of {', '.join(how.formats)}")
-        write_whole(Path(file), utf_8(self.html() if form == "html" else self.json_text()))
+        if form == "mermaid" and file.suffix.lower() == _MERMAID_PAGE:
+            content: str | bytes = mermaid_markdown(self._drawn())
+        else:
+            content = self.json_text() if form == "json" else getattr(self, form)()
+        write_whole(file, utf_8(content) if isinstance(content, str) else content)
 
     def __repr__(self) -> str:
         return f"<View of {self.text().strip() if self.answer is None else repr(self.answer)}>"
 
     def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the page, in a frame of its own."""
+        """Give what a notebook shows by media type: the page, in a frame of its own, or the picture."""
+        if self.picture is not None:
+            return picture_bundle(self, self.picture)
         return {"text/plain": repr(self), "text/html": self._page().frame()}
 
 
@@ -161,59 +241,89 @@ def _posed(
     command: Command,
     goals_named: Sequence[str],
     containers: str,
-    items: str,
-    stock: File | None,
-    stays: File | None,
+    tree: File | None,
+    units: Sequence[int],
+    **items: Any,
 ) -> tuple[Problem | Foon]:
-    """Pose the goals that are named; without any it is about the data."""
-    if goals_named:
-        return one_problem(command, goals_named, containers, items, stock, stays)
-    for option, flag in (
-        ("objectives", "--objective"),
-        ("beside", "--beside"),
-        ("constraints", "--constraint"),
-        ("rules", "--rule"),
-    ):
-        if command.given(option):
-            raise UserError(f"{flag} is about a tree: name a goal with --goal")
+    """Pose the goals that are named, or that a recipe has; without any it is about the data."""
+    listed = tree is not None or bool(units)
+    for_goals = bool(goals_named) or (not listed and is_for_goals(command, goals_named))
+    for option, flag in _FOR_THE_BEST.items():
+        if command.given(option) and (listed or not for_goals):
+            raise UserError(f"{flag} is for the best tree for a --goal; nothing is solved here")
+    if command.given("beside") and caller().form in _PICTURES:
+        raise UserError("--beside is for a page: end the file in .html")
+    if for_goals:
+        return one_problem(command, goals_named, containers, **items)
+    if command.given("items"):
+        raise UserError("--items is for a plan for a --goal: name one")
     return the_data(command)
 
 
 @question(
     GOALS,
+    Option("tree", "A task tree to draw.", Kind.FILE, Part.PROBLEM | Part.QUESTION, metavar="TREE.txt"),
+    Option(
+        "units",
+        "The id of a unit to draw.",
+        Kind.WHOLE,
+        Part.PROBLEM | Part.QUESTION,
+        flags=("--unit",),
+        many=True,
+        metavar="ID",
+    ),
     OBJECTIVES,
     CONTAINERS._replace(part=Part.PROBLEM | Part.QUESTION),
     *ITEMS,
     Option(
         "beside",
-        f"What to show beside the tree: {', '.join(Beside)}; by default the first two.",
+        f"What a page shows beside the tree: {', '.join(Beside)}.",
+        default=(Beside.SEARCHES.value, Beside.PROOF.value),
         many=True,
         choices=tuple(map(str, Beside)),
     ),
     *HOW,
     help_="""
     \b
-    foon-asp view --goal macaroni -o macaroni.html
+    foon-asp view --goal macaroni -o macaroni.html      a page
+    foon-asp view --goal macaroni -o macaroni.svg       a picture of the optimal task tree
     foon-asp view --goal 'greek salad' --objective success --beside front -o salad.html
-    foon-asp view --goal ice --constraint mine.lp -o ice.html
-    foon-asp view --network FILE -o whole.html          a whole network
+    foon-asp view recipe.txt -o recipe.pdf              what the recipe makes
+    foon-asp view --tree tree.txt --goal macaroni -o t.png   a task tree read from FOON text
+    foon-asp view --unit 12 -o unit.svg                 one functional unit, by id
+    foon-asp view --network FILE -o whole.graphml       a whole network
     foon-asp view --goal macaroni --serve               a page that asks again
 
-    The file is whole in itself: open it in any browser, with no network. It walks through the best tree step
+    The page is whole in itself: open it in any browser, with no network. It walks through the best tree step
     by step, shows the trees of the searches and why no tree is better, and where there is none, why. Under
-    constraints it shows the tree without them, too. Without a goal it shows the whole network.
+    constraints it shows the tree without them, too. Without a goal, a recipe is asked for what it makes, as
+    by `solve`; with --network, or without a file, the whole network is shown. With --tree and --unit, --goal
+    says which nodes are shown as goals, and nothing is solved.
 
     Exits with 0 when the tree is proved optimal, and otherwise as `solve` does.
     """,
-    formats=("html", "json"),
-    suffixes={".html": "html", ".htm": "html", ".json": "json"},
+    formats=(*_PAGES, *_PICTURES),
+    suffixes={
+        ".html": "html",
+        ".htm": "html",
+        ".json": "json",
+        ".svg": "svg",
+        ".png": "png",
+        ".pdf": "pdf",
+        ".dot": "dot",
+        ".mmd": "mermaid",
+        _MERMAID_PAGE: "mermaid",
+        ".graphml": "graphml",
+    },
     pose=_posed,
 )
 def view(
     about: Problem | Foon,
     objectives: Objectives = "units",
     *,
-    beside: Iterable[str] = (),
+    tree: str | PathLike[str] | Iterable[FunctionalUnit] | None = None,
+    units: Iterable[int] = (),
+    beside: Iterable[str] = (Beside.SEARCHES, Beside.PROOF),
     constraints: Files = (),
     constants: Constants | None = None,
     encodings: File | None = None,
@@ -223,41 +333,94 @@ def view(
     on_progress: OnProgress | None = None,
     cancel: Cancel | None = None,
 ) -> View:
-    """Solve a problem, and show what was found on a page that any browser opens; or show a whole network.
+    """Solve a problem, and show what was found on a page or as a picture; or show what is given.
 
-    The limits are for all of it.
+    A given tree, some units or a whole network are shown without solving, and there are no ``objectives``,
+    rules and limits for them. The limits are for all of it.
 
     Parameters:
-        about: A problem; or data that were loaded, whose whole network is shown.
-        containers: The container rule for what can be made in a whole network: ``strict`` or ``implied``. A
-            problem has its own.
+        about: A problem, whose goals are marked; or data that were loaded, whose whole network is shown.
+        tree: A tree to draw: the path of a file (FOON text, or an answer in JSON), or functional units.
+        units: Ids of units to draw, as in ``json()``.
+        beside: Without any, there is only the tree, which is enough for a picture.
+        containers: The container rule for data: ``strict`` or ``implied``. A problem has its own.
 
     Returns:
-        The page: ``html()`` gives it, ``write`` writes it into a file, and a notebook shows it.
+        The page and the picture: ``html()``, ``svg()``, ``png()``, ``pdf()``, ``dot()``, ``mermaid()`` and
+        ``graphml()`` give them, ``write`` writes one into a file, and a notebook shows the page.
 
     Raises:
-        UserError: for a wrong argument or constraint.
+        UserError: for a wrong argument or constraint, a file that cannot be read, a unit that the network
+            does not have, or rules where nothing is solved.
 
     Example:
         >>> foon_asp.view(foon_asp.load().problem("ice"))
         <View of <Answer: optimal by units (strict containers): 2 units, 6 inputs, success 0.644>>
         >>> foon_asp.view(foon_asp.load())
-        <View of 220 units, 418 object nodes>
+        <View of A network of 220 units, 418 object nodes>
+        >>> foon_asp.view(foon_asp.load(), units=[12]).dot().splitlines()[0]
+        'digraph foon {'
     """
-    if isinstance(about, Foon):
-        if not len(about.dataset.data.network):
-            raise UserError("the network has no units to show")
-        return View(None, network=about.dataset.problem((0,), containers, everything=True))
-    problem = about
-    wanted = {str(each) for each in ([beside] if isinstance(beside, str) else beside)}
-    for name in sorted(wanted - {*Beside}):
-        raise UserError(f"found beside={name!r}, expected one of {', '.join(Beside)}")
-    chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    wanted = wanted or {Beside.SEARCHES, Beside.PROOF}
-    rules = {"constraints": constraints, "constants": constants, "encodings": encodings}
-    *_, grown = pages(problem, chosen, how, wanted, rules)
-    return grown
+    listed = tuple(dict.fromkeys(units))
+    if tree is not None and listed:
+        raise UserError("a tree and units are two different drawings: give one of them")
+    if tree is None and not listed and isinstance(about, Problem):
+        wanted = {str(each) for each in ([beside] if isinstance(beside, str) else beside)}
+        for name in sorted(wanted - {*Beside}):
+            raise UserError(f"found beside={name!r}, expected one of {', '.join(Beside)}")
+        chosen = chosen_objectives(about, objectives)
+        how = settings(constraints, constants, encodings, time_limit, memory_limit)
+        if not wanted or caller().form in _PICTURES:
+            return View(answered_under(about, chosen, how))
+        rules = {"constraints": constraints, "constants": constants, "encodings": encodings}
+        *_, grown = pages(about, chosen, how, wanted, rules)
+        return grown
+    if constraints or constants or encodings is not None:
+        raise UserError("rules are for the best tree of a problem; nothing is solved here")
+    if listed:
+        return View(None, picture=_units_drawing(about, listed))
+    if tree is not None:
+        drawing = (
+            posed_tree(about, tree).drawing()
+            if isinstance(about, Problem)
+            else _drawing_without_goals(about, container_rule(containers), tree)
+        )
+        if not drawing.units:
+            raise UserError("the tree has no functional unit to draw")
+        return View(None, picture=drawing)
+    assert isinstance(about, Foon)
+    if not len(about.dataset.data.network):
+        raise UserError("the network has no units to show")
+    return View(None, network=about.dataset.problem((0,), containers, everything=True))
+
+
+def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
+    """Draw units by id in the whole network; the goals of a problem are marked."""
+    goal_ids: Sequence[int] = ()
+    if isinstance(about, Problem):
+        part = shown(about)
+        goal_ids = [part.network.object_number(goal) for goal in part.goals]
+        about = Foon.of(about)
+    data, goal_ids = about.dataset.part(goal_ids, unit_ids)
+    network = data.network
+    units = [unit for unit in map(network.unit_of_number, unit_ids) if unit is not None]
+    caption = f"Functional units {', '.join(map(str, unit_ids))}"
+    if len(units) == 1:
+        file, line, *_ = network.sources[units[0]][0]
+        caption = f"Functional unit {unit_ids[0]} ({Path(file).name}, line {line})"
+    return network_drawing(network, units, data.kitchen, goal_ids, [caption])
+
+
+def _drawing_without_goals(
+    foon: Foon, rule: ContainerRule, tree: str | PathLike[str] | Iterable[FunctionalUnit]
+) -> Drawing:
+    """Draw a tree for no goal with the part of the data that it is about."""
+    if isinstance(tree, str | PathLike):
+        tree = [unit for unit, _ in read_listed(Path(tree), lambda: foon.dataset.whole_network)[0]]
+    read = TaskTree(tuple(dict.fromkeys(unit_at_level(unit, foon.level) for unit in tree)))
+    data, _ = foon.dataset.part((), tree=read)
+    kitchen = {data.network.objects[o] for o in data.kitchen}
+    return tree_drawing(read, kitchen, (), rule, data.utensils, data.network)
 
 
 def pages(
@@ -278,7 +441,7 @@ def pages(
     ruled = bool(how.constraints) or how.encodings is not None
     plans, endless = problem.items is not None, replace(problem, items=None)
     proof = certified(problem, chosen, how) if Beside.PROOF in wanted and not plans else None
-    answer = answered(asked_with(problem, how), chosen, how) if proof is None else proof.answer
+    answer = answered(asked_with(problem, how), chosen, how) if proof is None else proof
     page = View(answer, certified=proof, network=whole(problem) if Beside.NETWORK in wanted else None)
     yield page
 
@@ -288,9 +451,11 @@ def pages(
     if plans and not ruled:
         below = Objective.KITCHEN not in chosen  # what a plan makes itself, it need not take
         proof = certified(endless, chosen, how) if Beside.PROOF in wanted and below else None
-        lasting = answered(endless, chosen, how) if proof is None else proof.answer
+        lasting = answered(endless, chosen, how) if proof is None else proof
         if below:
-            Postconditions(endless, levels(tuple(chosen)), how).no_better(answer, lasting, "where items last")
+            Postconditions(endless, levels(tuple(chosen)), how).no_better(
+                answer.outcome, lasting.outcome, "where items last"
+            )
         if lasting and not answer:
             proof = None  # of a tree, and there is no plan to hold against it
         page = replace(page, certified=proof, lasting=lasting)
@@ -307,7 +472,7 @@ def pages(
         return
     if Beside.SEARCHES in wanted:
         known = known_searches(problem.rates is not None)
-        page = replace(page, searches=tuple(retrieve(problem, each.name, **left()) for each in known))
+        page = replace(page, searches=tuple(search(problem, each.name, **left()) for each in known))
         yield page
     if Beside.ALTERNATIVES in wanted:
         page = replace(page, alternatives=alternatives(problem, chosen, best=_BEST, **rules, **left()))

@@ -1,13 +1,29 @@
-"""A question made small before it is searched, with a tree in hand and a bound on all others."""
+"""A question made small before it is searched, with a tree in hand and a bound on all others.
 
-from foon_asp.reduce.exact_costs import ExactCosts as ExactCosts
-from foon_asp.reduce.reduction import Bounds as Bounds
-from foon_asp.reduce.reduction import Listener as Listener
-from foon_asp.reduce.reduction import Reduced as Reduced
-from foon_asp.reduce.reduction import reduce as reduce
-from foon_asp.reduce.reductions import ALL as ALL
-from foon_asp.reduce.reductions import NONE as NONE
-from foon_asp.reduce.reductions import SAFE as SAFE
-from foon_asp.reduce.reductions import Reduction as Reduction
-from foon_asp.reduce.reductions import parse_reductions as parse_reductions
-from foon_asp.reduce.wide import Wide as Wide
+A name is imported when it is first asked for: who only names reductions needs no search.
+"""
+
+import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from foon_asp.reduce.exact_costs import ExactCosts as ExactCosts
+    from foon_asp.reduce.reduction import Bounds as Bounds
+    from foon_asp.reduce.reduction import Listener as Listener
+    from foon_asp.reduce.reduction import Reduced as Reduced
+    from foon_asp.reduce.reduction import reduce as reduce
+    from foon_asp.reduce.reductions import ALL as ALL
+    from foon_asp.reduce.reductions import NONE as NONE
+    from foon_asp.reduce.reductions import SAFE as SAFE
+    from foon_asp.reduce.reductions import Reduction as Reduction
+    from foon_asp.reduce.reductions import parse_reductions as parse_reductions
+    from foon_asp.reduce.wide import Wide as Wide
+else:  # not for type checkers, which then know each name
+    _MODULES = {"ExactCosts": "exact_costs", "Wide": "wide"}
+    _MODULES |= dict.fromkeys(("Bounds", "Listener", "Reduced", "reduce"), "reduction")
+    _MODULES |= dict.fromkeys(("ALL", "NONE", "SAFE", "Reduction", "parse_reductions"), "reductions")
+
+    def __getattr__(name: str) -> object:
+        if name not in _MODULES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return getattr(importlib.import_module(f"foon_asp.reduce.{_MODULES[name]}"), name)

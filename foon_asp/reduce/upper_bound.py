@@ -54,13 +54,18 @@ def guessed(
             yield without_spare(graph, found, cost)
 
 
+def _part(cost: int, share: float) -> int:
+    """Return a share of a cost in steps, rounded down: a cost may be beyond all floats."""
+    return cost * int(share * _FINE * _FINE) // _FINE
+
+
 def following(
     graph: Graph, actions: Collection[int], cost: Callable[[int], int], shared: "SharedCosts"
 ) -> Iterator[set[int]]:
     """Give trees that follow a relaxed solution, by what it takes and by what cuts leave of the costs."""
 
     def unshared(action: int) -> int:
-        return 1 + int(cost(action) * (1 - min(1.0, shared.shares[action])) * _FINE)
+        return 1 + _part(cost(action), 1 - min(1.0, shared.shares[action]))
 
     def loose(action: int) -> int:
         return cost(action) + shared.left[action]
@@ -100,11 +105,12 @@ def varied(
             break
         if chance() < 0.5:
             some = ordered
-            price = {a: 1 + int(cost(a) * (1 - min(1.0, shares[a])) * _FINE * (0.5 + chance())) for a in some}
+            untaken = ((a, (1 - min(1.0, shares[a])) * (0.5 + chance())) for a in some)
+            price = {a: 1 + _part(cost(a), share) for a, share in untaken}
         else:
             share, part = chance(), 1.0 if chance() < 0.5 else chance() ** 2
             some = [a for a in ordered if chance() < part or a in last]
-            price = {a: int(cost(a) * _FINE * (0.5 + chance())) for a in some}
+            price = {a: _part(cost(a), 0.5 + chance()) for a in some}
             price |= {a: 0 for a in sorted(last) if chance() < share}
         effort -= len(some)
         found = derive(graph, some, price, added=chance() < 0.5).tree(graph, graph.goals)

@@ -5,19 +5,15 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from decimal import Context, Decimal, Inexact
 from fractions import Fraction
 
-from foon_asp.asp import Outcome, Proof, Status
+from foon_asp.asp import Outcome, Status
 from foon_asp.deadline import Deadline
 from foon_asp.document.json_document import (
     approximate,
-    costs_json,
-    document,
-    figures_json,
     input_origins,
-    steps_json,
 )
 from foon_asp.network import Network, counted
-from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach
-from foon_asp.text.json_value import Json
+from foon_asp.problem import Costs, Objective, Problem, multiplies, reach
+from foon_asp.report.used_up_note import used_up_note
 from foon_asp.text.writer import write_units
 
 _DIGITS = 4  # of a success, if these tell several apart
@@ -46,60 +42,13 @@ def bound_text(objective: Objective, bound: int | Fraction) -> str:
     return f"{objective} {side} {figure_text(objective, bound)}"
 
 
-def answer_json(outcome: Outcome, bought: Collection[int] = ()) -> Json:
-    """Give an outcome as a document; ``bought`` are the items of the kitchen that were not there before."""
-    problem, units = outcome.problem, outcome.units
-    return document(
-        "answer",
-        problem,
-        outcome.objectives,
-        encodings=None if outcome.encodings is None else str(outcome.encodings),
-        status=str(outcome.status),
-        stopped=outcome.stopped,
-        proof=None if outcome.proof is None else str(outcome.proof),
-        proof_by_objective={
-            str(objective): str(Proof.CERTIFICATE if objective in outcome.certified else outcome.proof)
-            for objective in levels(outcome.objectives)
-            if outcome.status is Status.OPTIMAL
-        },
-        costs=costs_json(outcome.costs),
-        lower_bound=figures_json(outcome.bounds),
-        units=None if units is None else steps_json(problem, units, bought),
-        seconds={phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
-    )
-
-
 def outcome_foon(outcome: Outcome) -> str:
     """Give the tree as FOON text with a comment that says what it is; empty where there is no tree."""
     if outcome.units is None:
         return ""
     goals = " + ".join(str(outcome.problem.network.objects[o]) for o in outcome.problem.goals)
-    comments = [f"Task tree for: {goals}", headline(outcome)]
+    comments = [f"Task tree for: {goals}", *headlines(outcome)]
     return write_units(map(outcome.problem.network.unit, outcome.units), comments)
-
-
-def outcome_text(outcome: Outcome, remarks: Iterable[str] = (), deadline: Deadline | None = None) -> str:
-    """Give an outcome for people: what was proved, remarks, the steps with where each input comes from.
-
-    Where there is no tree it is said why, if that is found by the deadline.
-    """
-    problem = outcome.problem
-    lines = [*goal_lines(problem), headline(outcome), *remarks]
-    if outcome.status is Status.FEASIBLE:
-        lines.append(_bound_line(outcome))
-    if outcome.units is not None:
-        if outcome.units:
-            lines.append("")
-            lines += steps(problem, outcome.units)
-        else:
-            lines.append("the kitchen already holds it: nothing to do")
-    if outcome.status is Status.INFEASIBLE:
-        try:
-            with (deadline or Deadline()).watched("looking for the reason", late=True, grace=True):
-                lines += list(_why_infeasible(problem))
-        except KeyboardInterrupt:
-            lines.append("foon-asp why-not explains why; there was no time left for it here")
-    return "\n".join(lines) + "\n"
 
 
 def goal_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
@@ -129,6 +78,12 @@ def headline(outcome: Outcome) -> str:
         return f"unknown: stopped at {outcome.stopped or 'a limit'}, before any {what} was found ({rule})"
     claim = "optimal" if outcome.status is Status.OPTIMAL else "feasible, not proved best"
     return f"{claim} by {best} ({rule}): {costs_text(outcome.costs, outcome.objectives)}"
+
+
+def headlines(outcome: Outcome) -> list[str]:
+    """Return the claim, and under it a note where the tree would not run with items used up."""
+    problem, units = outcome.problem, outcome.units
+    return [headline(outcome), *([] if units is None else used_up_note(problem, problem.tree(units)))]
 
 
 def costs_text(costs: Costs, objectives: Iterable[Objective] = ()) -> str:
@@ -176,24 +131,15 @@ def _rounded(value: Fraction, digits: int) -> Decimal:
     return Context(prec=digits).divide(Decimal(value.numerator), Decimal(value.denominator))
 
 
-def _bound_line(outcome: Outcome) -> str:
-    bounds = [bound_text(objective, bound) for objective, bound in outcome.bounds.items()]
-    return "proved so far: " + (", ".join(bounds) or "nothing")
-
-
-def steps(
-    problem: Problem, units: tuple[int, ...], bought: Collection[int] = (), helped: Collection[int] = ()
-) -> Iterator[str]:
+def steps(problem: Problem, units: tuple[int, ...], bought: Collection[int] = ()) -> Iterator[str]:
     """Number the units, and say of every input whether it is from the kitchen or from which step.
 
-    ``bought`` are the items of the kitchen, by id, that were not there before, and ``helped`` the units that
-    a person does. In a list that does not execute as it is, a needed input may be made by later steps only,
-    or by none.
+    ``bought`` are the items of the kitchen, by id, that were not there before. In a list that does not
+    execute as it is, a needed input may be made by later steps only, or by none.
     """
     network = problem.network
     for number, (unit, origins) in enumerate(input_origins(problem, units, bought), 1):
-        who = "    by the person" if unit in helped else ""
-        yield f"{number:>3}  {network.motions[unit]}    [{network.sources[unit][0]}]{who}"
+        yield f"{number:>3}  {network.motions[unit]}    [{network.sources[unit][0].short}]"
         for o, origin in zip(network.inputs[unit], origins, strict=True):
             ((where, step),) = origin.items()
             said = {"step": f"step {step}", "later_step": f"step {step}, which is later"}.get(where, where)
@@ -214,7 +160,7 @@ def _details(network: Network, unit: int, shown: int = 5) -> Iterator[str]:
     details = network.stands_for[unit]
     yield f"     stands for {counted(len(details), 'unit')} at level 3:"
     for detail in details[:shown]:
-        yield f"       {detail}    [{detailed.sources[detail][0]}]  {detailed.unit(detail)}"
+        yield f"       {detail}    [{detailed.sources[detail][0].short}]  {detailed.unit(detail)}"
     if len(details) > shown:
         yield f"       ... and {len(details) - shown} more; --format json lists all"
 
@@ -223,7 +169,8 @@ def unit_lines(network: Network, units: Iterable[int], sign: str = " ") -> Itera
     """List units by id, each after a sign, with motion and place; those of a set in order of id."""
     listed = sorted(units) if isinstance(units, frozenset) else units
     for unit in listed:
-        yield f"  {sign} {network.unit_number(unit)}  {network.motions[unit]}    [{network.sources[unit][0]}]"
+        place = network.sources[unit][0].short
+        yield f"  {sign} {network.unit_number(unit)}  {network.motions[unit]}    [{place}]"
 
 
 def missing(units: Sequence[int], other: Iterable[int]) -> list[int]:
@@ -253,7 +200,17 @@ def _motions(network: Network, units: Sequence[int]) -> str:
     return f"{', '.join(named[:shown])} and {sum(list(counts.values())[shown:])} more"
 
 
-def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
+def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterator[str]:
+    """Return lines that say why there is no tree, if that is found by the deadline."""
+    try:
+        with (deadline or Deadline()).watched("looking for the reason", late=True, grace=True):
+            lines = list(_reasons(problem))
+    except KeyboardInterrupt:
+        lines = ["foon-asp why-not explains why; there was no time left for it here"]
+    yield from lines
+
+
+def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
     """Say for each goal that cannot be made which units would make it and what the first of them lack.
 
     Where every goal can be made, it is the constraints that leave no tree.
@@ -268,7 +225,7 @@ def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
         return
     if all(available[goal] for goal in problem.goals):
         yield "without the constraints there is one: together they rule out every tree"
-        yield "foon-asp clash finds those that do, and which to drop"
+        yield "foon-asp why-not finds those that do, and which to drop"
         return
     for goal in problem.goals:
         if available[goal]:
@@ -282,7 +239,7 @@ def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
         if skipping:
             yield f"  {counted(skipping, 'unit')} took it as given, and so did not make it"
         for unit in makers[:shown]:
-            yield f"  {network.motions[unit]}    [{network.sources[unit][0]}] lacks"
+            yield f"  {network.motions[unit]}    [{network.sources[unit][0].short}] lacks"
             yield from (f"       {network.objects[o]}" for o in problem.needs[unit] if not available[o])
         if len(makers) > shown:
             yield f"  ... and {counted(len(makers) - shown, 'more unit')}"
@@ -309,21 +266,3 @@ def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
         yield f"the cause: {first} can only be made from {back[0]}{circle}"
     if len(roots) > shown:
         yield f"  ... and {len(roots) - shown} more"
-    cycles = [root.cycle for root in roots if root.cycle is not None]
-    if problem.starting and cycles:
-        yield (
-            "some unit makes each of these, so the starting kitchen has none; say what is at hand: --kitchen "
-            "FILE (foon-asp init DIR --from RECIPE writes one to edit), or have NAME in foon-asp shell"
-        )
-        network = problem.network
-        within = [set.intersection(*(_files(network, unit) for _, unit in each.steps)) for each in cycles]
-        makers = (unit for goal in problem.goals for unit in network.producers[goal])
-        own = {file for unit in makers for file in _files(network, unit)}
-        without = sorted(own.difference(*within))
-        if without:
-            yield f"asked about by itself, {without[0]} has more at hand"
-
-
-def _files(network: Network, unit: int) -> set[str]:
-    """Give the files that have a unit."""
-    return {place.file for place in network.sources[unit]}

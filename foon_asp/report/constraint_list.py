@@ -1,27 +1,21 @@
 """The ready-made constraints for people and for programs."""
 
 import shlex
-import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from foon_asp.document.json_document import document
-from foon_asp.report.stacked import columns
 from foon_asp.rules.constraint_library import LibraryConstraint
 from foon_asp.text.json_value import Json
 
-_WIDTH = 100
 
-
-def constraints_text(constraints: Sequence[LibraryConstraint]) -> str:
-    """Give of each its name, what it demands, and how it is called."""
-    blocks = []
-    for constraint in constraints:
+def constraint_lines(constraints: Sequence[LibraryConstraint]) -> Iterator[str]:
+    """Return for each constraint its name, what it demands, and how it is called."""
+    for number, constraint in enumerate(constraints):
         call = f"--constraint {constraint.name}"
         for parameter in constraint.parameters:
             call += f" -c {parameter.name}={shlex.quote(parameter.example)}"
-        purpose = textwrap.wrap(constraint.purpose, columns(_WIDTH) - 4)
-        blocks.append("\n".join([constraint.name, *(f"    {line}" for line in purpose), f"  {call}"]))
-    return "\n\n".join(blocks) + "\n"
+        yield from ([""] if number else [])
+        yield from (constraint.name, f"    {constraint.purpose}", f"  {call}")
 
 
 def constraints_json(constraints: Sequence[LibraryConstraint]) -> Json:

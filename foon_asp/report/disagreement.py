@@ -1,111 +1,118 @@
-"""A disagreement between engines as a folder of data that asks the same question again."""
+"""A disagreement between engines as one file, with all that it takes to ask the question again."""
 
 import platform
-import shlex
-from importlib.metadata import PackageNotFoundError, version
+from collections.abc import Iterable
+from importlib.metadata import version
 from pathlib import Path
 
 from foon_asp.asp import Outcome
-from foon_asp.certificate import coverage
-from foon_asp.document.json_document import costs_json
+from foon_asp.asp.bare_program import bare_program
+from foon_asp.document.json_document import costs_json, figures_json
 from foon_asp.encoding.encoding import read_encoding
-from foon_asp.encoding.own_encodings import ENCODING_FILES
 from foon_asp.engines import Asked, DisagreementError
-from foon_asp.engines.bare_clingo import printed_command
+from foon_asp.engines.bare_clingo import OPTIONS
 from foon_asp.errors import UserError
+from foon_asp.problem import Problem
 from foon_asp.proof.verify import digests
-from foon_asp.report.answer import answer_json
 from foon_asp.report.whole_file import write_whole
-from foon_asp.resources import encodings_folder
-from foon_asp.rules.constraint import Constraint, RuleText, find_constraint
+from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.text.exact_price import decimal_text
-from foon_asp.text.json_value import json_text
+from foon_asp.text.json_value import Json, json_text
 from foon_asp.text.unit_price_list import write_unit_prices
 from foon_asp.text.writer import write_units
 
-_DISTRIBUTIONS = ("foon-asp", "clingo", "highspy", "up-fast-downward")
+_DISTRIBUTIONS = ("foon-asp", "clingo", "highspy")
 
 
 def write_disagreement(asked: Asked, found: DisagreementError) -> str:
-    """Write all that is needed to look into a disagreement to a new folder; say what was found, and where."""
-    folder = Path(disagreement_name(asked.outcome))
+    """Write all that is needed to look into a disagreement to a new file; return what to tell the user."""
+    name = disagreement_name(asked.outcome)
     try:
-        for name, content in disagreement_files(asked, found).items():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            write_whole(folder / name, content.encode("utf-8", "surrogatepass"))
-    except (OSError, UserError) as error:  # what was found counts more than where it is written
-        return f"{found}; the data could not be written to {folder}/: {error}"
-    return f"{found}; data, question and answers are in {folder}/ (see report.json)"
+        write_whole(Path(name), json_text(disagreement_json(asked, found)).encode("utf-8", "surrogatepass"))
+    except UserError as error:  # what was found counts more than where it is written
+        return f"{found}; the report could not be written: {error}"
+    return f"{found}; question, data and answers are in {name}: attach it to your report"
 
 
 def disagreement_name(outcome: Outcome) -> str:
-    """Name the folder, by the data and the question."""
+    """Return the name of the file, which is made of the data and the question."""
     problem = outcome.problem
-    marks = digests(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
-    return f"foon-asp-disagreement-{marks['network'][:8]}-{'-'.join(map(str, problem.goals))}"
+    return (
+        f"foon-asp-disagreement-{_digests(problem)['network'][:8]}-{'-'.join(map(str, problem.goals))}.json"
+    )
 
 
-def disagreement_files(asked: Asked, found: DisagreementError) -> dict[str, str]:
-    """Give the files of the folder by name: the data, numbered as they were, the rules, and ``report.json``.
+def disagreement_json(asked: Asked, found: DisagreementError) -> Json:
+    """Return a disagreement in plain values: question, data and rules as text, and both answers.
 
-    The kitchen lists nodes as JSON kitchens can; ``report.json`` has them in one-line notation, too. Files of
-    rules have in them what they include. ``facts.lp`` is what bare clingo was given.
+    Rules have in them what they include. ``bare_clingo`` has the program that clingo was given, and its
+    arguments.
     """
     outcome, settings = asked.outcome, asked.settings
     problem, answer = outcome.problem, found.answer
-    network = problem.network
-    # below level 3 the folder has what the network was made from; the command names the level
-    whole = network.detailed or network
-    at_hand = sorted(problem.kitchen)
-    if network.detailed is not None:
-        at_hand = sorted(detail for o in at_hand for detail in network.objects_stand_for[o])
-    nodes = [whole.objects[o] for o in at_hand]
-    kitchen = [
-        {
-            "label": node.label,
-            "states": [*sorted(node.states), *map(str, sorted(node.relations))],
-            "ingredients": list(node.ingredients),
-        }
-        for node in nodes
-    ]
-    goals = [str(network.objects[o]) for o in problem.goals]
-    words = ["foon-asp", "solve", "--data", ".", "--containers", str(problem.containers)]
-    words += ["--level", str(network.level), "--objective", ",".join(outcome.objectives), "--cross-check"]
-    rules = _Rules()
-    for each in dict.fromkeys(map(find_constraint, settings.constraints)):
-        words += ["--rule" if isinstance(each, RuleText) else "--constraint", rules.copy(each)]
-    for each, weight in asked.soft.items():
-        words += ["--soft", f"{rules.copy(each)}={weight}"]
-    if settings.replaced is not None:
-        words += ["--encodings", rules.copy_encodings(settings.replaced)]
-    words += [word for setting in settings.constants for word in ("-c", setting)]
-    words += [word for goal in goals for word in ("--goal", goal if ";" in goal else goal + ";")]
-    bare, facts = printed_command(asked)
-    bare = [rules.names.get(word, word) for word in bare]
-    report = {
+    program = bare_program(problem, outcome.objectives, settings, asked.soft)
+    encodings = (f"#program base.\n{read_encoding(file).text}\n" for file in program.files)
+    return {
         "message": str(found),
-        "command": shlex.join(words),
-        "bare_clingo": shlex.join(bare),
-        "versions": {"python": platform.python_version()} | {name: _version(name) for name in _DISTRIBUTIONS},
-        "platform": platform.platform(),
-        "digests": digests(network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
-        "kitchen": [str(node) for node in nodes],
-        "forbidden_units": sorted(coverage(settings).forbids(problem)),
-        "answer": answer_json(outcome) | ({"penalty": asked.penalty} if asked.soft else {}),
-        "other": {
-            "engine": answer.engine,
-            "objectives": [str(objective) for objective in answer.objectives],
-            "units": None if answer.units is None else list(answer.units),
-            "costs": None if answer.units is None else costs_json(problem.costs(answer.units)),
+        "question": {
+            "goals": [str(problem.network.objects[o]) for o in problem.goals],
+            "containers": str(problem.containers),
+            "items": "lasting" if problem.items is None else "used-up",
+            "level": problem.network.level,
+            "objectives": list(map(str, outcome.objectives)),
+            "constraints": list(_texts(settings.constraints).values()),
+            "soft": [
+                {"rules": text, "weight": asked.soft[each]} for each, text in _texts(asked.soft).items()
+            ],
+            "constants": list(settings.constants),
         },
+        "data": _data(problem),
+        "digests": _digests(problem),
+        "answers": {
+            "foon-asp": {
+                "objectives": list(map(str, outcome.objectives)),
+                "status": str(outcome.status),
+                "units": None if outcome.units is None else list(outcome.units),
+                "costs": costs_json(outcome.costs),
+                "lower_bound": figures_json(outcome.bounds),
+                **({"penalty": asked.penalty} if asked.soft else {}),
+            },
+            answer.engine: {
+                "objectives": list(map(str, answer.objectives)),
+                "units": None if answer.units is None else list(answer.units),
+                "costs": None if answer.units is None else costs_json(problem.costs(answer.units)),
+            },
+        },
+        "bare_clingo": {
+            "arguments": [*program.constants, *OPTIONS],
+            "program": "".join(encodings) + program.text,
+        },
+        "versions": {name: version(name) for name in _DISTRIBUTIONS},
+        "python": f"{platform.python_version()} on {platform.platform()}",
     }
+
+
+def _texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
+    """Return the texts of constraints."""
+    texts: dict[Constraint, str] = {}
+    for each in constraints:
+        named = find_constraint(each)
+        file = named.file if isinstance(named, LibraryUse) else named
+        texts[each] = file.text if isinstance(file, RuleText) else read_encoding(file).text
+    return texts
+
+
+def _data(problem: Problem) -> dict[str, str]:
+    """Return the files of a data folder by name; below level 3 they are what the network was made from."""
+    network = problem.network
+    whole = network.detailed or network
+    kitchen = sorted(problem.kitchen)
+    if network.detailed is not None:
+        kitchen = sorted(detail for o in kitchen for detail in network.objects_stand_for[o])
     files = {
         "FOON.txt": write_units(map(whole.unit, range(len(whole)))),
-        "kitchen.json": json_text(kitchen),
+        "kitchen.json": json_text([str(whole.objects[o]) for o in kitchen]),
         "utensils.txt": "".join(f"{label}\n" for label in sorted(problem.utensils)),
-        "facts.lp": facts,
-        **rules.files,
-        "report.json": json_text(report),
     }
     if problem.rates is not None:
         files["motion.txt"] = "".join(f"{motion}\t{decimal_text(r)}\n" for motion, r in problem.rates.items())
@@ -114,37 +121,5 @@ def disagreement_files(asked: Asked, found: DisagreementError) -> dict[str, str]
     return files
 
 
-class _Rules:
-    """The user's files of rules, copied: ``files`` are their texts by name, ``names`` the names by path."""
-
-    def __init__(self) -> None:
-        self.files: dict[str, str] = {}
-        self.names: dict[str, str] = {}
-
-    def copy(self, file: Constraint) -> str:
-        """Give what a constraint is called in the folder; ours is called by its name, a rule by its text."""
-        if not isinstance(file, Path):
-            return str(file)
-        if file.parent.resolve() == (encodings_folder() / "constraints").resolve():
-            return file.stem
-        return self._add(file, f"rules-{len(self.files) + 1}-{file.name}")
-
-    def copy_encodings(self, folder: Path) -> str:
-        """Give what replaced encodings are called in the folder."""
-        if not folder.is_dir():
-            return str(folder)
-        for name in ENCODING_FILES:
-            if (folder / name).is_file():
-                self._add(folder / name, f"encodings/{name}")
-        return "encodings"
-
-    def _add(self, file: Path, name: str) -> str:
-        self.files[name], self.names[str(file)] = read_encoding(file).text, name
-        return name
-
-
-def _version(distribution: str) -> str | None:
-    try:
-        return version(distribution)
-    except PackageNotFoundError:
-        return None
+def _digests(problem: Problem) -> dict[str, str]:
+    return digests(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)

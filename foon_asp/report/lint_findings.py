@@ -5,10 +5,10 @@ from collections.abc import Sequence
 
 from foon_asp.document.json_document import document
 from foon_asp.escapes import UNSAFE, escaped
-from foon_asp.lint.catalog import CATALOG
-from foon_asp.lint.mending import is_mendable
+from foon_asp.linting.catalog import CATALOG
+from foon_asp.linting.mending import is_mendable
 from foon_asp.network import counted
-from foon_asp.report.stacked import is_narrow, stacked_lines
+from foon_asp.results.table import Table
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.json_value import Json
 
@@ -58,31 +58,17 @@ def lint_summary(findings: Sequence[Diagnostic], files: int, mended: int) -> str
     return text
 
 
-def lint_statistics(findings: Sequence[Diagnostic]) -> str:
-    """Count the findings of each code, most of them first, and those that can be mended."""
-    rows: list[tuple[str, ...]] = []
+def lint_statistics(findings: Sequence[Diagnostic]) -> Table:
+    """Return the number of findings of each code, most of them first, and of those that can be mended."""
+    rows = []
     for code, count in Counter(finding.code for finding in findings).most_common():
         of_code = [finding for finding in findings if finding.code == code]
         safe = sum(is_mendable(finding) for finding in of_code)
         unsafe = sum(is_mendable(finding, unsafe=True) for finding in of_code) - safe
         mends = [f"{safe} safely"] * bool(safe) + [f"{unsafe} unsafely"] * bool(unsafe)
         rows.append((str(count), str(of_code[0].severity), code, ", ".join(mends), CATALOG[code].meaning))
-    headings = ("count", "severity", "code", "mends", "meaning")
-    if is_narrow():
-        return "".join(f"{line}\n" for line in stacked_lines(headings, rows)) + "\n" * bool(rows)
-    widths = [max(len(row[place]) for row in (headings, *rows)) for place in range(len(headings) - 1)]
-    lines = [
-        "  ".join(
-            [
-                row[0].rjust(widths[0]),
-                *(cell.ljust(w) for cell, w in zip(row[1:], widths[1:], strict=False)),
-                row[-1],
-            ]
-        )
-        for row in (headings, *rows)
-        if rows
-    ]
-    return "".join(f"{line}\n" for line in lines)
+    headings = "count", "severity", "code", "mends", "meaning"
+    return Table(headings, rows, left=frozenset({1, 2, 3, 4}), headed=bool(rows))
 
 
 def _folded(others: Sequence[Diagnostic]) -> str:

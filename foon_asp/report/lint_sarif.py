@@ -4,7 +4,7 @@ import urllib.parse
 from collections.abc import Sequence
 from pathlib import Path
 
-from foon_asp.lint.catalog import CATALOG
+from foon_asp.linting.catalog import CATALOG
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.json_value import Json
 

@@ -14,7 +14,7 @@ _WIDTH = 60
 
 _KINDS = {
     Kind.FACT: "no unit decides it: it holds for every tree, or for none",
-    Kind.DELETING: "it removes units, whatever else the tree has",
+    Kind.DELETING: "it removes the units that match it, whatever else the tree has",
     Kind.SHRINKING: "a tree that keeps to it still does without some of its units",
     Kind.REQUIRING: "a tree that keeps to it still does with more units",
     Kind.OTHER: "nothing more is known of it",
@@ -23,9 +23,9 @@ _KINDS = {
 _ASKS_FOR_ONE = "it asks for a unit of a set"
 
 _TOGETHER = {
-    Together.REDUCED: "units are removed before the search; all reductions stay",
-    Together.REQUIRED: "units are removed before the search, and what is required is one more goal; "
-    "all reductions stay",
+    Together.REDUCED: "what rules remove is left out before the search; all reductions stay",
+    Together.REQUIRED: "what rules remove is left out before the search, and what is required is one more "
+    "goal; all reductions stay",
     Together.CUT: "the relevance cut stays, and bounds leave out what no better tree can have",
     Together.BOUNDED: "bounds leave out what no better tree can have; the relevance cut does not hold, since "
     "a rule may ask for units that lead to no goal",

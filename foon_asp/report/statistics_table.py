@@ -1,14 +1,14 @@
 """What is in a network, for people and for programs."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 
 from foon_asp.document.json_document import document, nodes_json
 from foon_asp.escapes import escaped
-from foon_asp.network import Network, counted
+from foon_asp.network import Network, counted, starting_kitchen
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
-from foon_asp.report.stacked import is_narrow
+from foon_asp.results.table import Part, Table
 from foon_asp.text.json_value import Json
 
 _SHOWN = 10
@@ -48,40 +48,42 @@ _ROWS: tuple[tuple[str, str, Callable[[Statistics], object]], ...] = (
 )
 
 
-def statistics_text(network: Network, levels: Sequence[Statistics], from_kitchen: bool) -> str:
-    """Give a table with a column for each level, and what is most connected at level 3."""
-    hand = "from the kitchen" if from_kitchen else "from the nodes that no unit makes; no kitchen is given"
-    headings = {"reach": f"reach {hand}"}
+def statistics_parts(network: Network, levels: Sequence[Statistics], from_kitchen: bool) -> Iterator[Part]:
+    """Return a table with a column for each level, and what is most connected at level 3."""
     files, videos = _origins(network)
     copies = sum(files.values())
     places = f"{counted(len(files), 'file', ',')}, {counted(len(videos), 'source video', ',')}"
-    lines = [f"{counted(copies, 'unit', ',')} read from {places}"]
+    yield f"{counted(copies, 'unit', ',')} read from {places}"
     again = copies - len(network)
-    lines.append(f"{again:,} of them {'is a copy of another' if again == 1 else 'are copies of others'}")
-    lines += ["", _row("at level", [str(s.level) for s in levels])]
+    yield f"{again:,} of them {'is a copy of another' if again == 1 else 'are copies of others'}"
+    yield ""
+    yield _table(levels, "reach from the kitchen" if from_kitchen else "reach from the starting kitchen")
+    if not from_kitchen:
+        yield from _starting_lines(network)
+    yield from ("", "most connected labels: units with the label among their inputs or outputs")
+    labels = most_connected_labels(network, _SHOWN)
+    yield from (f"  {number:>7,}  {label}" for label, number in labels)
+    yield from ("", "most connected object nodes: units that need it, units that make it")
+    for node, users, makers in most_connected_objects(network, _SHOWN):
+        yield f"  {users:>7,} {makers:>7,}  {network.objects[node]}"
+    if len(files) > 1:
+        yield from ("", "most units: files")
+        yield from (f"  {number:>7,}  {escaped(file)}" for file, number in files.most_common(_SHOWN))
+    if len(files) > _SHOWN:
+        yield f"  ... and {counted(len(files) - _SHOWN, 'file', ',')} more; --format json lists all"
+
+
+def _table(levels: Sequence[Statistics], reach: str) -> Table:
+    rows: list[Sequence[str] | str] = []
     heading = ""
     for group, name, figure in _ROWS:
         if group != heading:
-            lines.append(headings.get(group, group))
+            rows.append(reach if group == "reach" else group)
             heading = group
         figures = [figure(statistics) for statistics in levels]
         shown = [f"{value:,}" if isinstance(value, int) else str(value) for value in figures]
-        lines.append(_row(f"  {name}" if group else name, shown))
-    lines += ["", "most connected labels: units with the label among their inputs or outputs"]
-    lines += [f"  {number:>7,}  {label}" for label, number in most_connected_labels(network, _SHOWN)]
-    lines += ["", "most connected object nodes: units that need it, units that make it"]
-    lines += [
-        f"  {users:>7,} {makers:>7,}  {network.objects[node]}"
-        for node, users, makers in most_connected_objects(network, _SHOWN)
-    ]
-    if len(files) > 1:
-        lines += ["", "most units: files"]
-        lines += [f"  {number:>7,}  {escaped(file)}" for file, number in files.most_common(_SHOWN)]
-        if len(files) > _SHOWN:
-            lines.append(
-                f"  ... and {counted(len(files) - _SHOWN, 'file', ',')} more; --format json lists all"
-            )
-    return "\n".join(lines) + "\n"
+        rows.append([f"  {name}" if group else name, *shown])
+    return Table(["at level", *(str(each.level) for each in levels)], rows, frozenset({0}))
 
 
 def statistics_json(network: Network, levels: Sequence[Statistics], from_kitchen: bool) -> Json:
@@ -94,7 +96,8 @@ def statistics_json(network: Network, levels: Sequence[Statistics], from_kitchen
         copies=copies - len(network),
         files=[{"file": file, "units": number} for file, number in files.items()],
         videos=list(videos),
-        reached_from="kitchen" if from_kitchen else "not made",
+        reached_from="kitchen" if from_kitchen else "starting kitchen",
+        starting_kitchen=None if from_kitchen else _starting_json(network),
         levels=[asdict(statistics) for statistics in levels],
         most_connected_labels=[
             {"label": label, "units": number} for label, number in most_connected_labels(network, _SHOWN)
@@ -106,14 +109,27 @@ def statistics_json(network: Network, levels: Sequence[Statistics], from_kitchen
     )
 
 
+def _starting_lines(network: Network) -> Iterator[str]:
+    """Return lines that say which rule gave what to the starting kitchen, at level 3."""
+    kitchen = starting_kitchen(network)
+    not_made = len(kitchen.nodes) - len(kitchen.made_too)
+    files = counted(kitchen.file_count, "file", ",")
+    yield "the starting kitchen, as no kitchen is given:"
+    yield f"  what no unit makes: {counted(not_made, 'node', ',')}"
+    yield f"  what units of the {files} also need: {counted(len(kitchen.made_too), 'node', ',')}"
+
+
+def _starting_json(network: Network) -> Json:
+    kitchen = starting_kitchen(network)
+    return {
+        "files": kitchen.file_count,
+        "not_made": nodes_json(network, sorted(kitchen.nodes - kitchen.made_too)),
+        "made_too": nodes_json(network, sorted(kitchen.made_too)),
+    }
+
+
 def _origins(network: Network) -> tuple[Counter[str], tuple[str, ...]]:
     """Count the units of each file, copies included, and list the videos they come from."""
     sources = [source for copies in network.sources for source in copies]
     videos = dict.fromkeys(video for source in sources for video in source.videos)
     return Counter(source.file for source in sources), tuple(videos)
-
-
-def _row(name: str, figures: Sequence[str]) -> str:
-    if is_narrow():
-        return f"{name}: {', '.join(figures)}"
-    return f"{name:<46}" + "".join(f"{figure:>10}" for figure in figures)

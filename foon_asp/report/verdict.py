@@ -1,15 +1,37 @@
 """What a simulation found: a text, and what stands in the way."""
 
 from collections.abc import Sequence
+from typing import Any
 
-from foon_asp.document.json_document import listed_unit_json, named_json
+from msgspec import UNSET, UnsetType
+
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.problem import Problem, given_outputs
 from foon_asp.proof.simulation import Obstacle, Simulation, Verdict
 from foon_asp.report.answer import costs_text
-from foon_asp.text.json_value import Json
+from foon_asp.report.used_up_note import used_up_note
+from foon_asp.results.values import Node, Unit, Value
+from foon_asp.results.values_of import listed_unit, named_node, used_up_of
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
+
+
+class Stop(Value, frozen=True):
+    """What stops the steps of a tree.
+
+    Attributes:
+        position: The first step that cannot be done, from 1; null where a goal is missing in the end.
+        unit: The unit of that step, or null.
+        missing: What the step lacks, or the goal.
+        cycle: The steps that wait for each other, from 1; none where no cycle is to blame.
+        used_up_by: Where items are used up: the steps that use up the copies there are.
+    """
+
+    position: int | None
+    unit: Unit | None
+    missing: Node
+    cycle: tuple[int, ...]
+    used_up_by: tuple[int, ...] | UnsetType = UNSET
 
 
 def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> str:
@@ -24,8 +46,10 @@ def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> st
     lines += [f"unit {n + 1} is not in the network: {_unit_text(listed, n)}" for n in foreign]
     if not foreign:
         lines.append(costs_text(problem.costs(unit for unit in ids if unit is not None)))
+    if simulation.verdict is not Verdict.NEVER:
+        lines += used_up_note(problem, (unit for unit, _ in listed))
     repeated = len(listed) - len({unit for unit, _ in listed})
-    if repeated:
+    if repeated and problem.items is None:
         count = "is repeated and counts" if repeated == 1 else "are repeated and count"
         lines.append(f"{repeated} of the {len(listed)} listed units {count} once")
     if simulation.verdict is Verdict.REORDERED:
@@ -48,6 +72,9 @@ def _obstacle_text(problem: Problem, listed: Listed, obstacle: Obstacle) -> str:
     if skipping:
         first = f"unit {skipping[0] + 1}, {_unit_text(listed, skipping[0])}"
         text += f"; {first}, took it as given, and so did not make it"
+    if obstacle.used_up_by:
+        steps = ", ".join(f"unit {n + 1} ({listed[n][0].motion})" for n in obstacle.used_up_by)
+        text += f"; used up by {steps}"
     if obstacle.cycle:
         waits = " → ".join(str(position + 1) for position in (*obstacle.cycle, obstacle.cycle[0]))
         text += f"; a cycle is to blame, units that wait for each other: {waits}"
@@ -61,25 +88,27 @@ def _skips(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
     return node not in given_outputs(unit, problem.containers, problem.utensils, problem.network)
 
 
-def verdict_json(problem: Problem, listed: Listed, simulation: Simulation | None) -> Json:
-    """Give what a simulation found; positions count from 1, and without one all is ``None``."""
+def verdict_values(problem: Problem, listed: Listed, simulation: Simulation | None) -> dict[str, Any]:
+    """Return what a simulation found as values, by key in JSON; without one, all are ``None``."""
     if simulation is None:
-        return dict.fromkeys(("verdict", "as_listed", "in_any_order", "order"))
+        return dict.fromkeys(("verdict", "as_listed", "in_any_order", "order", "used_up"))
     return {
-        "verdict": str(simulation.verdict),
-        "as_listed": _obstacle_json(problem, listed, simulation.as_listed),
-        "in_any_order": _obstacle_json(problem, listed, simulation.obstacle),
-        "order": [position + 1 for position in simulation.order],
+        "verdict": simulation.verdict,
+        "as_listed": _stop(problem, listed, simulation.as_listed),
+        "in_any_order": _stop(problem, listed, simulation.obstacle),
+        "order": tuple(position + 1 for position in simulation.order),
+        "used_up": used_up_of(problem, [unit for unit, _ in listed]),
     }
 
 
-def _obstacle_json(problem: Problem, listed: Listed, obstacle: Obstacle | None) -> Json | None:
+def _stop(problem: Problem, listed: Listed, obstacle: Obstacle | None) -> Stop | None:
     if obstacle is None:
         return None
     network, position = problem.network, obstacle.unit
-    return {
-        "position": None if position is None else position + 1,
-        "unit": None if position is None else listed_unit_json(network, *listed[position]),
-        "missing": named_json(network, obstacle.missing),
-        "cycle": [position + 1 for position in obstacle.cycle],
-    }
+    return Stop(
+        None if position is None else position + 1,
+        None if position is None else listed_unit(network, *listed[position]),
+        named_node(network, obstacle.missing),
+        tuple(place + 1 for place in obstacle.cycle),
+        tuple(place + 1 for place in obstacle.used_up_by) or UNSET,
+    )

@@ -1,20 +1,33 @@
 """Files that are written completely or not at all."""
 
 import contextlib
+import functools
 import os
+import re
 import stat
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import BinaryIO
 
 from foon_asp.errors import UserError
+from foon_asp.replacing import pass_on, warn_of_replaced
+
+try:
+    import fcntl
+except ImportError:  # Windows has no such locks, so what a kill left there stays
+    fcntl = None  # type: ignore[assignment]
+
+_PARTIAL = re.compile(r"\.foon-asp\.[0-9a-f]{16}")
+_HELD = 500  # files that are open at once: a process may have 1,024, and rename writes many
 
 
 def write_whole(file: Path, content: bytes) -> None:
     """Write to a file beside it and rename; the old file stays until then, and after a failure.
 
-    A file that is replaced passes on its permissions, and one that is write-protected is not replaced; a link
-    stays, and the file that it names is written. A pipe or device is written to as it is. Raises
-    :class:`UserError` when it cannot be written.
+    A file that is replaced passes on its permissions, and its owner where that is allowed; one that is
+    write-protected is not replaced. A link stays, and the file that it names is written. Of a file with
+    several names (hard links) only this one becomes the new file, of which is warned. A pipe or
+    device is written to as it is. Raises :class:`UserError` when it cannot be written.
     """
     try:
         if file.exists() and not file.is_file():
@@ -29,9 +42,10 @@ def write_whole(file: Path, content: bytes) -> None:
 
 
 def write_all_whole(contents: Mapping[Path, bytes]) -> None:
-    """Replace several files, all of them or none: all is written beside them before the first is replaced.
+    """Replace several files: all is written beside them before the first is replaced.
 
-    Raises :class:`UserError` when one of them cannot be written; all of them are then as they were.
+    Raises :class:`UserError` when one of them cannot be written; all of them are then as they were, as they
+    are after ctrl-C. Where the process is killed in the middle, each file is the old one or the new one.
     """
     replaced: dict[Path, bytes] = {}
     try:
@@ -42,11 +56,14 @@ def write_all_whole(contents: Mapping[Path, bytes]) -> None:
                 staged.append((target, stack.enter_context(_staged(target, content))))
             for target, partial in staged:
                 before = target.read_bytes()
-                partial.replace(target)
                 replaced[target] = before
-    except OSError as error:
+                partial.replace(target)
+    except BaseException as error:
         for target, before in replaced.items():
-            _replace(target, before)
+            if target.read_bytes() != before:
+                _replace(target, before)
+        if not isinstance(error, OSError):
+            raise
         name = os.fsdecode(error.filename) if error.filename else file
         raise UserError(f"{name}: cannot be written: {error.strerror or error}; no file is changed") from None
 
@@ -72,19 +89,64 @@ def _replace(target: Path, content: bytes) -> None:
 @contextlib.contextmanager
 def _staged(target: Path, content: bytes) -> Iterator[Path]:
     """Write beside a file what will replace it, if it may be replaced; if it has not, it is removed."""
-    # A name that nobody has: no other file of the user's is written over on the way.
-    partial = target.with_name(f".foon-asp.{os.urandom(8).hex()}")
-    mode = None
+    old = None
     if target.exists():
         with target.open("ab"):  # may it be written? Renaming asks the folder alone
-            mode = stat.S_IMODE(target.stat().st_mode)
+            old = target.stat()
+    _clear(target.parent)
+    partial, written = _own_file(target.parent)
     try:
-        with partial.open("xb") as written:
+        with written:
             written.write(content)
             written.flush()
             os.fsync(written.fileno())
-        if mode is not None:
-            partial.chmod(mode)
-        yield partial
+            if old is not None:
+                pass_on(old, partial)
+            if fcntl is None or written.fileno() > _HELD:  # Windows renames no open file
+                written.close()
+            yield partial
+        if old is not None:
+            warn_of_replaced(target, old)
     finally:
         partial.unlink(missing_ok=True)
+
+
+def _own_file(folder: Path) -> tuple[Path, BinaryIO]:
+    """Make a file with a name that nobody has, and open it; it is locked as long as it is open."""
+    while True:
+        partial = folder / f".foon-asp.{os.urandom(8).hex()}"
+        written = partial.open("xb")
+        if _locked(written.fileno(), otherwise=True) and partial.exists():
+            return partial, written
+        written.close()  # before it was locked, another process took it for left over
+
+
+@functools.cache  # once for each folder: fmt writes many files
+def _clear(folder: Path) -> None:
+    """Remove what writes that were killed left in a folder: files of ours that nobody has locked."""
+    with contextlib.suppress(OSError):
+        for name in filter(_PARTIAL.fullmatch, os.listdir(folder)):
+            with contextlib.suppress(OSError):
+                _remove_unlocked(folder / name)
+
+
+def _remove_unlocked(file: Path) -> None:
+    found = os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
+    try:
+        if stat.S_ISREG(os.fstat(found).st_mode) and _locked(found, otherwise=False):
+            file.unlink()
+    finally:
+        os.close(found)
+
+
+def _locked(number: int, otherwise: bool) -> bool:
+    """Lock an open file, and say whether that went well; ``otherwise`` where files cannot be locked."""
+    if fcntl is None:
+        return otherwise
+    try:
+        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return otherwise
+    return True

@@ -199,6 +199,13 @@ def value(term: AST, constants: Constants) -> Symbol | None:
     return None
 
 
+def plain_value(symbol: Symbol) -> str | int | None:
+    """Return a text or a number; ``None`` for anything else, such as a word without quotes."""
+    if symbol.type is SymbolType.Number:
+        return symbol.number
+    return symbol.string if symbol.type is SymbolType.String else None
+
+
 def factors(term: AST) -> list[AST]:
     """Give the two factors of a product, or a term itself."""
     product = (ASTType.BinaryOperation, BinaryOperator.Multiplication)

@@ -34,6 +34,7 @@ _BINARY = {
     BinaryOperator.XOr: "^",
 }
 _UNARY = {UnaryOperator.Minus: "neg", UnaryOperator.Absolute: "abs", UnaryOperator.Negation: "~"}
+_LINEAR = {BinaryOperator.Plus, BinaryOperator.Minus, BinaryOperator.Multiplication}
 _SUMS = {AggregateFunction.Sum, AggregateFunction.SumPlus}
 _AGGREGATES = {ASTType.BodyAggregate, ASTType.HeadAggregate}
 _CALCULATES = re.compile(r"[+*/\\^&?~|]|(?<!:)-|#sum")  # what every rule has that calculates, and others
@@ -180,7 +181,7 @@ def _places(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]]:
         elif atom.ast_type == ASTType.ConditionalLiteral:
             yield from _inner_places(atom, known)
         else:
-            yield part, known
+            yield part, _without(part, known)
 
 
 def _inner_places(
@@ -193,7 +194,7 @@ def _inner_places(
         terms.append(conditional.literal)
         conditional = [*conditional.condition, *([conditional.literal] if counted else ())]
     inner = [*known, *_known(conditional)]
-    yield from ((each, inner) for each in dict.fromkeys((*terms, *conditional)))
+    yield from ((each, _without(each, inner)) for each in dict.fromkeys((*terms, *conditional)))
 
 
 def _terms(place: AST) -> Iterator[AST]:
@@ -221,6 +222,51 @@ def _terms(place: AST) -> Iterator[AST]:
 def _known(body: Iterable[AST]) -> list[AST]:
     """Give what binds variables, and what calculates nothing and counts nothing."""
     return [each for each in body if _binds(each) or not any(map(_calculates, nodes(each)))]
+
+
+def _without(part: AST, known: Sequence[AST]) -> Sequence[AST]:
+    """Leave out a condition where what it calculates is looked at, unless only it gives a variable its value.
+
+    Clingo drops an instance in which an equality leaves its numbers, and with it what would find that.
+    """
+    others = [each for each in known if each != part]
+    bound = _bound(others)
+    inside = {name for term in _terms(part) for name in variables(term)}
+    return [each for each in others if bound.issuperset(variables(each))] if inside <= bound else known
+
+
+def _bound(conditions: Sequence[AST]) -> set[str]:
+    """Return the variables that get a value: from positive atoms, and from equalities to what has one."""
+    bound: set[str] = set()
+    comparisons: list[tuple[AST, AST]] = []
+    for each in filter(_binds, conditions):
+        if each.atom.ast_type != ASTType.Comparison:
+            bound.update(variables(each))
+            continue
+        terms = [each.atom.term, *(guard.term for guard in each.atom.guards)]
+        for guard, left, right in zip(each.atom.guards, terms, terms[1:], strict=False):
+            if guard.comparison == ComparisonOperator.Equal:
+                comparisons += [(left, right), (right, left)]
+    before = -1
+    while before < len(bound):
+        before = len(bound)
+        bound.update(
+            name
+            for one, other in comparisons
+            if bound.issuperset(variables(other))
+            for name in _solved_for(one)
+        )
+    return bound
+
+
+def _solved_for(term: AST) -> Iterator[str]:
+    """Give the variable for which clingo solves an equality: of ``X``, ``X+1``, ``2*X`` and the like."""
+    if term.ast_type == ASTType.Variable:
+        yield term.name
+    elif term.ast_type == ASTType.BinaryOperation and term.operator_type in _LINEAR:
+        sides = (term.left, term.right)
+        if any(_number(side) is not None for side in sides):
+            yield from (name for side in sides for name in _solved_for(side))
 
 
 def _calculates(node: AST) -> bool:

@@ -29,9 +29,11 @@ from foon_asp.rules.clause import (
     constant_values,
     literals,
     place,
+    plain_value,
     value,
 )
 from foon_asp.rules.dependence import AVAILABLE, USE, Dependence, Depends, Doubt
+from foon_asp.rules.fact_values import COLUMNS, misplaced
 from foon_asp.rules.locality import Locality
 
 
@@ -62,6 +64,8 @@ _WITHOUT_EFFECT = {
     ASTType.ShowSignature,
 }
 
+
+_NEVER = "a condition in it never holds"
 
 # What our encoding of a tree says of a predicate that rules may look at, where items do not run out.
 _IMPLIED = "times(U,1) :- use(U)."
@@ -120,7 +124,7 @@ class Analysis:
             list(clauses(each, number, self.constants)) if each.ast_type == ASTType.Rule else []
             for number, each in enumerate(self.statements)
         ]
-        self.of_rule = [[clause for clause in each if not _never(clause.body)] for each in taken]
+        self.of_rule = [[clause for clause in each if self._why_never(clause.body) is None] for each in taken]
         self.live = [clause for each in (*self.of_rule, _implied()) for clause in each]
         self.dependence = Dependence(self.live, self.constants, varied)
         self.lifted = self._find_lifted()
@@ -222,6 +226,25 @@ class Analysis:
                 return self.lifted
             self.lifted -= wrong
 
+    def _why_never(self, body: Iterable[Part]) -> str | None:
+        """Say why a body cannot hold, whatever the facts are; ``None`` where it may."""
+        for part in body:
+            if isinstance(part, Test | Aggregate) and part.holds is False:
+                return _NEVER
+            if isinstance(part, Literal) and part.positive and part.signature in COLUMNS:
+                known = {place: value(each, self.constants) for place, each in enumerate(part.arguments)}
+                values = {place: plain_value(each) for place, each in known.items() if each is not None}
+                wrong = misplaced(COLUMNS[part.signature], values)
+                if wrong is not None:
+                    texts = wrong in COLUMNS[part.signature].texts
+                    kind = (
+                        f"{part.arguments[wrong]} is no text in quotes"
+                        if texts
+                        else f"{part.arguments[wrong]} is no number"
+                    )
+                    return f"{part.text} never holds, since {kind}"
+        return None
+
     def _why_both(self, clause: Clause) -> Doubt:
         """Say why units may break a rule and mend it."""
         for part in clause.body:
@@ -235,9 +258,10 @@ class Analysis:
             reason = f"{str(statement).split(maxsplit=1)[0]} is nothing that is looked into"
             return Rule(source, Kind.OTHER, reason, source, reason, source)
         if not live:
-            off = "a condition in it never holds, so it has no effect"
-            helper = any(clause.constraint for clause in clauses(statement, 0, self.constants))
-            return Rule(source, Kind.FACT if helper else Kind.HELPER, off, source)
+            idle = list(clauses(statement, 0, self.constants))
+            off = next((why for each in idle if (why := self._why_never(each.body))), _NEVER)
+            kind = Kind.FACT if any(clause.constraint for clause in idle) else Kind.HELPER
+            return Rule(source, kind, f"{off}, so it has no effect", source)
         found = [self.kind(clause) for clause in live]
         kind = _together(kind for kind, _ in found)
         doubt = next((doubt for _, doubt in found if doubt), None)
@@ -266,11 +290,6 @@ def _together(kinds: Iterable[Kind]) -> Kind:
     if found == {Kind.DELETING, Kind.SHRINKING}:
         return Kind.SHRINKING
     return found.pop() if len(found) == 1 else Kind.OTHER
-
-
-def _never(body: Iterable[Part]) -> bool:
-    """Whether a body cannot hold, whatever the facts are."""
-    return any(isinstance(part, Test | Aggregate) and part.holds is False for part in body)
 
 
 @cache

@@ -5,6 +5,8 @@ from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
 
+import msgspec
+
 from foon_asp.asp import Reporter, Settings, Status
 from foon_asp.deadline import Cancel, Deadline, StoppedError, stoppable
 from foon_asp.errors import UserError
@@ -12,13 +14,13 @@ from foon_asp.foon import Foon
 from foon_asp.problem import Costs, Objective, Problem, UsedUp
 from foon_asp.questions.arguments import chosen_objectives
 from foon_asp.questions.caller import Caller, asked_by
-from foon_asp.questions.regret import Part, loss_text, regret_of
+from foon_asp.questions.regret import regret_of
 from foon_asp.questions.view import Beside, View, pages
-from foon_asp.report.answer import bound_text, costs_text, headline
+from foon_asp.report.answer import bound_text, costs_text
 from foon_asp.rules.constraint import Constraint, RuleText, find_constraint
 from foon_asp.serve.form import Form, Without
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.goal_name import nodes_beginning, notation
+from foon_asp.text.goal_name import entry_names, nodes_beginning
 from foon_asp.text.json_value import Json
 
 _KEPT = 4  # pages
@@ -90,12 +92,12 @@ class Desk:
         """Give what the page knows when it opens."""
         dataset = self._foon.dataset
         return {
-            "goals": [entry.pattern.label for entry in dataset.listed],
-            "kitchen": sorted(notation(dataset.names.node(o)) for o in dataset.kitchen),
+            "goals": [*entry_names(dataset.listed, dataset.names)],
+            "kitchen": sorted(str(dataset.names.node(o)) for o in dataset.kitchen),
             "objectives": [*Objective, *dataset.measures],
             "beside": [*Beside],
             "always": self._always(),
-            "first": self._first._asdict(),
+            "first": msgspec.to_builtins(self._first),
         }
 
     def _always(self) -> list[str]:
@@ -111,7 +113,7 @@ class Desk:
     def names(self, start: str) -> list[str]:
         """Give object nodes whose names begin so, in the notation by which they are asked for."""
         names = self._foon.dataset.names
-        return [notation(names.node(o)) for o in nodes_beginning(start, names, _NAMES)]
+        return [str(names.node(o)) for o in nodes_beginning(start, names, _NAMES)]
 
     def page(self, number: int) -> str | None:
         """Give a page by its number, ``None`` where it is no longer kept."""
@@ -144,17 +146,17 @@ class Desk:
             named = {"constraints": rules, "constants": how.constants, "encodings": how.encodings}
             for page in pages(problem, chosen, how, form.beside, named):
                 assert page.answer is not None
-                tell({"kind": "page", "number": self._kept(page, rules), "text": headline(page.answer)})
+                tell({"kind": "page", "number": self._kept(page, rules), "text": page.answer.claim})
 
         self._run(answer, token, tell)
 
     def _problem(self, form: Form) -> Problem:
         foon = self._foon.vary(adding=form.adding, without=form.without)
-        if form.items == "lasting":
-            return foon.problem(*form.goals, containers=form.containers)
-        there = set(foon.kitchen)  # what was taken from the kitchen is not in stock
-        stock = {node: count for node, count in self._used_up.stock.items() if node in there}
-        stays = dict(self._used_up.told)
+        stock = stays = None
+        if form.items != "lasting":
+            there = set(foon.kitchen)  # what was taken from the kitchen is not in stock
+            stock = {node: count for node, count in self._used_up.stock.items() if node in there}
+            stays = self._used_up.told
         return foon.problem(
             *form.goals, containers=form.containers, items=form.items, stock=stock, stays=stays
         )
@@ -169,23 +171,24 @@ class Desk:
             best, network = view.answer, view.answer.problem.network
             if best.status is not Status.OPTIMAL:
                 raise UserError("the tree is not proved best")
-            if asked.unit is not None:
-                part, found = Part.UNIT, network.unit_of_number(asked.unit)
-            else:
-                of_item = (o for o in best.problem.kitchen if str(network.objects[o]) == asked.item)
-                part, found = Part.ITEM, next(of_item, None)
-            if found is None:
+            unit = None if asked.unit is None else network.unit_of_number(asked.unit)
+            of_item = (o for o in best.problem.kitchen if str(network.objects[o]) == asked.item)
+            item = next(of_item, None)
+            if unit is None and item is None:
                 raise UserError("the tree has nothing of that kind")
             how = self._how._replace(constraints=rules, deadline=deadline)
-            told.event({"kind": "without", "text": loss_text(best, regret_of(best, part, found, how))})
+            regret = regret_of(best, how, unit, item)
+            text = regret.loss_text(best.objectives[0])
+            if regret.costs is not None:
+                text += f"; the best is then {costs_text(regret.costs, best.objectives)}"
+            told.event({"kind": "without", "text": text})
 
         self._run(answer, token, tell)
 
     def _kept(self, page: View, rules: Rules) -> int:
         self._number += 1
         self._pages[self._number] = page, rules
-        for old in sorted(self._pages)[:-_KEPT]:
-            del self._pages[old]
+        self._pages.pop(self._number - _KEPT, None)
         return self._number
 
     def _run(self, answer: Callable[[Deadline, _Told], None], token: Cancel, tell: Tell) -> None:

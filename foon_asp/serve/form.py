@@ -1,72 +1,55 @@
 """What somebody asks on the page: plain words, read from JSON, in which nothing names a file."""
 
-from typing import Any, NamedTuple, get_args, get_type_hints
+from typing import Any, TypeVar
+
+import msgspec
 
 from foon_asp.errors import UserError
-from foon_asp.problem import ITEMS, ContainerRule
+from foon_asp.problem import ContainerRule
 from foon_asp.questions.view import Beside
 from foon_asp.text.json_value import read_json
 
 Names = tuple[str, ...]
+Asked = TypeVar("Asked", bound=msgspec.Struct)
 
 
-class Form(NamedTuple):
+class Form(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One question: ``adding`` and ``without`` change the kitchen, ``rules`` is the text of the box."""
 
     goals: Names = ()
     objectives: Names = ("units",)
-    containers: str = "strict"
+    containers: ContainerRule = ContainerRule.STRICT
     items: str = "lasting"
     adding: Names = ()
     without: Names = ()
     rules: str = ""
-    beside: Names = ()
+    beside: tuple[Beside, ...] = ()
 
 
-_CHOICES = {"containers": tuple(ContainerRule), "items": ITEMS, "beside": tuple(Beside)}
-
-
-def read_form(text: bytes) -> Form:
-    """Read a question; raises :class:`UserError` for whatever is none."""
-    return Form(**_read(text, get_type_hints(Form)))
-
-
-class Without(NamedTuple):
-    """What is the optimum of the answer ``page`` without one ``unit``, or one kitchen ``item``?"""
+class Without(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The optimum of the answer ``page`` without one ``unit``, or without one kitchen ``item``."""
 
     page: int
     unit: int | None = None
     item: str | None = None
 
-
-def read_without(text: bytes) -> Without:
-    """Read such a question; raises :class:`UserError` for whatever is none."""
-    found = _read(text, get_type_hints(Without))
-    if "page" not in found or ("unit" in found) == ("item" in found):
-        raise UserError("expected a page, and a unit or an item")
-    return Without(**found)
+    def __post_init__(self) -> None:
+        """Raise :class:`ValueError` for a unit and an item, or for neither."""
+        if (self.unit is None) == (self.item is None):
+            raise ValueError("expected a unit or an item")
 
 
-def _read(text: bytes, kinds: dict[str, object]) -> dict[str, Any]:
-    """Read an object whose keys are of these kinds."""
+def read_question(text: bytes, kind: type[Asked]) -> Asked:
+    """Read a question of a kind from JSON; raises :class:`UserError` for whatever is none."""
     try:
-        given = read_json(text)
+        return msgspec.convert(read_json(text, _object), kind)
     except ValueError as error:
-        raise UserError(f"found a question that is no JSON: {error}") from None
-    if not isinstance(given, dict):
-        raise UserError("found a question that is no JSON object")
-    if unknown := sorted(given.keys() - kinds.keys()):
-        raise UserError(f"found {unknown[0]!r}, expected one of {', '.join(kinds)}")
-    found: dict[str, Any] = {}
-    for name, value in given.items():
-        kind = kinds[name]
-        many = kind == Names
-        allowed = (str,) if many else get_args(kind) or (kind,)
-        values = value if many and isinstance(value, list) else [value]
-        if isinstance(value, list) != many or not all(type(each) in allowed for each in values):
-            raise UserError(f"found another kind of value for {name!r}")
-        for each in values:
-            if name in _CHOICES and each not in _CHOICES[name]:
-                raise UserError(f"found {name} {each!r}, expected one of {', '.join(_CHOICES[name])}")
-        found[name] = tuple(values) if many else value
-    return found
+        raise UserError(f"found what is no question: {error}") from None
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Make an object; raises :class:`ValueError` where a key stands twice in it."""
+    value = dict(pairs)
+    if len(value) < len(pairs):
+        raise ValueError("a key stands twice in one object")
+    return value

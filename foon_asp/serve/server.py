@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import uvicorn
 
+from foon_asp.serve.connection import Connection
 from foon_asp.serve.desk import Desk
 from foon_asp.serve.site import site
 
@@ -19,6 +20,8 @@ def serve(desk: Desk, ready: Callable[[str], object]) -> None:
         port = listener.getsockname()[1]
         config = uvicorn.Config(
             site(desk, token, port),
+            http=Connection,
+            backlog=128,  # connections that are accepted before the first of them is looked at
             access_log=False,  # it would have the token
             log_config=None,
             log_level="critical",

@@ -7,7 +7,7 @@ refused before anything else is looked at. No address is a path of a file.
 import asyncio
 import contextlib
 import hmac
-import threading
+import re
 from collections.abc import AsyncIterator, Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -18,16 +18,18 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, Response, StreamingResponse
 from starlette.routing import Route
 
+from foon_asp.aside import Aside
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
-from foon_asp.report.page import digest, in_script, web
+from foon_asp.pictures.page import digest, in_script, web
 from foon_asp.serve.desk import Desk, Tell
-from foon_asp.serve.form import read_form, read_without
+from foon_asp.serve.form import Form, Without, read_question
 from foon_asp.text.json_value import Json, json_line
 
 Asgi = Callable[[Any, Any, Any], Any]
 
 _LONGEST = 1_000_000  # bytes of a question
+_NUMBER = re.compile("[0-9]{1,18}")  # Python reads no number of any length
 _WEB = Path(__file__).resolve().parent / "web"
 _HEADERS = {
     "content-security-policy": "default-src 'none'; frame-ancestors 'none'",
@@ -47,7 +49,8 @@ def site(desk: Desk, token: str, port: int) -> Asgi:
         return HTMLResponse(page, headers={"content-security-policy": policy})
 
     def answer(request: Request) -> Response:
-        page = desk.page(request.path_params["number"])
+        number = request.path_params["number"]
+        page = desk.page(int(number)) if _NUMBER.fullmatch(number) else None
         if page is None:
             return PlainTextResponse("this page is no longer kept: ask again", 404)
         return HTMLResponse(page, headers={"content-security-policy": "frame-ancestors 'self'"})
@@ -56,10 +59,10 @@ def site(desk: Desk, token: str, port: int) -> Asgi:
         return JSONResponse(desk.names(request.query_params.get("start", "")))
 
     async def ask(request: Request) -> Response:
-        return await _told(request, desk, lambda body: partial(desk.ask, read_form(body)))
+        return await _told(request, desk, lambda body: partial(desk.ask, read_question(body, Form)))
 
     async def without(request: Request) -> Response:
-        return await _told(request, desk, lambda body: partial(desk.without, read_without(body)))
+        return await _told(request, desk, lambda body: partial(desk.without, read_question(body, Without)))
 
     async def cancel(_: Request) -> Response:
         desk.cancel()
@@ -67,7 +70,7 @@ def site(desk: Desk, token: str, port: int) -> Asgi:
 
     routes = [
         Route(f"/{token}/", opened),
-        Route(f"/{token}/page/{{number:int}}", answer),
+        Route(f"/{token}/page/{{number}}", answer),
         Route(f"/{token}/names", names),
         Route(f"/{token}/ask", ask, methods=["POST"]),
         Route(f"/{token}/without", without, methods=["POST"]),
@@ -94,7 +97,8 @@ def _guarded(app: Asgi, token: str, host: str) -> Asgi:
         for name, value in scope["headers"]:
             headers.setdefault(name.decode("latin-1").lower(), []).append(value.decode("latin-1"))
         refused = _refused(scope["method"], scope["path"], headers, token, host)
-        await (app if refused is None else PlainTextResponse("refused", refused))(scope, receive, sent)
+        refusal = PlainTextResponse("refused", refused or 200, {"connection": "close"})
+        await (app if refused is None else refusal)(scope, receive, sent)
 
     return guarded
 
@@ -142,7 +146,7 @@ async def _told(
             finally:
                 tell(None)
 
-        threading.Thread(target=work, daemon=True, name="foon-asp answer").start()
+        Aside(work)
         try:
             while (event := await queue.get()) is not None:
                 yield json_line(event) + "\n"

@@ -7,7 +7,7 @@ from zlib import crc32
 from foon_asp.text.json_value import read_json
 
 APPLICATION_ID = 0x464F4F4E  # "FOON", in SQLite's header
-VERSION = 6  # of what is in the tables; SQLite's user_version
+VERSION = 7  # of what is in the tables; SQLite's user_version
 
 _CHECKSUM = 4  # bytes in front of every block
 
@@ -16,7 +16,8 @@ class Table(StrEnum):
     """The tables of a store. Each has the columns ``number`` (from 0) and ``content``, a block.
 
     ``about``: counts, and what stands beside the network. ``unit``, ``node``, ``producers``, ``motion``,
-    ``origin``, ``kitchen``, ``price``: what belongs to the ids from ``number`` times :data:`SIZES` on.
+    ``origin``, ``kitchen``, ``price``, ``starting``, ``file``: what belongs to the
+    ids from ``number`` times :data:`SIZES` on.
     ``node_hash``: node ids by hash. ``label``: the labels in alphabetical order, with their first nodes.
     ``trigram``: places of labels by three letters of them. ``outline``: columns of bare numbers, see
     :class:`~foon_asp.store.outline.Column`.
@@ -33,6 +34,8 @@ class Table(StrEnum):
     ORIGIN = "origin"
     KITCHEN = "kitchen"
     PRICE = "price"
+    STARTING = "starting"
+    FILE = "file"
     OUTLINE = "outline"
 
 
@@ -48,6 +51,8 @@ SIZES = {
     Table.ORIGIN: 64,
     Table.KITCHEN: 64,
     Table.PRICE: 64,
+    Table.STARTING: 256,
+    Table.FILE: 16,
 }
 
 _encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode

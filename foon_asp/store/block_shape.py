@@ -180,11 +180,20 @@ _COUNTS: dict[str, Shape] = {
     **dict.fromkeys(("hash_blocks", "trigram_blocks"), _positive),
     "kitchen": _maybe(_number),
     "goals_from": _text,
+    "repeated": _list(_row(_text, _text, _number, _number, _flag)),
 }
 
 _texts = _list(_text)
 _relations = _list(_row(_text, _text))
-_entry = _row(_text, _texts, _texts, _maybe(_text), _relations, _text, _number, _number)
+_by_word = _list(_row(_text, _texts))
+
+
+def _held(value: Any) -> bool:
+    """Ingredients, or contents by word."""
+    return _texts(value) or _by_word(value)
+
+
+_entry = _row(_text, _texts, _held, _maybe(_text), _relations, _text, _number, _number)
 
 _ABOUT: tuple[Shape, ...] = (
     _counts,
@@ -205,5 +214,7 @@ _SHAPES: dict[Table, Shape] = {
     Table.MOTION: _block(Table.MOTION, _row(_text, _text, _number, _number, *[_number] * 4)),
     Table.ORIGIN: _block(Table.ORIGIN, _row(_text, _texts)),
     Table.KITCHEN: _block(Table.KITCHEN, _entry),
+    Table.STARTING: _block(Table.STARTING, lambda value: _flag(value) or (_numbers(value) and bool(value))),
+    Table.FILE: _block(Table.FILE, lambda value: _number(value) or _numbers(value)),
     Table.PRICE: _block(Table.PRICE, _maybe(_row(_maybe(_price), _maybe(_price)))),
 }

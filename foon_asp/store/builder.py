@@ -7,10 +7,11 @@ from array import array
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import islice
+from itertools import accumulate, islice
 from typing import Any
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
+from foon_asp.network.starting import recipe_kitchen
 from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, sealed, table_statement, unseal
 from foon_asp.store.label_index import LISTED, trigram_blocks, trigram_values
 from foon_asp.store.numbering import Numbering
@@ -26,6 +27,7 @@ from foon_asp.store.plain_values import (
 from foon_asp.store.stated_digests import StatedDigests, price_digest
 from foon_asp.text.assumed_goals import as_entry, wanted_outputs
 from foon_asp.text.object_list import ListedObject
+from foon_asp.text.repeated_node import RepeatedNode
 from foon_asp.text.unit_price_list import UnitPriceList
 
 _LATER_COPIES = 100_000  # copies of units written before, kept back to be written together
@@ -73,6 +75,10 @@ class StoreBuilder:
         self._origins: dict[tuple[str, tuple[str, ...]], int] = {}
         self._last_origin: tuple[str, tuple[str, ...]] | None = None
         self._last_number = -1
+        self._copy_units = array("I")  # by copy of a unit: which it is, and where
+        self._copy_origins = array("I")
+        self._copy_lines = array("I")
+        self._copy_columns = array("I")
         self._labels: dict[str, int] = {}
         self._label_of = array("I")  # by node
         self._hashes = array("I")
@@ -121,9 +127,13 @@ class StoreBuilder:
                 self._last_origin = (file, videos)
                 self._last_number = self._origins.setdefault(self._last_origin, len(self._origins))
             places += (self._last_number, line, column)
+            self._copy_origins.append(self._last_number)
+            self._copy_lines.append(line)
+            self._copy_columns.append(column)
         self.copies += 1
         new = len(self._units)
         unit = self._units.number(_unit_content(motion_id, ins, outs))
+        self._copy_units.extend([unit] * len(sources))
         block = self._unit_block
         at_hand = new - len(block)  # the first unit of the block
         if unit == new:
@@ -178,12 +188,14 @@ class StoreBuilder:
         rates: Mapping[str, Fraction] | None,
         utensils: Iterable[str] | None,
         left_out: int,
+        repeated: Sequence[RepeatedNode],
         stated: Mapping[FunctionalUnit, Fraction],
         listed: UnitPriceList | None,
     ) -> None:
         """Write what is left, and the indexes; ``left_out`` counts lines that were not understood.
 
         ``goals_from`` says what the goals were assumed from, and is empty where a file lists them.
+        ``repeated`` are nodes that a unit lists twice.
         ``stated`` are prices that networks have for their units, ``listed`` those of a file, if there is one.
         """
         self._flush(Table.UNIT, self.units - 1, self._unit_block)
@@ -196,6 +208,7 @@ class StoreBuilder:
         self._latest.clear()
         self._same.clear()
         self._write_outline()
+        self._write_starting(objects)
         producers = _by_key(self._made, self._makers, objects)
         self._write_values(Table.PRODUCERS, producers)
         hashes, hashed = self._hashes, self._hashed
@@ -229,6 +242,7 @@ class StoreBuilder:
             "left_out": left_out,
             "prices": priced,
             "goals_from": goals_from,
+            "repeated": [[node, *source[:3], int(meant)] for node, source, meant in repeated],
         }
         by_motion = listed.motions if listed else {} if priced else None
         settled = {**own, **beside_own}
@@ -377,6 +391,46 @@ class StoreBuilder:
             self._insert(Table.OUTLINE, number, sealed(Table.OUTLINE, number, column.tobytes()))
             if sys.byteorder == "big":
                 column.byteswap()
+
+    def _write_starting(self, objects: int) -> None:
+        """Write the units of each file in its order, and the starting kitchen: the union over the files."""
+        first: dict[str, int] = {}  # the first origin of each file
+        file_of = [first.setdefault(file, number) for number, (file, _) in enumerate(self._origins)]
+        copies = _by_key(
+            array("I", (file_of[origin] for origin in self._copy_origins)),
+            range(len(self._copy_units)),
+            len(file_of),
+        )
+        starting = bytearray(objects)
+        granting: defaultdict[int, list[int]] = defaultdict(list)
+        input_ends, output_ends = (
+            array("Q", accumulate(counts, initial=0)) for counts in (self._inputs, self._outputs)
+        )
+
+        def rows() -> Iterator[int | list[int]]:
+            for origin, places in enumerate(copies):
+                if file_of[origin] != origin:
+                    yield file_of[origin]
+                    continue
+                units = self._in_order(places)
+                found = recipe_kitchen(
+                    (self._taken[input_ends[unit] : input_ends[unit + 1]] for unit in units),
+                    (self._made[output_ends[unit] : output_ends[unit + 1]] for unit in units),
+                )
+                for o in found.raw:
+                    starting[o] = 1
+                for o in found.granted:
+                    granting[o].append(origin)
+                yield units
+
+        self._write_values(Table.FILE, rows())
+        self._write_values(Table.STARTING, (granting.get(o) or starting[o] for o in range(objects)))
+
+    def _in_order(self, copies: list[int]) -> list[int]:
+        """Return the units of these copies, each once, in the order of their lines."""
+        lines, columns = self._copy_lines, self._copy_columns
+        copies.sort(key=lambda copy: (lines[copy], columns[copy], self._copy_units[copy]))
+        return list(dict.fromkeys(self._copy_units[copy] for copy in copies))
 
     def _write_values(self, table: Table, values: Iterable[object]) -> None:
         waiting = iter(values)

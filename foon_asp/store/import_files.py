@@ -3,7 +3,6 @@
 import contextlib
 import os
 import sqlite3
-import stat
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -11,6 +10,7 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.problem import unrated_remarks
+from foon_asp.replacing import pass_on, warn_of_replaced
 from foon_asp.store.builder import StoreBuilder
 from foon_asp.store.stated_digests import StatedDigests
 from foon_asp.store.store_file import is_database_of_ours
@@ -22,6 +22,7 @@ from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
+from foon_asp.text.repeated_node import repeated_note
 from foon_asp.text.unit_price_list import read_unit_prices
 
 
@@ -64,7 +65,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
             builder = StoreBuilder(database, kitchen, digests)
             for file in files.network:
                 if is_store(file):
-                    raise UserError(f"{file}: is a store already; import the files that it was made from")
+                    raise UserError(f"{file}: is a store already; merge the files that it was made from")
                 last: tuple[int, Source] | None = None
                 for motion, inputs, outputs, sources in reader.file_units(file):
                     added = builder.add(motion, inputs, outputs, sources)
@@ -83,7 +84,9 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
                 if builder.unit_id(unit) is None:
                     warnings.append(unit_price_warning(unit, source))
             counts = builder.copies, builder.units, builder.objects
-            builder.finish(goals, goals_from, rates, utensils, reader.left_out, stated, prices)
+            builder.finish(
+                goals, goals_from, rates, utensils, reader.left_out, reader.repeated, stated, prices
+            )
     except sqlite3.Error as error:
         raise UserError(f"{store}: cannot be written: {error}") from None
     except OSError as error:
@@ -91,8 +94,9 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     for entry, matched in zip(kitchen or (), builder.matched, strict=True):
         if not matched:
             warnings.append(kitchen_item_warning(entry))
-    remarks = () if rates is None else tuple(unrated_remarks(builder.motion_sources(), rates))
-    return Imported(*counts, tuple(warnings), reader.left_out, remarks)
+    remarks = [] if rates is None else [*unrated_remarks(builder.motion_sources(), rates)]
+    remarks += repeated_note(reader.repeated)
+    return Imported(*counts, tuple(warnings), reader.left_out, tuple(remarks))
 
 
 @contextlib.contextmanager
@@ -123,10 +127,14 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
         database.close()
         with partial.open("rb+") as file:
             os.fsync(file.fileno())
+        old = None
         if store.exists():
             with store.open("rb+"):  # may it be written? Renaming asks the folder alone
-                partial.chmod(stat.S_IMODE(store.stat().st_mode))
+                old = store.stat()
+            pass_on(old, partial)
         partial.replace(store)
+        if old is not None:
+            warn_of_replaced(store, old)
     finally:
         database.close()
         if locked:

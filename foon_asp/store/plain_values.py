@@ -46,7 +46,7 @@ def entry_values(entry: ListedObject) -> list[object]:
     return [
         pattern.label,
         sorted(pattern.states),
-        pattern.ingredients,
+        pattern.contents or pattern.ingredients,
         pattern.container,
         sorted(pattern.relations),
         source.file,
@@ -57,15 +57,22 @@ def entry_values(entry: ListedObject) -> list[object]:
 
 def entry_of(values: list[Any]) -> ListedObject:
     """Give the entry back."""
-    label, states, ingredients, container, relations, file, line, column = values
+    label, states, held, container, relations, file, line, column = values
+    contents = tuple(Contents(word, tuple(items)) for word, items in held) if _has_words(held) else ()
     pattern = NodePattern(
         label,
         frozenset(states),
-        tuple(ingredients),
+        ObjectNode("", contents=contents).ingredients if contents else tuple(held),
         container,
         frozenset(Relation(word, related) for word, related in relations),
+        contents,
     )
     return ListedObject(pattern, Source(file, line, column))
+
+
+def _has_words(held: list[Any]) -> bool:
+    """Whether an entry has what a node contains by word, and not its ingredients alone."""
+    return bool(held) and not isinstance(held[0], str)
 
 
 def node_hashes(node: ObjectNode) -> list[int]:

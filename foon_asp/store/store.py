@@ -1,7 +1,7 @@
 """A store, opened to ask questions: names, and the part of the network that a question is about."""
 
 from collections import Counter
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 from foon_asp.garbage import uncollected
 from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
 from foon_asp.network.network import UnitKey
+from foon_asp.network.starting import goal_changes, recipe_kitchen
 from foon_asp.problem import ContainerRule, Unpriced, needed_inputs
 from foon_asp.store.block import Table
 from foon_asp.store.cone import Cone
@@ -18,6 +19,7 @@ from foon_asp.store.label_index import LabelIndex
 from foon_asp.store.plain_values import entry_of, node_hashes, node_of, pattern_hash
 from foon_asp.store.store_file import StoreFile
 from foon_asp.text.object_list import ListedObject
+from foon_asp.text.repeated_node import RepeatedNode
 
 if TYPE_CHECKING:  # few answers need numpy
     from foon_asp.store.outline import Outline
@@ -43,6 +45,10 @@ class Store:
         self.left_out: int = about["left_out"]
         self.has_kitchen = about["kitchen"] is not None  # if only an empty one
         self.goals_from: str = about["goals_from"]  # what no goals file says
+        self.repeated = tuple(
+            RepeatedNode(node, Source(file, line, column), bool(meant))
+            for node, file, line, column, meant in about["repeated"]
+        )
         self._counts = about
         labels = LabelIndex(self._file, about["labels"], about["trigram_blocks"])
         self.labelled, self.beginning, self.near = labels.labelled, labels.beginning, labels.near
@@ -51,6 +57,7 @@ class Store:
         tables = Table.UNIT, Table.NODE, Table.PRODUCERS, Table.MOTION, Table.ORIGIN, Table.PRICE
         each = map(self._file.values, tables)
         self._unit, self._node, self._makers, self._motion, self._origin, self._price_row = each
+        self._starting, self._file_units = map(self._file.values, (Table.STARTING, Table.FILE))
 
     def close(self) -> None:
         """Close the file; to read more of it raises :class:`UserError`."""
@@ -165,8 +172,43 @@ class Store:
         return bool(self._node(object_id)[0])
 
     def is_starting(self, object_id: int) -> bool:
-        """Whether no unit makes the node out of others, see :func:`foon_asp.network.starting_nodes`."""
-        return all(object_id in self._unit(unit)[1] for unit in self.producers(object_id))
+        """Whether the node is in the starting kitchen, see :class:`foon_asp.network.StartingKitchen`."""
+        return bool(self._starting(object_id))
+
+    def starting_kitchen(self) -> frozenset[int]:
+        """Read the whole starting kitchen."""
+        rows = (row for block in self._file.blocks(Table.STARTING) for row in block)
+        return frozenset(o for o, row in enumerate(rows) if row)
+
+    def starting_changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
+        """Return what the starting kitchen has more, and what it lacks, because these are the goals."""
+        makers = {o: self._making(o) for o in goals if o < self.objects and self.is_starting(o)}
+        assumed = [o for o, units in makers.items() if units]
+        return goal_changes(assumed, self._granting, lambda o: self._files_of(makers[o]), self._kitchen_of)
+
+    def made_too(self, objects: Iterable[int]) -> list[int]:
+        """Return those of some nodes that a unit makes out of others."""
+        return [o for o in objects if self._making(o)]
+
+    def _making(self, object_id: int) -> list[int]:
+        """Return the units that make a node out of others."""
+        return [unit for unit in self.producers(object_id) if object_id not in self._unit(unit)[1]]
+
+    def _granting(self, object_id: int) -> list[int]:
+        row: int | list[int] = self._starting(object_id)
+        return row if isinstance(row, list) else []
+
+    def _files_of(self, units: Iterable[int]) -> Iterator[int]:
+        """Return the files of units, by the number of the first origin of each."""
+        for unit in units:
+            for origin in self._unit(unit)[3][::3]:
+                row = self._file_units(origin)
+                yield row if isinstance(row, int) else origin
+
+    def _kitchen_of(self, file: int, goals: Collection[int]) -> set[int]:
+        units = [self._unit(unit) for unit in self._file_units(file)]
+        raw, granted = recipe_kitchen([unit[1] for unit in units], [unit[2] for unit in units], goals)
+        return {*raw, *granted}
 
     def object_id(self, node: ObjectNode) -> int | None:
         """Give the id of a node, or ``None`` when the network does not have it."""

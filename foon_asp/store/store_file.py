@@ -129,7 +129,7 @@ class StoreFile:
             raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
         if header[: len(STORE_MAGIC)] != STORE_MAGIC:
             what = "is empty" if not size else "is no store"
-            raise UserError(f"{file}: {what}; foon-asp import FILES --store {file.name} makes one")
+            raise UserError(f"{file}: {what}; foon-asp merge FILES --store {file.name} makes one")
         if len(header) < _HEADER:
             self.damaged(f"it ends after {size} bytes")
         if int.from_bytes(header[68:72]) != APPLICATION_ID:

@@ -1,23 +1,30 @@
-"""Task trees in files: FOON text, FOON units in JSON, or an answer of foon-asp in JSON."""
+"""Task trees in files: FOON text, FOON units in JSON, an answer of foon-asp in JSON, or atoms of clingo."""
 
+import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, ObjectNode, Source
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source
 from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import Json, read_json, schema_name
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reader import FoonReader
 
 _WITH_TREE = ("answer", "search")  # kinds of documents
+_ATOM = r"[a-z]\w*(?:\([^()]*\))?\.?"
+_ATOMS = re.compile(rf"(?:^[ \t]*{_ATOM}(?:[ \t]+{_ATOM})*[ \t]*(?:\r?\n|\Z))+", re.MULTILINE | re.ASCII)
+_USE = re.compile(r"\buse\((\d+)\)", re.ASCII)
+_SAYS_TREE = "# Task tree for:"  # in the comments that FOON text begins with
 
 
 class ListedTree(NamedTuple):
     """A tree as a file lists it: units with their places in the order listed, ``None`` for an answer without.
 
     ``goals``, ``status``, and the words for ``containers`` and ``items`` are those of an answer, empty for
-    files that do not know them.
+    files that do not know them. ``numbers`` are the ids of the atoms ``use(U)`` of clingo, in place of units.
+    ``is_tree`` is false for FOON that does not say that it is a task tree, and may be a network.
     """
 
     units: tuple[tuple[FunctionalUnit, Source], ...] | None
@@ -25,10 +32,32 @@ class ListedTree(NamedTuple):
     status: str = ""
     containers: str = ""
     items: str = ""
+    numbers: tuple[int, ...] = ()
+    is_tree: bool = True
+
+    def with_units(self, file: Path, network: Callable[[], Network]) -> "ListedTree":
+        """Return the tree with the units that its ``numbers`` stand for, in the whole network.
+
+        Raises :class:`UserError` for a number that the network does not have.
+        """
+        if not self.numbers:
+            return self
+        whole = network()
+        units = []
+        for number in self.numbers:
+            unit = whole.unit_of_number(number)
+            if unit is None:
+                raise UserError(
+                    f"{file}: use({number}): the network has no unit {number}, only 0 to {len(whole) - 1}"
+                )
+            units.append((whole.unit(unit), whole.sources[unit][0]))
+        return self._replace(units=tuple(units), numbers=())
 
 
 def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
     """Read a tree; what ``reader`` has to say of FOON text is in its diagnostics.
+
+    Of what clingo printed, the last answer counts, which is the best.
 
     Raises :class:`UserError` for a document that has no place for a tree, is of another version, or is not of
     the form of ``docs/json.md``.
@@ -37,17 +66,26 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
         raise UserError(f"{file}: no such file")
     text = read_plain_text(file)  # once: a pipe can be read no more than that
     found = _document(text)
+    if numbers := _used(text):
+        return ListedTree((), numbers=numbers)
     if found is None:
-        return ListedTree(tuple(reader.tree_units(text, str(file))))
+        is_tree = _SAYS_TREE in text.partition("//")[0]
+        return ListedTree(tuple(reader.tree_units(text, str(file))), is_tree=is_tree)
     try:
         answer = _with_tree(found)
         units = None if answer["units"] is None else tuple(map(_unit, answer["units"]))
         goals = tuple(map(read_node_json, answer["goals"]))
-        said = (str(answer.get(key, "")) for key in ("status", "containers", "items"))
-        return ListedTree(units, goals, *said)
+        status, containers, items = (str(answer.get(key, "")) for key in ("status", "containers", "items"))
+        return ListedTree(units, goals, status, containers, items)
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise UserError(f"{file}: expected an answer of foon-asp in JSON, but {what}") from None
+
+
+def _used(text: str) -> tuple[int, ...]:
+    """Return the ids in the last lines of atoms with ``use(U)``; none for anything but clingo's answers."""
+    answers = [tuple(map(int, _USE.findall(block))) for block in _ATOMS.findall(text)]
+    return next((numbers for numbers in reversed(answers) if numbers), ())
 
 
 def _document(text: str) -> Json | None:

@@ -20,8 +20,7 @@ def wanted_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterab
 
 def as_entry(node: ObjectNode, source: Source) -> ListedObject:
     """Give a node as an entry of a goals file would name it; ``source`` is where it was read."""
-    pattern = NodePattern(node.label, node.states, node.ingredients, None, node.relations)
-    return ListedObject(pattern, source._replace(videos=()))
+    return ListedObject(NodePattern.of(node), source._replace(videos=()))
 
 
 def last_goals(network: Network, last_units: Mapping[int, Source]) -> list[ListedObject]:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable
 from functools import cache
 
-from foon_asp.network import Contents, ObjectNode, Relation
+from foon_asp.network import Contents, ObjectNode, Relation, unquoted
 from foon_asp.text.grammar import patterns
 from foon_asp.text.line import Line, MotionLine, ObjectLine, Remark, StateLine
 
@@ -17,8 +17,7 @@ def clean_line(text: str) -> Line | None:
 
 def clean_node(notation: str) -> ObjectNode | None:
     """Read a node in one-line notation that is a label alone; ``None`` for any other."""
-    label = "\\" not in notation and _name()(notation)
-    return ObjectNode(notation.strip(" ")) if label else None
+    return ObjectNode(unquoted(notation)) if _name()(notation) else None
 
 
 @cache

@@ -10,7 +10,7 @@ from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line, l
 from foon_asp.text.conversion_times import in_one_field, in_two_fields
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.dialect import Dialect, dialect_of, is_object_list
-from foon_asp.text.formatter import format_text
+from foon_asp.text.formatter import format_text, with_own_mark
 from foon_asp.text.json_layout import lay_out
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_object import read_objects
@@ -112,7 +112,7 @@ class Converter:
         dialect = dialect_of(text, self._reader, file)
         self._is_list = is_object_list(text)
         if dialect is self.target and dialect.is_json:
-            converted = format_text(text, file, self.lenient).text
+            converted = format_text(text, file, self.lenient)
         elif not dialect.is_json and not self.target.is_json:
             converted = self._lines(text, file, lost)
         elif self._is_list:
@@ -134,7 +134,7 @@ class Converter:
         formatted = format_text(text, file, self.lenient, rewrite, self._reader)
         for number, line in enumerate(split_lines(text), 1):
             lost.add(seen.get(line, ()), Source(file, number))
-        return formatted.content.decode()
+        return with_own_mark(formatted)
 
     def _object_list(self, text: str, file: str, lost: "_Tally") -> str:
         if is_json(text):
@@ -358,8 +358,8 @@ def _listed_json(text: str, file: str, errors: list[Diagnostic]) -> list[ObjectB
     """Read a list of objects; a container is a relation without a word, and comes last."""
     elements = JsonList(text, Path(file))
     blocks = []
-    for block, container, _ in read_objects(elements):
-        anywhere = (StateLine(Relation("", container)),) if container is not None else ()
+    for block, pattern, _ in read_objects(elements):
+        anywhere = (StateLine(Relation("", pattern.container)),) if pattern.container is not None else ()
         blocks.append(block._replace(states=block.states + anywhere))
     errors += elements.errors
     return blocks

@@ -15,7 +15,7 @@ from foon_asp.network import (
     UnitPrices,
     network_at_level,
     pattern_at_level,
-    starting_nodes,
+    starting_kitchen,
 )
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.assumed_goals import LAST, MARKED, as_entry, last_goals
@@ -25,6 +25,7 @@ from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, begins_neutral, read_content
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
+from foon_asp.text.repeated_node import RepeatedNode
 from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.unit_price_list import UnitPriceList, read_unit_prices
 
@@ -36,7 +37,7 @@ _FOR_SCHEDULES = {"durations.txt", "tools.txt"}
 _SIDE_TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
 
 STARTING = Path("@starting")
-"""In place of a kitchen file: what no unit makes out of others is at hand."""
+"""In place of a kitchen file: what makes the units of each file run is at hand."""
 
 
 class DataFiles(NamedTuple):
@@ -58,7 +59,7 @@ class Data(NamedTuple):
     ``warnings`` lists what was assumed while reading; ``left_out`` counts the lines dropped.
     ``starting`` says that no file says what is at hand, so that it is the starting kitchen.
     ``goals_from`` says what ``goals`` were assumed from where no file lists them: those *marked*, or the
-    *last* unit of each file; it is empty where a file does.
+    *last* unit of each file; it is empty where a file does. ``repeated`` are nodes that a unit lists twice.
     """
 
     network: Network
@@ -72,6 +73,7 @@ class Data(NamedTuple):
     unit_prices: UnitPrices | None = None
     starting: bool = False
     goals_from: str = ""
+    repeated: tuple[RepeatedNode, ...] = ()
 
 
 def find_data(
@@ -169,7 +171,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     warnings = reader.diagnostics
     starting = files.kitchen in {None, STARTING}
     items = () if files.kitchen is None or starting else tuple(read_object_list(files.kitchen, warnings))
-    kitchen = set(starting_nodes(network)) if starting else set()
+    kitchen = set(starting_kitchen(network).nodes) if starting else set()
     for item in items:
         found = network.find(pattern_at_level(item.pattern, level))
         kitchen.update(found)
@@ -197,6 +199,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         unit_prices(reader.prices, listed),
         starting,
         goals_from,
+        tuple(reader.repeated),
     )
 
 

@@ -70,7 +70,9 @@ def is_object_list(text: str) -> bool:
     """Whether a text lists object nodes, as a kitchen or goals do, and has no functional units."""
     if is_json(text):
         first = next(iter(JsonList(text, Path())), None) if text.lstrip(" \t\r\n")[0] == "[" else None
-        return first is not None and isinstance(first.value, dict) and "input_nodes" not in first.value
+        if first is None or not isinstance(first.value, dict | str):
+            return False
+        return isinstance(first.value, str) or "input_nodes" not in first.value
     starts = {line[:1] for line in split_lines(text)}
     return "O" in starts and "M" not in starts
 

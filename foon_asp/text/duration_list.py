@@ -1,11 +1,13 @@
 """How long motions take: a motion and a number of seconds on each line, and perhaps ``passive``."""
 
+from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
+from foon_asp.errors import UserError
 from foon_asp.network import Source
-from foon_asp.text.exact_price import read_decimal
+from foon_asp.text.exact_price import decimal_text, read_decimal
 from foon_asp.text.line import LineError
 from foon_asp.text.table_rows import read_rows
 
@@ -46,6 +48,23 @@ def read_durations(file: Path) -> dict[str, Duration]:
 
     read_rows(file, "duration", "a number of seconds", read)
     return found
+
+
+def read_default(written: str) -> Fraction:
+    """Read the default duration, as files have durations; raises :class:`UserError` for another form."""
+    try:
+        return _seconds(written.strip(), 1)
+    except LineError as error:
+        raise UserError(f"the default duration: {error}") from None
+
+
+def template_text(motions: Mapping[str, Duration | None]) -> str:
+    """Return a file of durations in which the word SECONDS stands for those that are not known."""
+    lines = ["# motion, tab, seconds (or 25 min, 1.5 h); behind another tab passive, if nobody stands by"]
+    for motion, known in motions.items():
+        seconds = "SECONDS" if known is None else decimal_text(Fraction(known.seconds))
+        lines.append(f"{motion}\t{seconds}" + ("\tpassive" if known is not None and known.passive else ""))
+    return "\n".join(lines) + "\n"
 
 
 def _seconds(written: str, column: int) -> Fraction:

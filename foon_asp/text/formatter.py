@@ -1,9 +1,7 @@
 """The canonical form of FOON files: what ``foon-asp fmt`` writes."""
 
 import re
-from collections.abc import Callable, Iterable
-from itertools import takewhile
-from typing import NamedTuple
+from collections.abc import Callable
 
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
@@ -21,27 +19,6 @@ Rewrite = Callable[[Line, str], str]
 """What becomes of a line, given what it says and how it is written."""
 
 
-class Change(NamedTuple):
-    """One line that is written otherwise; ``before`` and ``after`` are equal where only its end changes."""
-
-    line: int
-    before: str
-    after: str
-
-
-class Formatted(NamedTuple):
-    """A text in canonical form, and which of its lines were not."""
-
-    text: str
-    changes: tuple[Change, ...]
-
-    @property
-    def content(self) -> bytes:
-        """Give the bytes of the file."""
-        # A first line that begins with the mark would lose it to the next reader, and mean something else.
-        return (_MARK + self.text if self.text.startswith(_MARK) else self.text).encode()
-
-
 def mend(line: Line, written: str) -> str:
     """Give the canonical form of a line: itself, unless there is a remark on more than blanks in it.
 
@@ -55,7 +32,7 @@ def mend(line: Line, written: str) -> str:
 
 def format_text(
     text: str, file: str, lenient: bool = False, rewrite: Rewrite = mend, reader: FoonReader | None = None
-) -> Formatted:
+) -> str:
     """Bring a text into canonical form, line by line; it means the same before and after.
 
     Blanks at the end of lines go, every line ends in the way that most do, a last unit is closed by ``//``.
@@ -88,22 +65,19 @@ def format_text(
         new.append(found)
     if errors:
         raise InputError(errors)
-    changes = [
-        Change(number, before, after)
-        for number, (before, after, its_end) in enumerate(zip(lines, new, [*ends, end], strict=True), 1)
-        if before != after or its_end != end
-    ]
     last = len(new) - 1
     while last >= 0 and not new[last]:
         last -= 1
     if _is_open_unit(lines, reader):
-        changes.append(Change(last + 1, new[last], new[last] + "\n//"))
         new.insert(last + 1, "//")
     if new[-1]:
-        if len(changes) == 0 or changes[-1].line != len(lines):
-            changes.append(Change(len(lines), lines[-1], lines[-1]))
         new.append("")
-    return Formatted(end.join(new), tuple(changes))
+    return end.join(new)
+
+
+def with_own_mark(text: str) -> str:
+    """Return what to write for a text: a byte order mark that begins it would be lost in reading."""
+    return _MARK + text if text.startswith(_MARK) else text
 
 
 def _format_line(line: str, reader: FoonReader, rewrite: Rewrite) -> tuple[str, LineError | None]:
@@ -129,33 +103,20 @@ def _is_open_unit(lines: list[str], reader: FoonReader) -> bool:
     return len(motions) == 1 and any(isinstance(line, ObjectLine) for line in rest[: motions[0]])
 
 
-def _format_json(text: str, file: str, lenient: bool) -> Formatted:
+def _format_json(text: str, file: str, lenient: bool) -> str:
     """Lay out JSON anew; the line end behind the last bracket is there or not, as before."""
     try:
         check_json(text, file)
     except InputError:
         if not lenient:
             raise
-        return Formatted(text, ())
+        return text
     end = _usual(_LINE_END.findall(text))
     laid_out = lay_out(text) + ("\n" if text.rstrip(" \t")[-1:] in {"\r", "\n"} else "")
-    before, after = split_lines(text), laid_out.split("\n")
-    new_text = laid_out.replace("\n", end)
-    if new_text == text:
-        return Formatted(text, ())
-    same = _same(zip(before, after, strict=False))
-    most = min(len(before), len(after)) - same
-    same_at_end = min(most, _same(zip(reversed(before), reversed(after), strict=False)))
-    last = max(same + 1, len(before) - same_at_end)
-    changes = [
-        Change(index + 1, old, after[index] if index < len(after) else "")
-        for index, old in enumerate(before)
-        if min(same, len(before) - 1) <= index < last
-    ]
-    return Formatted(new_text, tuple(changes))
+    return laid_out.replace("\n", end)
 
 
-def _format_neutral(text: str, file: str, lenient: bool) -> Formatted:
+def _format_neutral(text: str, file: str, lenient: bool) -> str:
     """Lay out each line of the neutral form anew; a line that cannot be understood stays if ``lenient``."""
     from foon_asp.text.neutral_units import read_neutral_units  # noqa: PLC0415 (most files are none)
 
@@ -169,19 +130,9 @@ def _format_neutral(text: str, file: str, lenient: bool) -> Formatted:
     if new[-1]:
         new.append("")
     end = _usual(_LINE_END.findall(text))
-    pairs = enumerate(zip(lines, new, strict=False), 1)
-    changes = [Change(number, before, after) for number, (before, after) in pairs if before != after]
-    new_text = end.join(new)
-    if new_text != text and not changes:
-        changes = [Change(len(lines), lines[-1], lines[-1])]
-    return Formatted(new_text, tuple(changes))
+    return end.join(new)
 
 
 def _usual(ends: list[str]) -> str:
     """Give the line end that most lines have."""
     return max(("\n", "\r\n", "\r"), key=ends.count)
-
-
-def _same(pairs: Iterable[tuple[str, str]]) -> int:
-    """Count the pairs of equal lines before the first that are not."""
-    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))

@@ -1,28 +1,30 @@
 """Finding the object node that a name means: of a goal, or of a thing in the kitchen."""
 
+import re
 import shlex
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple, Protocol
 
 from foon_asp.errors import UserError
-from foon_asp.network import NodePattern, ObjectNode, node_at_level
+from foon_asp.network import NodePattern, ObjectNode, in_quotes, node_at_level, unquoted
 from foon_asp.text.line import LineError
-from foon_asp.text.line_parser import parse_node
+from foon_asp.text.line_parser import parse_name
 from foon_asp.text.object_list import ListedObject
 
 _SHOWN = 12
 _NEAR = 3  # labels shown that are like one that nobody has
+_IN_QUOTES = re.compile(r' *"(?:\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4})|[^"\\])*("?)')  # closed or not
 
 
 class Wording(NamedTuple):
-    """How messages name the thing, where it was looked up, and what comes before a name to paste."""
+    """How messages name the thing, and what comes before a name to paste."""
 
     thing: str
-    where: str
     before: str
 
 
-_GOAL = Wording("goal", "", "--goal")
+_GOAL = Wording("goal", "--goal")
 
 
 class GoalError(UserError):
@@ -73,72 +75,86 @@ def find_goal(
     names: NodeNames,
     listed: Sequence[ListedObject] = (),
     wording: Wording = _GOAL,
-    by_beginning: bool = False,
 ) -> int:
-    """Give the id of the object node that a goal names.
+    """Return the id of the object node that a goal names.
 
-    A name is the label of an entry of the goals file, the one-line notation ``sweet potato; chopped; in
-    [cutting board]``, or a label that one node alone has. A node that is only a label comes before others
-    with that label, so that ``str(node)`` finds the node; a semicolon at the end (``onion;``) makes it the
-    notation also where the goals file has such an entry. ``by_beginning`` takes the beginning of a notation
-    too, where one node alone begins so and no name is just this. Raises :class:`GoalError` with candidates
-    ready to paste when it is unknown or means several nodes; ``wording`` is for other things than goals.
+    A name is the node itself in one-line notation (``sweet potato; chopped; in [cutting board]``, as
+    ``str(node)`` has it), else the label of an entry of the goals file, else a label that one node alone has.
+    A label that cannot be read as the notation, or is no node by it, is taken as it is written. A semicolon
+    at the end (``onion;``) makes a label the notation, which no entry and no other node is meant by.
+    Raises :class:`GoalError` with candidates ready to paste when it is unknown or means several nodes;
+    ``wording`` is for other things than goals.
     """
-    begun = [] if not by_beginning else nodes_beginning(name, names, 2)
+    named: str | ObjectNode = name
+    fault = None
+    node = as_written = ObjectNode(name.strip(" "))
     try:
-        named = parse_node(name)
+        named = parse_name(name)
     except LineError as error:
-        if len(begun) == 1:
-            return begun[0]
-        raise GoalError(
-            f"the {wording.thing} {name!r} cannot be read: at column {error.column}, {error}"
-        ) from None
-    bare = named == ObjectNode(named.label) and not _is_closed(name, named)
-    node = node_at_level(named, names.level)
-    entries = [entry for entry in listed if bare and entry.pattern.label == node.label]
+        fault = error
+    else:
+        node = node_at_level(ObjectNode(named) if isinstance(named, str) else named, names.level)
+    for exact in (node, as_written):
+        if (found := names.object_id(exact)) is not None:
+            return found
+    label = named if isinstance(named, str) else as_written.label
+    entries = [entry for entry in listed if entry.pattern.label == label]
     if entries:
-        found = list(dict.fromkeys(o for entry in entries for o in listed_nodes(entry, names)))
-        return _only(name, names, len(found), found, wording)
-    exact = names.object_id(node)
-    if exact is not None:
-        return exact
-    count, labelled = names.labelled(node.label if bare else name)  # also one with a semicolon, as it is
+        meant = list(dict.fromkeys(o for entry in entries for o in listed_nodes(entry, names)))
+        return _only(name, names, len(meant), meant, wording)
+    count, labelled = names.labelled(label)
     if count:
         return _only(name, names, count, labelled, wording)
-    if len(begun) == 1:
-        return begun[0]
+    if fault is not None:
+        raise GoalError(
+            f"the {wording.thing} {name!r} cannot be read: at column {fault.column}, {fault}; "
+            f"a name with such letters in it is in quotes: {in_quotes(as_written.label)}"
+        )
     count, labelled = names.labelled(node.label)
     if count:
-        said = f"no object node{wording.where} is exactly {str(node)!r}; with that label there are"
+        said = f"no object node is exactly {str(node)!r}; with that label there are"
         raise _unclear(said, names, count, _likest(node, labelled, names), wording)
-    raise _unknown(f"no object node{wording.where} has the label {node.label!r}", node, names, wording)
+    raise _unknown(f"no object node has the label {node.label!r}", node, names, wording)
 
 
 def nodes_beginning(start: str, names: NodeNames, most: int) -> list[int]:
-    """Give the ids of nodes whose one-line notation begins with ``start``, ordered by label.
+    """Return the ids of nodes whose one-line notation, or whose label, begins with ``start``, by label.
 
-    At most ``most`` are given. Up to the first semicolon that is a label, and of it as many letters as there
-    are.
+    At most ``most`` are returned. Up to the first semicolon that is a label, and of it as many letters as
+    there are; it may be in quotes.
     """
     label, semicolon, _ = start.partition(";")
-    labels = [label] if semicolon else names.beginning(label, most)
-    found: list[int] = []
-    for each in labels:
-        found += (o for o in names.labelled(each)[1] if str(names.node(o)).startswith(start))
+    labels = [label] if semicolon else []
+    if begun := _IN_QUOTES.match(start):
+        label = unquoted(begun[0].strip(" ") + '"' * (not begun[1]))
+        labels = [label] if begun[1] else [*names.beginning(label, most)]
+    found: dict[int, None] = {}
+    for each in dict.fromkeys([*labels, *names.beginning(start, most)]):
+        for o in names.labelled(each)[1]:
+            if each.startswith(start) or str(names.node(o)).startswith(start):
+                found[o] = None
         if len(found) >= most:
             break
-    return found[:most]
+    return [*found][:most]
 
 
-def notation(node: ObjectNode) -> str:
-    """Give the one-line notation that names a node and no other: a label alone is closed by a semicolon."""
-    return f"{node};" if node == ObjectNode(node.label) else str(node)
+def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[str]:
+    """Return names that mean the entries of a goals file: their labels, where these mean no other node."""
+    counts = Counter(entry.pattern.label for entry in listed)
+    for entry in listed:
+        label = entry.pattern.label
+        found = names.find(entry.pattern)
+        exact = names.object_id(ObjectNode(label))
+        if len(found) != 1 or (counts[label] == 1 and exact in {None, found[0]}):
+            yield str(ObjectNode(label))
+        else:
+            yield str(names.node(found[0]))
 
 
-def _is_closed(name: str, node: ObjectNode) -> bool:
-    """Whether a notation ends in a semicolon that is no part of a name."""
-    name = name.rstrip(" ")
-    return name.endswith(";") and parse_node(name[:-1]) == node
+def listed_goal(entry: ListedObject, names: NodeNames) -> int:
+    """Return the one node that an entry of a goals file stands for; raises :class:`UserError` for several."""
+    found = listed_nodes(entry, names)
+    return _only(str(entry.pattern), names, len(found), found, _GOAL)
 
 
 def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
@@ -156,7 +172,7 @@ def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
 
 def _only(name: str, names: NodeNames, count: int, found: Sequence[int], wording: Wording) -> int:
     if count > 1:
-        said = f"the {wording.thing} {name!r} means {count} object nodes{wording.where}"
+        said = f"the {wording.thing} {name!r} means {count} object nodes"
         raise _unclear(f"{said}; paste the one you mean", names, count, found, wording)
     return found[0]
 
@@ -184,5 +200,5 @@ def _unknown(said: str, node: ObjectNode, names: NodeNames, wording: Wording) ->
 
 
 def _unclear(said: str, names: NodeNames, count: int, first: Iterable[int], wording: Wording) -> GoalError:
-    shown = [notation(names.node(o)) for o in [*first][:_SHOWN]]
+    shown = [str(names.node(o)) for o in [*first][:_SHOWN]]
     return GoalError(said, shown, count - len(shown), wording.before)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from foon_asp.network import ObjectNode, Source
 from foon_asp.text.line import LineError
-from foon_asp.text.line_parser import parse_node
+from foon_asp.text.line_parser import parse_name, parse_node
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.table_rows import read_rows
@@ -69,9 +69,14 @@ def stated_name(name: str) -> str | ObjectNode:
     name = name.strip()
     if not name:
         raise LineError(1, "nothing", ("a label or an object node",))
-    return _node(name) if ";" in name else name
+    try:
+        return parse_name(name)
+    except LineError:
+        if ";" in name or name.startswith('"'):
+            raise
+        return name  # a label as it is
 
 
 def _node(name: str) -> ObjectNode:
-    """Read a node in one-line notation, behind which there may be a semicolon."""
-    return parse_node(name.strip().removesuffix(";").rstrip())
+    """Read a node in one-line notation."""
+    return parse_node(name.strip())

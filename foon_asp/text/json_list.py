@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.json_fault import json_fault
+from foon_asp.text.plain_file import before_json
 
 _SPACE = re.compile(r"[ \t\r\n]*")
 
@@ -122,9 +123,11 @@ class JsonList:
     def _nothing_after(self, end: int) -> None:
         rest = self._skip(end)
         if rest != len(self._text):
-            raise self._unexpected("the end of the file after the list", rest)
+            raise self._unexpected("the end of the file after the list: remove what stands behind it", rest)
 
     def _unexpected(self, expected: str, position: int) -> "JsonFaultError":
+        if position == self._skip(0) and (message := before_json(self._text)):
+            return JsonFaultError(message, position)
         found = self._text[position:].split("\n", 1)[0].rstrip("\r")
         found = found if len(found) <= 24 else found[:24] + "..."
         shown = repr(found) if found else "the end of the line"

@@ -5,11 +5,12 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from foon_asp.escapes import note_line_end
-from foon_asp.network import Contents, Relation
+from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
 from foon_asp.text.json_list import JsonList, JsonNumber
+from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import json_line
 from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number
-from foon_asp.text.line_parser import read_state
+from foon_asp.text.line_parser import parse_node, read_state
 from foon_asp.text.listed_unit import ObjectBlock
 
 # The names that say the same, and which of them are read at all.
@@ -60,15 +61,49 @@ def read_object(value: object) -> JsonObject:
     return JsonObject(line, tuple(plain), container, (*remarks, *_left_out(value, flag, category, listed)))
 
 
-def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, str | None, tuple[str, ...]]]:
-    """Read the nodes of a list with their containers and remarks; what is none is noted as its error."""
+def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern, tuple[str, ...]]]:
+    """Read the entries of a list with what they match and remarks; what is none is noted as its error.
+
+    An entry is a node as :func:`read_object` reads it, one in one-line notation, or one of an answer in JSON.
+    """
     for value, source in elements:
         try:
+            if (node := _whole_node(value)) is not None:
+                yield _block(node, source), NodePattern.of(node), ()
+                continue
             line, states, container, remarks = read_object(value)
         except ValueError as problem:
             elements.error(source, str(problem))
         else:
-            yield ObjectBlock(line, states, source), container, remarks
+            block = ObjectBlock(line, states, source)
+            pattern = NodePattern.of(block.node)._replace(container=container)
+            if isinstance(value, dict) and value.get("ingredients"):  # which are under whatever word
+                pattern = pattern._replace(contents=())
+            yield block, pattern, remarks
+
+
+def _whole_node(value: object) -> ObjectNode | None:
+    """Read a node that is written as our own output has it; ``None`` for another form."""
+    if isinstance(value, str):
+        try:
+            return parse_node(value)
+        except LineError as error:
+            raise ValueError(
+                f"found {shown(value)}: at its column {error.column}, {error}; a name with such letters in "
+                "it is in quotes"
+            ) from None
+    if not isinstance(value, dict) or "node" not in value:
+        return None
+    try:
+        return read_node_json(value)
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"found {shown(value['node'])}, expected a node as in an answer: {error}") from None
+
+
+def _block(node: ObjectNode, source: Source) -> ObjectBlock:
+    states = [*map(StateLine, sorted(node.states)), *map(StateLine, sorted(node.relations))]
+    states += [StateLine(contents, listed=contents.ingredients) for contents in node.contents]
+    return ObjectBlock(ObjectLine(node.label), tuple(states), source)
 
 
 def check_keys(value: dict[str, object], known: set[str]) -> None:
@@ -90,17 +125,22 @@ def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, obje
 
 
 def optional_name(value: object, key: str) -> str | None:
-    """Give a name; ``None`` for what is null, empty or ``"None"``."""
+    """Return a name; ``None`` for what is null, empty or ``"None"``, however its letters are written."""
     if value is None:
         return None
     name = _name(value, key, "a name or null").strip(" ")
-    return name if name not in {"", "None"} else None
+    return None if is_none(name) else name
+
+
+def is_none(name: str) -> bool:
+    """Whether a text stands for no value: it is empty, or ``None`` in letters of any case."""
+    return name.strip().lower() in {"", "none"}
 
 
 def number(value: dict[str, object], key: str) -> str:
     """Give the digits of a number, which may be written as text; empty if there is none."""
     found = value.get(key)
-    if found in (None, "", "None"):
+    if found is None or (isinstance(found, str) and is_none(found)):
         return ""
     written = found.text if isinstance(found, JsonNumber) else found
     if isinstance(written, str) and is_number(written):

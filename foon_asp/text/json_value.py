@@ -1,6 +1,7 @@
 """JSON texts and plain values, and the names of what we write, with the version in them."""
 
 import json
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -9,6 +10,7 @@ Json = dict[str, Any]
 
 _encode = json.JSONEncoder(ensure_ascii=False).encode
 _WIDTH = 95  # of a line of a text, without the key before it
+_FOLDER = re.compile(r'"/[^"]*/')  # of a file: where somebody keeps it changes no line break
 _VERSIONS = {"verify": 2}  # 1 of all else; what changes the meaning of a key, or takes one away, is another
 
 
@@ -18,7 +20,10 @@ def schema_name(kind: str) -> str:
 
 
 def json_text(value: object) -> str:
-    """Write plain values as a JSON text of their own; a list or an object that fits stands on one line."""
+    """Write plain values as a JSON text of their own; a list or an object that fits stands on one line.
+
+    An absolute path counts as long as its last part, so the lines are the same wherever the files lie.
+    """
     return _laid_out(value, "\n") + "\n"
 
 
@@ -33,7 +38,7 @@ def _laid_out(value: object, newline: str) -> str:
     else:
         return json_line(value)
     line = f"{opening}{', '.join(parts)}{closing}"
-    if len(newline) + len(line) <= _WIDTH and "\n" not in line:
+    if "\n" not in line and len(newline) + len(_FOLDER.sub('"', line)) <= _WIDTH:
         return line
     return f"{opening}{inner}{f',{inner}'.join(parts)}{newline}{closing}"
 

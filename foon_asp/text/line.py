@@ -85,11 +85,14 @@ def name_of(line: Line) -> str:
 
 
 class LineError(Exception):
-    """A line that the grammar does not accept: where (column from 1), what was found, what may be there."""
+    """A line that the grammar does not accept: where (column from 1), what was found, what may be there.
 
-    def __init__(self, column: int, found: str, expected: tuple[str, ...]) -> None:
+    ``advice`` says what to write instead, if that can be guessed.
+    """
+
+    def __init__(self, column: int, found: str, expected: tuple[str, ...], advice: str = "") -> None:
         wanted = ", ".join(expected[:-1]) + " or " + expected[-1] if len(expected) > 1 else "".join(expected)
-        super().__init__(f"found {found}, expected {wanted}")
+        super().__init__(f"found {found}, expected {wanted}" + (f"; {advice}" if advice else ""))
         self.column = column
         self.found = found
         self.expected = expected

@@ -6,7 +6,7 @@ from functools import cache
 from lark import Lark, Token, Transformer
 from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput, UnexpectedToken
 
-from foon_asp.network import Contents, ObjectNode, Relation
+from foon_asp.network import Contents, ObjectNode, Relation, unquoted
 from foon_asp.text.clean_line import CLEAN, items, no_tab
 from foon_asp.text.grammar import parser
 from foon_asp.text.line import (
@@ -21,7 +21,10 @@ from foon_asp.text.line import (
     is_number,
 )
 from foon_asp.text.motion_times import MotionFields, is_time, mended_time
+from foon_asp.text.plain_file import FENCE
 
+_NAME_LENGTH = 40  # letters of a line that may be a name
+_ITEM = re.compile(r' *"(?:\\.|[^"\\])*" *|[^,]+')  # between commas, which quotes may hold too
 _TERMINALS = {
     "OBJECT": "an object line (O, tab, label)",
     "STATE": "a state line (S, tab, state)",
@@ -108,25 +111,30 @@ class _LineBuilder(Transformer[Token, object]):
     def node(self, parts: list[Token | str | Relation | Contents]) -> ObjectNode:
         label, *notes = (part for part in parts if not isinstance(part, Token) or part.type == "NAME")
         return ObjectNode(
-            _unquoted(label),
+            unquoted(str(label)),
             frozenset(note for note in notes if isinstance(note, str)),
             frozenset(note for note in notes if isinstance(note, Relation)),
             tuple(sorted(note for note in notes if isinstance(note, Contents))),
         )
 
     def note_plain(self, tokens: list[Token]) -> str:
-        return _unquoted(tokens[0])
+        return unquoted(tokens[0])
 
     def note_related(self, tokens: list[Token]) -> str | Relation | Contents:
         word, bracket = tokens
-        return _bracketed(_unquoted(word), Token(bracket.type, bracket.strip("\t ")), "", []).attribute
+        return _noted(unquoted(word), bracket.strip("\t "))
 
     note_holding = note_related
 
 
-def _unquoted(name: object) -> str:
-    """Give a name as it is from how it is written in the notation."""
-    return re.sub(r"\\([;\\])", r"\1", str(name).strip(" "))
+def _noted(word: str, bracket: str) -> str | Relation | Contents:
+    """Return what a bracket of the notation says; names in quotes are read to the letter."""
+    written = [item.strip(" ") for item in _ITEM.findall(bracket[1:-1])]
+    if not any(item.startswith('"') for item in written):
+        return _bracketed(word, Token("PLACE", bracket), "", []).attribute
+    if bracket[0] == "[" and len(written) == 1:
+        return Relation(word, unquoted(written[0]))
+    return Contents(word, tuple(sorted(unquoted(item) for item in written if item)))
 
 
 def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
@@ -278,7 +286,22 @@ def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
     found = "the end of the line"
     if rest:
         found = repr(rest if len(rest) <= 24 else rest[:24] + "...")
+    advice = ""
     if in_file and {"OBJECT", "STATE", "MOTION"} <= names:
         names.add("SEPARATOR")
+        advice = _advice(rest)
     expected = tuple(dict.fromkeys(phrase for name, phrase in _TERMINALS.items() if name in names))
-    return LineError(column, found, expected)
+    return LineError(column, found, expected, advice)
+
+
+def _advice(line: str) -> str:
+    """Say how to write a line that begins with none of the letters; empty where that cannot be guessed."""
+    if not line.replace("\t", " ").isprintable():
+        return ""
+    if line.startswith(FENCE):
+        return "remove this line: a code fence is no part of FOON text"
+    if begins := re.match(r"([osm]\d*)[ \t]+(\S.*)", line):
+        return f"write {begins[1].upper()}, a tab, and {begins[2]}"
+    if re.fullmatch(r"[^\W\d_][^\t\[\]{};:]*", line) and len(line) <= _NAME_LENGTH:
+        return f"an object is written O, a tab, and {line}"
+    return ""

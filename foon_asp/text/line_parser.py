@@ -48,7 +48,8 @@ def parse_node(notation: str) -> ObjectNode:
     """Read an object node in one-line notation.
 
     Parameters:
-        notation: For example ``sweet potato; chopped; in [cutting board]``.
+        notation: For example ``sweet potato; chopped; in [cutting board]``; a name in it may be in quotes, as
+            a string of JSON: ``"a; b"; chopped``.
 
     Returns:
         The object node.
@@ -66,6 +67,16 @@ def parse_node(notation: str) -> ObjectNode:
         raise UserError(f"found notation={notation!r}, expected text")
     notation = notation.rstrip(" ")
     return clean_node(notation) or cast(ObjectNode, _build("node", notation))
+
+
+def parse_name(text: str) -> str | ObjectNode:
+    """Return the label that a text is alone, or the node in one-line notation; ``onion;`` is a node.
+
+    Raises :class:`LineError` like :func:`parse_node`.
+    """
+    node = parse_node(text)
+    is_label = node == ObjectNode(node.label) and not text.rstrip(" ").endswith(";")
+    return node.label if is_label else node
 
 
 @lru_cache(10_000)  # a kitchen says "empty" hundreds of times

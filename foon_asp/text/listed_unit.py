@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
+from foon_asp.network import Contents, ObjectNode, Relation, Source
 from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine
 
 
@@ -23,11 +23,6 @@ class ObjectBlock(NamedTuple):
     def lines(self) -> tuple[Line, ...]:
         """Its lines, in order."""
         return self.object, *self.states
-
-    def pattern(self, container: str | None = None) -> NodePattern:
-        """Give what it stands for in a list of objects; ``container`` is one that is named without a word."""
-        node = self.node
-        return NodePattern(node.label, node.states, node.ingredients, container, node.relations)
 
 
 class ListedUnit(NamedTuple):

@@ -4,12 +4,9 @@ from collections.abc import Iterator
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
-from foon_asp.network import Contents, Network, ObjectNode, Relation, Source
-from foon_asp.text.line import MotionLine, ObjectLine, StateLine
-from foon_asp.text.listed_unit import node_of
+from foon_asp.network import Network, Source
 from foon_asp.text.provenance import read_copy, write_copy
-from foon_asp.text.reader import FoonReader
-from foon_asp.text.writer import write_node
+from foon_asp.text.writer import write_motion, write_node
 
 
 def merged_text(network: Network, comment: str) -> Iterator[str]:
@@ -21,8 +18,7 @@ def merged_text(network: Network, comment: str) -> Iterator[str]:
     for a name that a line of text cannot hold, and for a unit without inputs.
     """
     blocks = list(map(write_node, network.objects))
-    motions = {motion: f"M\t{motion}\n" for motion in dict.fromkeys(network.motions)}
-    _check_names(network.objects, blocks, motions)
+    motions = {motion: write_motion(motion) for motion in dict.fromkeys(network.motions)}
     known: dict[Source, str] = {}
     yield f"# {comment}\n//\n"
     for motion, inputs, outputs, sources in zip(
@@ -36,24 +32,6 @@ def merged_text(network: Network, comment: str) -> Iterator[str]:
         yield motions[motion]
         yield from (blocks[node] for node in outputs)
         yield "//\n"
-
-
-def _check_names(nodes: tuple[ObjectNode, ...], blocks: list[str], motions: dict[str, str]) -> None:
-    """Read back what is written: a name from JSON may hold what means something else in a line of text."""
-    reader = FoonReader()
-    reader.parse_new(line for block in (*blocks, *motions.values()) for line in block[:-1].split("\n"))
-    for node, block in zip(nodes, blocks, strict=True):
-        first, *rest = map(reader.parse, block[:-1].split("\n"))
-        said: list[str | Relation | Contents] = [s.attribute for s in rest if isinstance(s, StateLine)]
-        back = (
-            node_of(first.label, said) if isinstance(first, ObjectLine) and len(said) == len(rest) else None
-        )
-        if back != node or encodable(block) != block:
-            raise UserError(f"the object node {str(node)!r} has a name that FOON text cannot hold")
-    for motion, line in motions.items():
-        parsed = reader.parse(line[:-1])
-        if not isinstance(parsed, MotionLine) or parsed.motion != motion or encodable(line) != line:
-            raise UserError(f"the motion {motion!r} is a name that FOON text cannot hold")
 
 
 def _copy(source: Source) -> str:

@@ -30,10 +30,10 @@ def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> li
         return _read_blocks(text, file, warnings)
     elements = JsonList(text, file)
     entries: list[ListedObject] = []
-    for block, container, remarks in read_objects(elements):
+    for block, pattern, remarks in read_objects(elements):
         if warnings is not None:
             warnings += [Diagnostic(Severity.WARNING, "json-value", text, block.source) for text in remarks]
-        entries.append(ListedObject(block.pattern(container), block.source))
+        entries.append(ListedObject(pattern, block.source))
     if elements.errors:
         raise InputError(elements.errors)
     return entries
@@ -45,4 +45,4 @@ def _read_blocks(text: str, file: Path, warnings: list[Diagnostic] | None) -> li
     reader.raise_errors()
     if warnings is not None:
         warnings += [d for d in reader.diagnostics if d.severity is Severity.WARNING]
-    return [ListedObject(block.pattern(), block.source) for block in blocks]
+    return [ListedObject(NodePattern.of(block.node), block.source) for block in blocks]

@@ -1,6 +1,7 @@
 """Text files as they come, UTF-8 with or without a byte order mark; and what is none."""
 
 import json
+import re
 from codecs import BOM_UTF8, getincrementaldecoder
 from collections.abc import Iterator
 from io import TextIOWrapper
@@ -14,6 +15,11 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 STORE_SUFFIX = ".foon"
 NEUTRAL_SUFFIXES = (".jsonl", ".ndjson")
 _FIRST_LINE = 1_000_000  # bytes of it looked at
+FENCE = "```"
+"""How a line begins by which Markdown, and who writes it, tells code from prose."""
+_BEGINNING = 2_000  # letters of a text that are looked at for JSON
+_JSON_LINE = re.compile(r"^[ \t]*[\[{]", re.MULTILINE)
+_FOON_LINE = re.compile(r"[OSM]\d*[ \t]|//|#")
 STORE_MAGIC = b"SQLite format 3\0"  # how every database begins
 
 
@@ -84,6 +90,19 @@ def is_neutral_file(file: Path) -> bool:
 def is_json(text: str) -> bool:
     """Whether a text is JSON; no line of FOON text begins with a bracket."""
     return text[:1_000].lstrip(" \t\r\n")[:1] in {"{", "["}
+
+
+def before_json(text: str) -> str:
+    """Return an error message about what stands before JSON in a text; empty where nothing does."""
+    begins = text[:_BEGINNING].lstrip(" \t\r\n")
+    first = begins.split("\n", 1)[0].rstrip()
+    if not _JSON_LINE.search(begins) or is_json(begins) or _FOON_LINE.match(first):
+        return ""
+    if first.startswith(FENCE):
+        return (
+            f"found a code fence around JSON, expected JSON alone: remove the lines that begin with {FENCE}"
+        )
+    return f"found the text {first[:40]!r} before JSON, expected JSON alone: remove it"
 
 
 def text_pieces(file: Path, size: int) -> Iterator[str]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from foon_asp.network import ObjectNode, Source
 from foon_asp.text.line import LineError
-from foon_asp.text.line_parser import parse_node
+from foon_asp.text.line_parser import parse_name
 from foon_asp.text.table_rows import read_rows
 
 _DECIMAL = re.compile(r"\d{1,9}(\.\d{1,6})?", re.ASCII)
@@ -20,6 +20,12 @@ class Price(NamedTuple):
     label_alone: bool
     price: Fraction
     source: Source
+
+
+def priced_name(name: str) -> tuple[ObjectNode, bool]:
+    """Return the node that has a price, and whether the name is a label alone; raises :class:`LineError`."""
+    named = parse_name(name)
+    return (ObjectNode(named), True) if isinstance(named, str) else (named, False)
 
 
 def read_prices(file: Path) -> list[Price]:
@@ -35,7 +41,7 @@ def read_prices(file: Path) -> list[Price]:
     def read(name: str, price: str, source: Source) -> None:
         if not _DECIMAL.fullmatch(price):
             raise LineError(len(name) + 2, repr(price[:40]), ("a price as a decimal such as 1.99",))
-        key = parse_node(name.strip()), ";" not in name
+        key = priced_name(name.strip())
         if key in prices:
             raise LineError(1, f"a second price for {name.strip()!r}", ("one",))
         prices[key] = Price(*key, Fraction(price), source)

@@ -13,6 +13,7 @@ from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLin
 from foon_asp.text.line_parser import parse_line, parse_lines
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, node_of
 from foon_asp.text.plain_file import (
+    before_json,
     is_json,
     is_neutral,
     is_neutral_file,
@@ -22,6 +23,7 @@ from foon_asp.text.plain_file import (
     text_pieces,
 )
 from foon_asp.text.provenance import is_video, read_copy, read_video
+from foon_asp.text.repeated_node import RepeatedNode, repeated_node
 from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.writer import write_line
 
@@ -56,6 +58,7 @@ class FoonReader:
     unit because they were not understood or make none; ``prices`` are those that copies of units state.
     ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``last_units`` are the last
     unit of each file that makes anything, by id and with its place, for a network read in one go.
+    ``repeated`` are the nodes that a copy of a unit lists twice.
 
     Example:
         >>> from pathlib import Path
@@ -82,6 +85,7 @@ class FoonReader:
         self.prices = StatedPrices()
         self.marked: dict[ObjectNode, Source] = {}
         self.last_units: dict[int, Source] = {}
+        self.repeated: list[RepeatedNode] = []
         # By text without the first letter, and only what there is no remark on.
         self.nodes: dict[str, ObjectNode] = {}
         self.motions: dict[str, str] = {}
@@ -91,6 +95,7 @@ class FoonReader:
         # By the whole line.
         self.attributes: dict[str, str | Relation | Contents] = {}  # what state lines say
         self._lines: dict[str, Line | LineError] = {}
+        self._plain: set[str] = set()  # files in the neutral form and in JSON
 
     def read_network(self, files: Iterable[Path]) -> Network:
         """Read files and merge them into one network.
@@ -137,6 +142,13 @@ class FoonReader:
         Parameters:
             file: The path of the file.
         """
+        for unit in self._units_of(file):
+            node = repeated_node(unit.inputs, unit.outputs)
+            if node:
+                self.repeated.append(RepeatedNode(str(node), unit.source, str(file) in self._plain))
+            yield unit
+
+    def _units_of(self, file: Path) -> Iterator[ReadUnit]:
         if not is_neutral_file(file):
             yield from self._text_units(file)
             return
@@ -160,7 +172,7 @@ class FoonReader:
         if not first or is_json(first):
             yield from self.units(self.text(file), str(file))
         else:
-            yield from _FileReading(self, chain([first], pieces), str(file)).units()
+            yield from self._reading(first, pieces, str(file)).units()
 
     def text(self, file: Path, content: bytes | None = None) -> str:
         """Give the text of a file; it is empty, and an error is noted, if the file is not text.
@@ -199,7 +211,7 @@ class FoonReader:
             return self._neutral_units(split_lines(text), file)
         if is_json(text):
             return map(_identity, self._json_units(text, file))
-        return _FileReading(self, [text], file).units()
+        return self._reading(text, (), file).units()
 
     def listed_units(self, text: str, file: str) -> Iterator[ListedUnit]:
         """Give the units of a text in order, with their lines as written.
@@ -212,7 +224,7 @@ class FoonReader:
             return self._neutral_listed(text, file)
         if is_json(text):
             return self._json_units(text, file)
-        return _FileReading(self, [text], file).listed_units()
+        return self._reading(text, (), file).listed_units()
 
     def object_blocks(self, text: str, file: str) -> list[ObjectBlock]:
         """Give the object nodes of a text that lists them without motions: a kitchen, or goals.
@@ -221,13 +233,26 @@ class FoonReader:
             text: The text.
             file: The name of the file, for messages and sources.
         """
-        return _FileReading(self, [text], file).object_blocks()
+        return self._reading(text, (), file).object_blocks()
+
+    def _reading(self, first: str, pieces: Iterable[str], file: str) -> "_FileReading":
+        """Return the reading of a text; where something stands before JSON, that is the only error."""
+        message = before_json(first)
+        if not message:
+            return _FileReading(self, chain([first], pieces), file)
+        line = first[: len(first) - len(first.lstrip())].count("\n") + 1
+        excerpt = split_lines(first.lstrip())[0]
+        severity = Severity.WARNING if self.lenient else Severity.ERROR
+        message += "; left out" if self.lenient else ""
+        self.diagnostics.append(Diagnostic(severity, "json", message, Source(file, line, 1), excerpt))
+        return _FileReading(self, (), file)
 
     def _json_units(self, text: str, file: str) -> Iterator[ListedUnit]:
         # most networks are none
         from foon_asp.text.exact_price import read_price  # noqa: PLC0415
         from foon_asp.text.json_units import read_json_units  # noqa: PLC0415
 
+        self._plain.add(file)
         for unit in read_json_units(text, file, self.diagnostics, self.lenient):
             if unit.price:
                 copy = FunctionalUnit.of(unit.motion.motion, *unit.sides)
@@ -238,6 +263,7 @@ class FoonReader:
         from foon_asp.text.exact_price import read_price  # noqa: PLC0415 (most networks are none)
         from foon_asp.text.neutral_units import read_neutral_units  # noqa: PLC0415
 
+        self._plain.add(file)
         nodes: dict[str, ObjectNode] = {}
         prices: dict[str, Fraction] = {}
         for id_, *sides, price, source in read_neutral_units(lines, file, self.diagnostics, self.lenient):

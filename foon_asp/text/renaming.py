@@ -11,6 +11,7 @@ from typing import NamedTuple
 from foon_asp.network import Contents, ObjectNode, Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, Rename, Severity
 from foon_asp.text.json_layout import TOKEN, check_json
+from foon_asp.text.json_object import is_none
 from foon_asp.text.json_value import json_line
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine, name_of
 from foon_asp.text.line_parser import parse_line, parse_node
@@ -324,7 +325,7 @@ def _json_names(text: str) -> list[_JsonName]:
 
 def _with_ids(level: _Level) -> Iterator[_JsonName]:
     """Give the names of an object of JSON; a label has the id beside it, a container has none."""
-    related = any(key in _RELATED and name.name not in {"", "None"} for key, name in level.names)
+    related = any(key in _RELATED and not is_none(name.name) for key, name in level.names)
     for key, name in level.names:
         kind = NameKind.WORD if related and name.kind is NameKind.STATE else name.kind
         id_ = level.ids.get(_IDS.get(kind, "state_id")) if key in _NAMED else None

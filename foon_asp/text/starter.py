@@ -8,7 +8,7 @@ from foon_asp.text.writer import write_node
 
 _KITCHEN = """\
 # What is at hand: an O line for each object, and below it its S lines, as in the recipe.
-# It begins with all that no unit makes: take out what you do not have, and add what you have.
+# It begins with what makes the units of the recipe run: take out what you do not have, and add what you have.
 """
 _MOTIONS = """\
 # How often each motion succeeds: a motion, a tab, and a decimal above 0 and at most 1.

@@ -4,7 +4,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices
+from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices, in_quotes
 from foon_asp.text.exact_price import decimal_text, read_price
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_node
@@ -56,13 +56,18 @@ def write_unit_prices(prices: UnitPrices) -> str:
     for unit, price in prices.units.items():
         fields = [
             unit.motion,
-            *map(str, unit.inputs),
+            *map(_field, unit.inputs),
             _ARROWS[0],
-            *map(str, unit.outputs),
+            *map(_field, unit.outputs),
             decimal_text(price),
         ]
         lines.append("\t".join(fields) + "\n")
     return "".join(lines)
+
+
+def _field(node: ObjectNode) -> str:
+    """Write a node, which is no arrow even where its label is one."""
+    return in_quotes(node.label) if str(node) in _ARROWS else str(node)
 
 
 def _unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:

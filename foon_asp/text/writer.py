@@ -2,10 +2,14 @@
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 
 from foon_asp.errors import UserError
+from foon_asp.escapes import encodable
 from foon_asp.network import Contents, FunctionalUnit, ObjectNode, Relation
-from foon_asp.text.line import Line, MotionLine, ObjectLine
+from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
+from foon_asp.text.line_parser import parse_line
+from foon_asp.text.listed_unit import node_of
 from foon_asp.typed import typed
 
 
@@ -27,24 +31,47 @@ def write_line(line: Line) -> str:
 
 
 def write_node(node: ObjectNode) -> str:
-    """Give the object block of a node: its object line and, sorted, its state lines."""
-    lines = [f"O\t{node.label}"]
-    lines += [f"S\t{state}" for state in sorted(node.states)]
-    lines += [f"S\t{word}\t[{related}]" for word, related in sorted(node.relations)]
-    lines += [f"S\t{word}\t{{{','.join(items)}}}" for word, items in node.contents]
-    return "\n".join(lines) + "\n"
+    """Return the object block of a node: its object line and, sorted, its state lines.
+
+    Raises :class:`UserError` for a name that means something else in FOON text.
+    """
+    states = [*map(StateLine, sorted(node.states)), *map(StateLine, sorted(node.relations))]
+    states += [StateLine(contents, listed=contents.ingredients) for contents in node.contents]
+    written = [_readable(line) for line in (ObjectLine(node.label), *states)]
+    if None in written or node_of(node.label, [state.attribute for state in states]) != node:
+        raise UserError(f"the object node {str(node)!r} has a name that FOON text cannot hold; JSON can")
+    return "".join(filter(None, written))
+
+
+def write_motion(motion: str) -> str:
+    """Return the line of a motion; raises :class:`UserError` for what means something else in FOON text."""
+    written = _readable(MotionLine(motion))
+    if written is None:
+        raise UserError(f"the motion {motion!r} is a name that FOON text cannot hold; JSON can")
+    return written
+
+
+@lru_cache(10_000, typed=True)  # the same few lines stand in many units
+def _readable(line: Line) -> str | None:
+    """Write a line; ``None`` for one that is not read back as it is."""
+    written = write_line(line)
+    try:
+        back = None if "\n" in written or "\r" in written else parse_line(written)._replace(remarks=())
+    except LineError:
+        return None
+    return f"{written}\n" if back == line and encodable(written) == written else None
 
 
 def write_unit(unit: FunctionalUnit) -> str:
     """Give the lines of a unit, the closing ``//`` included.
 
-    Raises :class:`UserError` for a unit without inputs, which nobody could read back.
+    Raises :class:`UserError` for what nobody could read back: a unit without inputs, or with such names.
     """
     if not unit.inputs:
         raise UserError(f"the unit {unit.motion!r} has no inputs, which FOON text cannot hold; JSON can")
     inputs = "".join(map(write_node, unit.inputs))
     outputs = "".join(map(write_node, unit.outputs))
-    return f"{inputs}M\t{unit.motion}\n{outputs}//\n"
+    return f"{inputs}{write_motion(unit.motion)}{outputs}//\n"
 
 
 @typed
@@ -59,7 +86,7 @@ def write_units(units: Iterable[FunctionalUnit], comments: Iterable[str] = ()) -
         The FOON text.
 
     Raises:
-        UserError: for a unit without inputs, which FOON text cannot hold.
+        UserError: for a unit without inputs, and for names that FOON text cannot hold, as ``a[b]``.
 
     Example:
         >>> tree = foon_asp.solve(foon_asp.load().problem("ice")).tree

@@ -13,12 +13,14 @@ from pathlib import Path
 import pytest
 
 from tests.mutation.equivalents import GREATEST_SHARE, equivalents, place
+from tests.mutation.mutant import SEED
 from tests.mutation.reach import RECORD
-from tests.mutation.report import share, survivors, table
-from tests.mutation.rooms import ROOT, all_mutants, texts
+from tests.mutation.report import matrix, only_killers, share, survivors, table
+from tests.mutation.rooms import PROVING, ROOT, all_mutants, changed_since, tests_of, texts
 from tests.mutation.trials import Outcome, Reach, Trials, read_reach
 
 LEAST = 0.95  # of the mutants that are tried
+LEAST_OF_CHANGE = 0.4  # of a few dozen, with the tests of their rooms alone: what survives is for a person
 FEWEST = 50  # fewer say nothing
 FOLDER = ROOT / ".mutants"
 _FEEDS = ("foon_asp", "encodings", "data", "tests", "pyproject.toml")
@@ -29,38 +31,58 @@ def main() -> int:
     options = _options()
     os.chdir(ROOT)
     FOLDER.mkdir(exist_ok=True)
+    places = options.places or list(PROVING)
+    if options.changed_since is not None:
+        places = changed_since(options.changed_since)
+        if not places:
+            print(f"no file of the package differs from {options.changed_since}: nothing to try")
+            return 0
+    tests = options.tests or (tests_of(places) if options.changed_since is not None else [])
     listed = equivalents()
-    mutants = all_mutants()
+    mutants = all_mutants(options.seed, places)
     known = [mutant for mutant in mutants if place(mutant) in listed]
-    gone = listed - {place(mutant) for mutant in mutants}
     waiting = [mutant for mutant in mutants if place(mutant) not in listed][options.skip :]
     if options.again:
         before = set(map(tuple, json.loads((FOLDER / "survivors.json").read_text())))
         waiting = [mutant for mutant in mutants if mutant.key in before]
-    print(f"{len(mutants)} mutants, {len(known)} of them known to be equivalent; {len(waiting)} to try")
-    reach = _reach(options.jobs, options.tests)
-    trials = Trials(waiting, reach, options.jobs, options.seconds)
+    print(
+        f"{len(mutants)} mutants, {len(known)} of them known to be equivalent; {len(waiting)} to try",
+        flush=True,
+    )
+    reach = _reach(options.jobs, tests)
+    trials = Trials(waiting, reach, options.jobs, options.seconds, every_killer=options.matrix)
     began = time.monotonic()
-    ended = pytest.main(["-q", "-s", "-p", "no:cacheprovider", *options.tests], plugins=[trials])
+    ended = pytest.main(["-q", "-s", "-p", "no:cacheprovider", *tests], plugins=[trials])
     if ended not in {pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED}:
         return int(ended)
     alive = [each for each in trials.tried if each.outcome in {Outcome.SURVIVED, Outcome.UNREACHED}]
+    if options.matrix:
+        (FOLDER / "matrix.json").write_text(matrix(trials.tried, reach))
+        print(f"written: {FOLDER.name}/matrix.json")
     (FOLDER / "survivors.json").write_text(json.dumps([each.mutant.key for each in alive]))
     tried_known = [] if options.seconds is not None or options.again else known
     said = [
         survivors(trials.tried, texts()),
+        *([only_killers(trials.tried)] if options.matrix else []),
         table(trials.tried, tried_known),
         f"{len(trials.tried)} of {len(waiting)} tried in {time.monotonic() - began:.0f} s; "
         f"{share(trials.tried):.1%} were noticed",
     ]
     faults = [f"{test} fails unchanged when tried this way, and was not used" for test in trials.not_used]
-    faults += [f"docs/testing.md lists a change that is not there: {' '.join(each)}" for each in sorted(gone)]
+    if places == list(PROVING):
+        gone = listed - {place(mutant) for mutant in mutants}
+        faults += [
+            f"docs/dev/testing.md lists a change that is not there: {' '.join(each)}" for each in sorted(gone)
+        ]
     if len(known) > GREATEST_SHARE * len(mutants):
-        faults.append(f"docs/testing.md lists {len(known)} mutants, more than {GREATEST_SHARE:.0%} of them")
-    if len(trials.tried) < FEWEST and not options.again:
+        faults.append(
+            f"docs/dev/testing.md lists {len(known)} mutants, more than {GREATEST_SHARE:.0%} of them"
+        )
+    if len(trials.tried) < min(FEWEST, len(waiting)) and not options.again:
         faults.append(f"only {len(trials.tried)} mutants were tried, which says nothing")
-    if share(trials.tried) < LEAST:
-        faults.append(f"{share(trials.tried):.1%} were noticed, expected at least {LEAST:.0%}")
+    least = LEAST if options.changed_since is None else LEAST_OF_CHANGE
+    if trials.tried and share(trials.tried) < least:
+        faults.append(f"{share(trials.tried):.1%} were noticed, expected at least {least:.0%}")
     text = "\n".join(said + faults) + "\n"
     (FOLDER / "report.txt").write_text(text)
     print(text, end="")
@@ -72,8 +94,18 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seconds", type=float, help="begin none after so long; without it, try all")
     parser.add_argument("--skip", type=int, default=0, help="leave out the first of the order")
     parser.add_argument("--again", action="store_true", help="only those that survived the run before")
+    parser.add_argument("--changed-since", metavar="REVISION", help="change the files that differ from it")
+    parser.add_argument("--seed", default=SEED, help="another order")
+    parser.add_argument(
+        "--matrix",
+        action="store_true",
+        help="run every test that reaches a mutant, and write which notice it",
+    )
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="how many at a time")
-    parser.add_argument("tests", nargs="*", help="test files; without any, all tests that are not slow")
+    parser.add_argument(
+        "--tests", nargs="+", default=[], help="files or folders; without it, all tests not slow"
+    )
+    parser.add_argument("places", nargs="*", help="folders or files to change; without any, those of proofs")
     return parser.parse_args()
 
 

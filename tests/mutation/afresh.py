@@ -27,10 +27,13 @@ class _Changed(importlib.machinery.SourceFileLoader):
 
 
 class _Chosen:
-    """Runs the chosen tests in their order, and ends with the first that fails."""
+    """Runs the chosen tests in their order, and ends with the first that fails, or names all that do."""
 
-    def __init__(self, folder: Path, tests: Sequence[str], seconds: Sequence[float]) -> None:
+    def __init__(
+        self, folder: Path, tests: Sequence[str], seconds: Sequence[float], every_killer: bool
+    ) -> None:
         self._folder = folder
+        self._every_killer = every_killer
         self._seconds = dict(zip(tests, seconds, strict=True))
 
     def pytest_configure(self) -> None:
@@ -47,7 +50,10 @@ class _Chosen:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.failed:
-            self._noticed(report.nodeid)
+            with (self._folder / "by").open("a") as file:
+                file.write(f"{report.nodeid}\n")
+            if not self._every_killer:
+                os._exit(1)
 
     def _noticed(self, by: str) -> None:
         (self._folder / "by").write_text(by)
@@ -66,7 +72,9 @@ def main(folder: Path) -> None:
     try:
         files = sorted({test.split("::")[0] for test in order["tests"]})
         words = ["-q", "-s", "-p", "no:cacheprovider", *files]
-        code = pytest.main(words, plugins=[_Chosen(folder, order["tests"], order["seconds"])])
+        code = pytest.main(
+            words, plugins=[_Chosen(folder, order["tests"], order["seconds"], order["every_killer"])]
+        )
     except BaseException as error:  # a change can do anything at import
         (folder / "by").write_text(f"{type(error).__name__} at import")
         os._exit(1)

@@ -38,16 +38,14 @@ class Mutant(NamedTuple):
         """What is the same when lines have moved."""
         return (self.file, self.function, self.change, self.occurrence)
 
-    @property
-    def rank(self) -> str:
-        """Where it comes in the order of trials: arbitrary, and the same in every run."""
-        return hashlib.sha256("\0".join(map(str, (SEED, *self.key))).encode()).hexdigest()
+    def rank(self, seed: str = SEED) -> str:
+        """Return where it comes in the order of trials: arbitrary, and the same for the same seed."""
+        return hashlib.sha256("\0".join(map(str, (seed, *self.key))).encode()).hexdigest()
 
     @property
     def room(self) -> str:
-        """The folder of its file, or the file where only some files of a folder are tried."""
-        folder = self.file.split("/")[1]
-        return self.file if folder in {"asp", "encoding"} else f"foon_asp/{folder}"
+        """The room of its file."""
+        return "/".join(self.file.split("/")[:2]) if self.file.count("/") > 1 else "foon_asp"
 
     def applied(self, text: str) -> str:
         """Give the text of the file with the change."""

@@ -1,4 +1,4 @@
-"""The changes that are tried, fixed before the first run; docs/testing.md lists them."""
+"""The changes that are tried, fixed before the first run; docs/dev/testing.md lists them."""
 
 import ast
 import itertools
@@ -120,10 +120,9 @@ class _Finder(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_If(self, node: ast.If) -> None:
-        if isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
-            return
-        self._condition(node.test, True, False)
-        self.generic_visit(node)
+        if not (isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"):
+            self._condition(node.test, True, False)
+            self.generic_visit(node)
 
     def visit_IfExp(self, node: ast.IfExp) -> None:
         self._condition(node.test, True, False)
@@ -186,12 +185,6 @@ class _Finder(ast.NodeVisitor):
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
         """Leave it: Python 3.11 does not say where its parts are."""
 
-    def visit_Import(self, node: ast.Import) -> None:
-        """Leave it."""
-
-    def visit_ImportFrom(self, node: ast.ImportFrom) -> None:
-        """Leave it."""
-
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
         if node.value is not None:
             if isinstance(node.target, ast.Attribute | ast.Subscript):
@@ -203,12 +196,15 @@ class _Finder(ast.NodeVisitor):
             if default is not None:
                 self.visit(default)
 
-    def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
+    def visit_FunctionDef(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
         # decorators and defaults are worked out where the function is defined
         self.visit(node.args)
         self._returns.append(node.returns)
         self._named(node.name, lambda: [self.visit(child) for child in node.body], function=True)
         self._returns.pop()
+
+    def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> None:
+        self.visit_FunctionDef(node)
 
     def visit_Lambda(self, node: ast.Lambda) -> None:
         self.visit(node.args)

@@ -1,9 +1,11 @@
 """What a run found: a table by room, and every survivor with its change."""
 
+import json
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from tests.mutation.mutant import Mutant
-from tests.mutation.trials import Outcome, Tried
+from tests.mutation.trials import Outcome, Reach, Tried
 
 _NOTICED = (Outcome.KILLED, Outcome.TIMEOUT)
 
@@ -48,3 +50,30 @@ def survivors(tried: Sequence[Tried], texts: Mapping[str, str]) -> str:
             f"  {mutant.operator}: {mutant.change}\n{mutant.diff(texts[mutant.file])}\n"
         )
     return "\n".join(parts)
+
+
+def matrix(tried: Sequence[Tried], reach: Mapping[str, Reach]) -> str:
+    """Return, as JSON, which tests notice which mutant, and how long each of these tests takes."""
+    rows = [
+        {
+            "mutant": [*each.mutant.key],
+            "line": each.mutant.first,
+            "outcome": each.outcome,
+            "by": each.by.splitlines(),
+        }
+        for each in tried
+    ]
+    killers = {test for each in tried for test in each.by.splitlines()}
+    seconds = {test: round(reach[test].seconds, 3) for test in sorted(killers) if test in reach}
+    return json.dumps({"mutants": rows, "seconds": seconds}, indent=1, ensure_ascii=False)
+
+
+def only_killers(tried: Sequence[Tried]) -> str:
+    """Return a line for each test function that alone notices a mutant, with how many."""
+    alone: Counter[str] = Counter()
+    for each in tried:
+        functions = {test.partition("[")[0] for test in each.by.splitlines()}
+        if len(functions) == 1:
+            alone.update(functions)
+    lines = [f"{count:5}  {function}" for function, count in alone.most_common()]
+    return "\n".join(["mutants that one test function alone notices:", *lines])

@@ -6,6 +6,7 @@ first, until one fails. Changes that count while a module is imported take a new
 
 import contextlib
 import gc
+import inspect
 import json
 import math
 import os
@@ -46,7 +47,7 @@ class Outcome(StrEnum):
 
 
 class Tried(NamedTuple):
-    """A mutant, and what became of it; ``by`` is the test that noticed."""
+    """A mutant, and what became of it; ``by`` has a line for each test that noticed."""
 
     mutant: Mutant
     outcome: Outcome
@@ -68,10 +69,18 @@ class _Running(NamedTuple):
 
 
 class Trials:
-    """Tries mutants one after the other, ``jobs`` at a time, and begins none when ``seconds`` are over."""
+    """Tries mutants one after the other, ``jobs`` at a time, and begins none when ``seconds`` are over.
+
+    A trial ends with the first test that fails, or with ``every_killer`` names all that fail.
+    """
 
     def __init__(
-        self, mutants: Sequence[Mutant], reach: Mapping[str, Reach], jobs: int, seconds: float | None
+        self,
+        mutants: Sequence[Mutant],
+        reach: Mapping[str, Reach],
+        jobs: int,
+        seconds: float | None,
+        every_killer: bool = False,
     ) -> None:
         self.tried: list[Tried] = []
         self.not_used: set[str] = set()  # tests that fail unchanged, tried this way
@@ -79,6 +88,7 @@ class Trials:
         self._reach = reach
         self._jobs = jobs
         self._seconds = seconds
+        self._every_killer = every_killer
         self._running: dict[int, _Running] = {}
         self._trusted: set[str] = set()
         self._texts = texts()
@@ -111,10 +121,12 @@ class Trials:
         return True
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """End the trial with the first test that fails."""
+        """End the trial with the first test that fails, or go on where all are wanted."""
         if self._child and report.failed:
-            (self._child / "by").write_text(report.nodeid)
-            os._exit(_KILLED)
+            with (self._child / "by").open("a") as file:
+                file.write(f"{report.nodeid}\n")
+            if not self._every_killer:
+                os._exit(_KILLED)
 
     # The parent's side.
 
@@ -131,7 +143,8 @@ class Trials:
         pid, status = os.wait()
         running = self._running.pop(pid)
         outcome, by = self._outcome(pid, status, running.folder)
-        if outcome is Outcome.KILLED and by and not self._passes_unchanged(by):
+        failing = [test for test in by.splitlines() if not self._passes_unchanged(test)]
+        if outcome is Outcome.KILLED and failing:
             self._waiting.append(running.mutant)
             return
         self._note(running.mutant, outcome, by, time.monotonic() - running.began)
@@ -140,7 +153,7 @@ class Trials:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(pid, signal.SIGKILL)  # what its tests started
         file = folder / "by"
-        by = file.read_text() if file.exists() else ""
+        by = file.read_text().strip() if file.exists() else ""
         said = (folder / "output").read_text(errors="replace")
         shutil.rmtree(folder, ignore_errors=True)
         if os.WIFSIGNALED(status):
@@ -149,7 +162,7 @@ class Trials:
         code = os.WEXITSTATUS(status)
         if code not in {_SURVIVED, _KILLED}:  # 1 without a test: a library ended the process
             raise RuntimeError(f"a trial ended with {code}\n{said[-5000:]}")
-        return (Outcome.KILLED if code else Outcome.SURVIVED), by
+        return (Outcome.KILLED if code or by else Outcome.SURVIVED), by
 
     def _note(self, mutant: Mutant, outcome: Outcome, by: str, seconds: float) -> None:
         tried = Tried(mutant, outcome, by, seconds)
@@ -238,9 +251,10 @@ class Trials:
     def _try(self, mutant: Mutant, tests: Sequence[str], folder: Path) -> None:
         new = compile(mutant.applied(self._texts[mutant.file]), mutant.file, "exec", dont_inherit=True)
         if not self._replaced(mutant, new):
-            order = {"file": mutant.file, "text": mutant.applied(self._texts[mutant.file])}
+            order: dict[str, object] = {"file": mutant.file, "text": mutant.applied(self._texts[mutant.file])}
             seconds = [self._reach[test].seconds for test in tests]
-            (folder / "order.json").write_text(json.dumps({**order, "tests": tests, "seconds": seconds}))
+            order |= {"tests": tests, "seconds": seconds, "every_killer": self._every_killer}
+            (folder / "order.json").write_text(json.dumps(order))
             os.execv(sys.executable, [sys.executable, "-m", "tests.mutation.afresh", str(folder)])
         self._run(tests)
 
@@ -251,7 +265,7 @@ class Trials:
         done = False
         for function in functions:
             code = codes.get(function.__code__.co_firstlineno)
-            if code is None or code.co_freevars != function.__code__.co_freevars:
+            if code is None or not _interchangeable(code, function.__code__):
                 return False
             last = max((line for *_, line in code.co_lines() if line), default=0)
             if code.co_firstlineno <= mutant.first <= last:
@@ -312,6 +326,12 @@ def _functions(files: Iterable[str]) -> dict[tuple[str, str], list[types.Functio
             place = (names[thing.__code__.co_filename], thing.__code__.co_qualname)
             found.setdefault(place, []).append(thing)
     return found
+
+
+def _interchangeable(one: types.CodeType, other: types.CodeType) -> bool:
+    """Whether a function can be given the one code in place of the other: a generator stays one."""
+    kind = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
+    return one.co_freevars == other.co_freevars and one.co_flags & kind == other.co_flags & kind
 
 
 def _codes(code: types.CodeType) -> Iterator[types.CodeType]:

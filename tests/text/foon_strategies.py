@@ -222,26 +222,18 @@ _WHOLE_UNITS = [
 ]
 
 
+def _with_dirt(unit: str, dirty: str) -> str:
+    """Put a dirty line where the first of its letter stands."""
+    lines = unit.split("\n")
+    place = [line[0] for line in lines].index(dirty[0])
+    return "\n".join([*lines[:place], dirty, *lines[place + 1 :]])
+
+
 def unit_texts() -> st.SearchStrategy[str]:
     """Draw one unit as text, closed: as it should be, or with one line in it that is dirty."""
-    clean, dirty = (
-        {letter: st.sampled_from([line for line in some if line[:1] == letter]) for letter in "OSM"}
-        for some in (_WHOLE_LINES, _DIRTY_LINES)
-    )
-    block = st.builds(lambda first, rest: [first, *rest], clean["O"], st.lists(clean["S"], max_size=2))
-    side = st.lists(block, min_size=1, max_size=2).map(lambda blocks: [x for block in blocks for x in block])
-    unit = st.builds(lambda first, motion, last: [*first, motion, *last], side, clean["M"], side)
-
-    def with_dirt(lines: list[str]) -> st.SearchStrategy[list[str]]:
-        def at(index: int) -> st.SearchStrategy[list[str]]:
-            return dirty[lines[index][0]].map(lambda line: [*lines[:index], line, *lines[index + 1 :]])
-
-        motion = next(index for index, line in enumerate(lines) if line[0] == "M")
-        return st.just(lines) | st.integers(0, len(lines) - 1).flatmap(at) | at(motion)
-
+    whole = st.sampled_from(_WHOLE_UNITS)
     above = st.sampled_from(["", "", "# From:\ta.txt:3\tv\n", "# Source:\tv\n", "# note\n"])
-    end = st.sampled_from(["//", "//", "//", "// "])
-    return st.builds("{}{}\n{}".format, above, unit.flatmap(with_dirt).map("\n".join), end)
+    return st.builds(str.__add__, above, whole | st.builds(_with_dirt, whole, st.sampled_from(_DIRTY_LINES)))
 
 
 def texts() -> st.SearchStrategy[str]:

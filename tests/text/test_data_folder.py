@@ -8,12 +8,9 @@ import pytest
 from foon_asp.errors import UserError
 from foon_asp.network import Source, starting_nodes
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
+from foon_asp.text.data_folder import DataFiles, find_data, read_data
 from foon_asp.text.diagnostics import InputError, Severity
 from foon_asp.text.label_list import read_labels
-from foon_asp.text.object_list import read_object_list
-
-CORPUS = Path(__file__).resolve().parents[3] / "shared" / "corpus"
 
 MIX = "O\ta\nM\tmix\nO\tb\n//\n"
 CUT = "O\ta\nM\tcut\nO\ta\nS\tcut\nS\tin\t[bowl]\n//\n"
@@ -35,16 +32,6 @@ def folder(tmp_path: Path) -> Path:
 
 
 # --- finding
-
-
-def test_a_folder_has_five_pieces(folder: Path) -> None:
-    assert find_data(folder) == DataFiles(
-        (folder / "FOON.txt",),
-        folder / "kitchen.json",
-        folder / "motion.txt",
-        folder / "utensils.txt",
-        folder / "goal_nodes.json",
-    )
 
 
 def test_kitchen_and_goals_may_be_foon_text(folder: Path) -> None:
@@ -80,34 +67,14 @@ def test_networks_may_be_json(folder: Path) -> None:
     ]
 
 
-def test_a_folder_may_have_a_network_and_nothing_else(tmp_path: Path) -> None:
-    (tmp_path / "FOON.txt").write_text(MIX)
-    assert find_data(tmp_path) == DataFiles((tmp_path / "FOON.txt",))
-
-
-def test_foon_txt_is_the_network_alone(folder: Path) -> None:
-    (folder / "another.txt").write_text("not a network\n")
-    assert find_data(folder).network == (folder / "FOON.txt",)
-
-
-def test_without_it_all_texts_are_networks_but_the_tables(folder: Path) -> None:
-    (folder / "FOON.txt").rename(folder / "z.txt")
+def test_foon_txt_is_the_network_or_else_all_texts_but_the_tables(folder: Path) -> None:
     (folder / "b.txt").write_text(CUT)
     (folder / "notes.md").write_text("not a network\n")
-    assert find_data(folder).network == (folder / "b.txt", folder / "z.txt")
-
-
-@pytest.mark.parametrize("given", ["rates", "utensils"])
-def test_a_table_given_by_name_is_no_network(tmp_path: Path, given: str) -> None:
-    (tmp_path / "a.txt").write_text(MIX)
-    (tmp_path / "table.txt").write_text("mix\t0.9\n")
-    table = tmp_path / "table.txt"
-    files = find_data(
-        tmp_path,
-        rates=table if given == "rates" else None,
-        utensils=table if given == "utensils" else None,
-    )
-    assert files.network == (tmp_path / "a.txt",)
+    (folder / "my rates.txt").write_text("mix\t0.9\n")
+    assert find_data(folder).network == (folder / "FOON.txt",)
+    (folder / "FOON.txt").rename(folder / "z.txt")
+    given = find_data(folder, rates=folder / "my rates.txt")
+    assert given.network == (folder / "b.txt", folder / "z.txt")
 
 
 def test_pieces_given_on_their_own_replace_those_of_the_folder(folder: Path, tmp_path: Path) -> None:
@@ -139,13 +106,6 @@ def test_networks_are_files_and_folders_in_the_order_given(folder: Path, tmp_pat
     )
 
 
-def test_a_folder_of_tables_needs_no_network_where_one_is_given(folder: Path, tmp_path: Path) -> None:
-    (folder / "FOON.txt").rename(tmp_path / "n.txt")
-    files = find_data(folder, [tmp_path / "n.txt"])
-    assert files.network == (tmp_path / "n.txt",)
-    assert files.kitchen == folder / "kitchen.json"
-
-
 @pytest.mark.parametrize("given", ["folder", "kitchen", "rates", "utensils", "goals", "network"])
 def test_what_is_named_and_not_there_is_an_error(folder: Path, given: str) -> None:
     missing = folder / "nothing.txt"
@@ -163,11 +123,6 @@ def test_what_is_named_and_not_there_is_an_error(folder: Path, given: str) -> No
             named("goals"),
         )
     assert str(caught.value) == f"{missing}: no such file or folder"
-
-
-def test_a_file_is_no_folder(folder: Path) -> None:
-    with pytest.raises(UserError, match=r"FOON\.txt: expected a folder; .* --network"):
-        find_data(folder / "FOON.txt")
 
 
 def test_a_folder_without_networks_is_an_error(folder: Path) -> None:
@@ -212,24 +167,10 @@ def test_all_pieces_are_read(folder: Path) -> None:
 def test_what_is_not_there_is_empty_and_rates_are_none(tmp_path: Path) -> None:
     (tmp_path / "n.txt").write_text(MIX)
     data = read_data(find_data(None, [tmp_path / "n.txt"]))
-    assert len(data.network) == 1
-    goals = data.goals
-    assert data == Data(
-        data.network, starting_nodes(data.network), (), goals, None, frozenset(), (), 0, None, True, "last"
-    )
+    assert (len(data.network), data.kitchen) == (1, starting_nodes(data.network))
+    assert (data.rates, data.utensils, data.unit_prices, data.warnings) == (None, frozenset(), None, ())
     (tmp_path / "motion.txt").touch()
     assert read_data(find_data(tmp_path)).rates == {}
-
-
-def test_networks_are_merged_in_order(tmp_path: Path) -> None:
-    (tmp_path / "2.txt").write_text(MIX + CUT)
-    (tmp_path / "1.txt").write_text(CUT)
-    network = read_data(find_data(tmp_path)).network
-    assert network.motions == ("cut", "mix")
-    assert [[Path(s.file).name for s in copies] for copies in network.sources] == [
-        ["1.txt", "2.txt"],
-        ["2.txt"],
-    ]
 
 
 def test_a_kitchen_item_may_stand_for_several_nodes(folder: Path) -> None:
@@ -299,45 +240,8 @@ def test_an_error_in_any_piece_is_located(folder: Path, name: str, text: str, pl
 def test_labels_stand_one_on_each_line(tmp_path: Path) -> None:
     file = tmp_path / "utensils.txt"
     file.write_text(
-        "\N{BYTE ORDER MARK}bowl\r\n# tools\n\n  cutting board \n\t\nbowl\nwok 中", "utf-8", newline=""
+        "\N{BYTE ORDER MARK}bowl\r\n# tools\n\n  cutting board \r\t\nbowl\rwok 中", "utf-8", newline=""
     )
     assert read_labels(file) == {"bowl", "cutting board", "wok 中"}
     file.write_text("")
     assert read_labels(file) == frozenset()
-
-
-def test_labels_have_the_line_ends_of_foon_text(tmp_path: Path) -> None:
-    file = tmp_path / "utensils.txt"
-    file.write_text("bowl\rknife\r", newline="")
-    assert read_labels(file) == {"bowl", "knife"}
-
-
-def test_labels_that_cannot_be_read_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="cannot be read"):
-        read_labels(tmp_path / "nothing.txt")
-    (tmp_path / "utensils.txt").write_bytes(b"bowl\np\xeale\n")
-    with pytest.raises(InputError, match=r"utensils\.txt:2:2: error: found the byte 0xea"):
-        read_labels(tmp_path / "utensils.txt")
-
-
-# --- the real corpus
-
-
-@pytest.mark.skipif(not CORPUS.is_dir(), reason=f"the real corpus is not at {CORPUS}")
-def test_the_real_universal_foon_has_the_known_counts() -> None:
-    files = find_data(CORPUS / "universal")
-    data = read_data(files)
-    assert len(data.network) == 2376
-    assert len(data.network.objects) == 4305
-    assert files.kitchen is not None
-    items = read_object_list(files.kitchen)
-    assert len(items) == 1174
-    assert sum(bool(data.network.find(item.pattern)) for item in items) == 1173
-    unmatched = [warning for warning in data.warnings if warning.code == "kitchen-item"]
-    assert len(unmatched) == 1
-    assert unmatched[0].source.line > 1
-    assert data.rates is not None
-    assert len(data.rates) == 129
-    assert len(data.goals) == 5
-    assert all(data.network.find(entry.pattern) for entry in data.goals)
-    assert data.left_out == 0

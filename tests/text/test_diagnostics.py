@@ -21,25 +21,21 @@ def warning(line: int, code: str = "time", file: str = "f.txt", excerpt: str = "
     return Diagnostic(Severity.WARNING, code, f"about line {line}", Source(file, line, 3), excerpt)
 
 
-def test_a_diagnostic_gives_place_severity_and_message() -> None:
+def test_a_diagnostic_gives_place_message_and_line_without_its_fix() -> None:
     error = Diagnostic(Severity.ERROR, "syntax", "found x", Source("a b.txt", 7, 12, ("video",)))
     assert str(error) == "a b.txt:7:12: error: found x"
-    assert str(warning(4)) == "f.txt:4:3: warning: about line 4"
-
-
-def test_a_diagnostic_with_a_line_points_into_it() -> None:
-    assert str(warning(4, excerpt="M\tmix\tx")).split("\n") == [
+    pointing = warning(4, excerpt="M\tmix\tx")
+    assert str(pointing).split("\n") == [
         "f.txt:4:3: warning: about line 4",
         "    M→mix→x",
         "      ^",
     ]
+    assert str(pointing._replace(fix="M\tmix")) == str(pointing)
 
 
 @pytest.mark.parametrize(
     ("line", "column", "shown"),
     [
-        ("abc", 1, ["    abc", "    ^"]),
-        ("abc", 3, ["    abc", "      ^"]),
         ("abc", 4, ["    abc", "       ^"]),
         ("", 1, ["    ", "    ^"]),
         ("a\tb", 3, ["    a→b", "      ^"]),
@@ -50,16 +46,6 @@ def test_a_diagnostic_with_a_line_points_into_it() -> None:
 )
 def test_the_caret_stands_under_the_column(line: str, column: int, shown: list[str]) -> None:
     assert excerpt_with_caret(line, column).split("\n") == shown
-
-
-def test_a_long_line_is_cut_around_the_column() -> None:
-    line = "".join(chr(ord("a") + i % 26) for i in range(1000))
-    for column in (1, 2, 500, 999, 1000, 1001):
-        shown, caret = excerpt_with_caret(line, column, width=20).split("\n")
-        assert len(shown) <= 4 + 20
-        at = caret.index("^")
-        assert shown[at : at + 1] == line[column - 1 : column]
-    assert excerpt_with_caret(line, 1, width=2000).split("\n")[0] == "    " + line
 
 
 @steady
@@ -75,51 +61,17 @@ def test_the_caret_never_points_at_another_character(line: str, data: st.DataObj
     assert len(shown) <= 4 + width
 
 
-def test_an_input_error_is_the_users_and_carries_all_diagnostics() -> None:
-    found = [warning(1), warning(2, excerpt="abc")]
-    error = InputError(found)
-    assert isinstance(error, UserError)
-    assert error.diagnostics == tuple(found)
-    assert str(error) == f"{found[0]}\n{found[1]}"
-
-
-@pytest.mark.parametrize(("count", "shown", "rest"), [(1, 1, 0), (40, 40, 0), (41, 40, 1), (1000, 40, 960)])
+@pytest.mark.parametrize(("count", "shown", "rest"), [(1, 1, 0), (40, 40, 0), (41, 40, 1), (42, 40, 2)])
 def test_an_input_error_shows_the_first_errors_and_counts_the_rest(count: int, shown: int, rest: int) -> None:
     found = [warning(line) for line in range(1, count + 1)]
     error = InputError(found)
+    assert isinstance(error, UserError)
     assert error.diagnostics == tuple(found)
     lines = str(error).split("\n")
     assert lines[:shown] == [str(d) for d in found[:shown]]
     assert len(lines) == shown + bool(rest)
     if rest:
         assert lines[-1].startswith(f"... and {rest} more error{'s' * (rest > 1)}; ")
-
-
-def test_a_fix_is_no_part_of_what_is_shown() -> None:
-    plain = warning(4, excerpt="O tea")
-    assert plain.fix is None
-    assert str(plain._replace(fix="O\ttea")) == str(plain)
-
-
-def test_one_of_a_kind_is_told_in_full() -> None:
-    assert summarize([]) == []
-    found = [warning(1, "time"), warning(2, "motion-flag", excerpt="O\ta\t7")]
-    assert summarize(found) == [str(found[0]), str(found[1])]
-
-
-def test_many_of_a_kind_are_the_first_and_the_lines_of_the_others() -> None:
-    (text,) = summarize([warning(line) for line in (3, 8, 9)])
-    assert text.split("\n") == [
-        "f.txt:3:3: warning: about line 3",
-        "    3 warnings of this kind (time); others on line 8, 9",
-    ]
-
-
-def test_very_many_of_a_kind_are_counted() -> None:
-    (text,) = summarize([warning(line) for line in range(1, 101)], places=2)
-    assert text.endswith("100 warnings of this kind (time); others on line 2, 3, ...")
-    (text,) = summarize([warning(line) for line in range(1, 4)], places=2)
-    assert text.endswith("3 warnings of this kind (time); others on line 2, 3")
 
 
 def test_in_brief_few_are_told_and_many_are_counted() -> None:
@@ -133,16 +85,19 @@ def test_in_brief_few_are_told_and_many_are_counted() -> None:
     assert in_brief([]) == []
 
 
-def test_kinds_and_files_are_told_apart_in_order_of_appearance() -> None:
+def test_each_kind_in_each_file_is_told_once_with_the_lines_of_the_others() -> None:
     found = [
         warning(5, "time"),
         warning(1, "outer-space"),
         warning(6, "time"),
         warning(7, "time", "g.txt"),
         warning(2, "outer-space"),
+        warning(9, "outer-space"),
     ]
-    lines = summarize(found)
-    assert [text.split("\n")[0] for text in lines] == [str(found[0]), str(found[1]), str(found[3])]
-    assert "others on line 6" in lines[0]
-    assert "others on line 2" in lines[1]
-    assert lines[2] == str(found[3])
+    assert summarize(found, places=1) == [
+        f"{found[0]}\n    2 warnings of this kind (time); others on line 6",
+        f"{found[1]}\n    3 warnings of this kind (outer-space); others on line 2, ...",
+        str(found[3]),
+    ]
+    assert summarize(found)[1].endswith("others on line 2, 9")
+    assert summarize([]) == []

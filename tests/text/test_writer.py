@@ -1,12 +1,11 @@
 """Writing FOON text: the canonical form, which the reader takes back without loss."""
 
-import pytest
-from hypothesis import given
+from hypothesis import given, settings
 
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_node, write_unit, write_units
-from tests.text.foon_strategies import nodes, steady, units
+from tests.text.foon_strategies import steady, units
 
 BOWL = ObjectNode.of(
     "mixing bowl",
@@ -48,31 +47,11 @@ def test_a_text_begins_with_its_comments_and_a_separator() -> None:
     assert write_units([UNIT, UNIT], ["one"]) == "# one\n//\n" + write_unit(UNIT) * 2
 
 
-def test_a_source_comment_comes_back_as_the_video() -> None:
-    (unit,) = FoonReader().units(write_units([UNIT], ["Source:\thttps://example.org/v"]), "f.txt")
-    assert unit.source.videos == ("https://example.org/v",)
-
-
 def test_a_comment_of_two_lines_stays_a_comment() -> None:
-    assert read_back(write_units([UNIT], ["one\ntwo", "three\r\n\nfour"])) == ([UNIT], set())
+    assert read_back(write_units([UNIT], ["one\ntwo", "three\r\n\nfour\rfive"])) == ([UNIT], set())
 
 
-def test_a_comment_of_two_lines_with_old_line_ends_stays_a_comment() -> None:
-    assert read_back(write_units([UNIT], ["one\rtwo"])) == ([UNIT], set())
-
-
-def test_what_is_written_does_not_depend_on_the_order_of_attributes() -> None:
-    turned = ObjectNode.of(
-        "mixing bowl",
-        ["clean", "stirred"],
-        [("in", "sink"), ("on", "table")],
-        [("coated", ["oil"]), ("contains", ["flour", "salt"])],
-    )
-    assert write_node(turned) == write_node(BOWL)
-
-
-@pytest.mark.slow
-@steady
+@settings(steady, max_examples=50)
 @given(units())
 def test_units_come_back_the_same_in_the_same_order(written: list[FunctionalUnit]) -> None:
     text = write_units(written, ["made by a test"])
@@ -82,9 +61,3 @@ def test_units_come_back_the_same_in_the_same_order(written: list[FunctionalUnit
     # The canonical form leaves nothing found but what the units themselves are.
     assert codes <= {"no-outputs", "repeated-ingredient", "empty-ingredient"}
     assert write_units(found, ["made by a test"]) == text
-
-
-@steady
-@given(nodes(), nodes())
-def test_nodes_are_the_same_exactly_when_their_text_is(one: ObjectNode, other: ObjectNode) -> None:
-    assert (write_node(one) == write_node(other)) == (one == other)

@@ -1,0 +1,66 @@
+"""Comparisons as rows of a file, and the question that all its rows have in common."""
+
+import hashlib
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import msgspec
+
+from foon_asp.asp import Settings
+from foon_asp.asp.assembly import rules_digest
+from foon_asp.comparison.comparison import Comparison
+from foon_asp.comparison.rows_file import RowForm
+from foon_asp.problem import Objective, Problem
+from foon_asp.proof.verify import digests
+from foon_asp.results.plain import plain
+from foon_asp.searches import Search, SearchSettings
+from foon_asp.text.json_value import Json, json_line
+
+
+def read_comparison(row: Json) -> Comparison:
+    """Return the comparison that a row was made of.
+
+    Raises one of the errors that :class:`RowsFile` knows for anything else.
+    """
+    searches = [
+        search | {name: _by_objective(search[name]) for name in ("measures", "ratios")}
+        for search in row["searches"]
+    ]
+    fields = row | {"optimum": _by_objective(row["optimum"]), "searches": searches}
+    comparison = msgspec.convert(fields, Comparison, dec_hook=_exact)
+    if json_line(plain(comparison)) != json_line(row):
+        raise ValueError("more than what is written, or something else")
+    return comparison
+
+
+def _by_objective(values: Json) -> dict[Objective, object]:
+    return {Objective(name): value for name, value in values.items()}
+
+
+def _exact(_: type, value: Any) -> Objective | Fraction | int:
+    if isinstance(value, Objective) or type(value) is int:
+        return value
+    return Fraction(*map(int, value["exact"].split("/")))  # without exponents: those stand for many digits
+
+
+COMPARISONS = RowForm("compare-row", plain, read_comparison, lambda comparison: comparison.goal.node)
+
+
+def comparisons_question(
+    problem: Problem, searches: Sequence[Search], settings: SearchSettings, rules: Settings | None = None
+) -> Json:
+    """Describe what is asked, so that results of another question are not taken for this one's."""
+    data: list[object] = [
+        digests(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
+    ]
+    if problem.items is not None:
+        data += [problem.flows, sorted(map(problem.stock_of, problem.kitchen), key=repr)]
+    return {
+        "data": hashlib.sha256(json_line(data).encode()).hexdigest()[:16],
+        "containers": str(problem.containers),
+        "level": problem.network.level,
+        "searches": {search.name: search.package for search in searches},
+        **msgspec.to_builtins(settings),
+        **(rules_digest(rules) if rules else {}),
+    }

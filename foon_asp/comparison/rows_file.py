@@ -1,0 +1,173 @@
+"""A file of rows as JSON Lines: written as they come, read back to resume after an interruption."""
+
+import contextlib
+import os
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import IO, Generic, NamedTuple, Self, TypeVar
+
+from foon_asp.errors import UserError
+from foon_asp.text.json_value import Json, json_line, read_json, schema_name
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
+Row = TypeVar("Row")
+Value = TypeVar("Value")
+
+_BEYOND = 1 << 40  # where no byte of a file is: on Windows, who locks a byte keeps others from reading it
+
+
+class RowForm(NamedTuple, Generic[Row]):
+    """How rows of a ``kind`` are written, and what identifies one.
+
+    ``read`` makes a row of what ``plain`` made of it. It refuses anything else by raising a
+    :class:`ValueError`, :class:`KeyError`, :class:`TypeError`, :class:`AttributeError` or
+    :class:`ArithmeticError`. ``key`` returns the question that a row answers.
+    """
+
+    kind: str
+    plain: Callable[[Row], Json]
+    read: Callable[[Json], Row]
+    key: Callable[[Row], object]
+
+
+class RowsFile(Generic[Row]):
+    """A file of rows under construction, which one process writes at a time.
+
+    Its first line is the question (data and settings); every line says its kind and version. Rows are
+    written whole and at once; a last line that an interruption cut short is dropped. ``done`` has the rows by
+    key, and ``twice`` a warning for each that has the key of an earlier one. The lock ends with the process,
+    however that ends.
+
+    Raises :class:`UserError`, and leaves the file as it is, where another run writes it, where it was begun
+    for another question, where its lines are of another version, and where it holds anything that this class
+    did not write.
+    """
+
+    def __init__(self, path: Path, form: RowForm[Row], question: Json) -> None:
+        self.path, self._form, self._schema = path, form, schema_name(form.kind)
+        self.done: dict[object, Row] = {}
+        self.twice: list[str] = []
+        with self._reported("written"):
+            self._file = self._locked()
+        try:
+            with self._reported("read"):
+                content = self._file.read()
+            first_line = self._line({"question": question})
+            is_new = first_line.startswith(content)  # empty, or cut short
+            kept = 0 if is_new else self._read_rows(content, question)
+            with self._reported("written"):
+                self._file.truncate(kept)
+                self._file.seek(kept)
+                self._write(first_line if is_new else b"")
+        except BaseException:
+            self.__exit__()
+            raise
+
+    def add(self, row: Row) -> None:
+        """Write a row; it is on the disk when this returns."""
+        with self._reported("written"):
+            self._write(self._line(self._form.plain(row)))
+        self.done[self._form.key(row)] = row
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with contextlib.suppress(OSError):  # all rows are on the disk already, or their fault was reported
+            self._file.close()
+
+    def _locked(self) -> IO[bytes]:
+        """Open the file for this run alone; raises :class:`UserError` where another one writes it."""
+        if self.path.exists() and not self.path.is_file():
+            raise UserError(f"{self.path}: is not a file in which results can be kept")
+        file = open(self.path, "r+b", opener=lambda name, how: os.open(name, how | os.O_CREAT, 0o666))  # noqa: SIM115 (closed at the end)
+        if _lock(file):
+            file.seek(0)
+            return file
+        file.close()
+        raise UserError(
+            f"{self.path}: another run is writing it, and it is left to that one: wait until it has ended, "
+            "or name another file"
+        )
+
+    def _read_rows(self, content: bytes, question: Json) -> int:
+        """Read the rows of a file that was begun, and return how many of its bytes are whole lines."""
+        first, newline, rows = content.partition(b"\n")
+        begun = self._read(first, 1, dict) if newline else {}
+        if begun.keys() != {"question"}:
+            raise UserError(
+                f"{self.path}: contains something other than results of foon-asp, and was not changed; "
+                "name another file"
+            )
+        there, now = json_line(begun["question"]), json_line(question)
+        if read_json(there) != read_json(now):
+            raise UserError(
+                f"{self.path}: was started for another question; name another file, or remove this one\n"
+                f"  there: {there}\n  now:   {now}"
+            )
+        *lines, rest = rows.split(b"\n")
+        numbers: dict[object, int] = {}
+        for number, line in enumerate(lines, 2):
+            row = self._read(line, number, self._form.read)
+            key = self._form.key(row)
+            self.done[key] = row
+            if numbers.setdefault(key, number) != number:
+                self.twice.append(
+                    f"{self.path}:{number}: warning: a row of the same question as line {numbers[key]}; "
+                    "whoever reads them counts both: remove one"
+                )
+        return len(content) - len(rest)
+
+    def _read(self, line: bytes, number: int, read: Callable[[Json], Value]) -> Value:
+        try:
+            value: Json = read_json(line)
+            version = value.pop("schema")
+            if version == self._schema:
+                return read(value)
+        except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError):
+            raise UserError(
+                f"{self.path}:{number}: error: not a line of results of foon-asp; the file is left as it is: "
+                "name another"
+            ) from None
+        raise UserError(
+            f"{self.path}:{number}: error: found results of foon-asp in the version {version!r}, expected "
+            f"{self._schema!r}; name another file, or remove this one"
+        )
+
+    def _line(self, row: Json) -> bytes:
+        return json_line({"schema": self._schema, **row}).encode() + b"\n"
+
+    def _write(self, content: bytes) -> None:
+        self._file.write(content)
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    @contextlib.contextmanager
+    def _reported(self, done: str) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise UserError(f"{self.path}: cannot be {done}: {error.strerror or error}") from None
+
+
+def _lock(file: IO[bytes]) -> bool:
+    """Lock an open file until it is closed, and return whether nobody else has it locked.
+
+    Where the file system knows no locks, nobody else is taken to have it.
+    """
+    try:
+        if sys.platform == "win32":
+            os.lseek(file.fileno(), _BEYOND, os.SEEK_SET)
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (BlockingIOError, PermissionError):
+        return False
+    except OSError:
+        return True
+    return True

@@ -1,0 +1,160 @@
+"""The language server: messages of an editor, the texts that are open in it, and the checking of them."""
+
+import asyncio
+import sys
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import BinaryIO
+
+from foon_asp import __version__
+from foon_asp.editor import answers
+from foon_asp.editor.checked_text import CheckedText, check
+from foon_asp.editor.edited_text import EditedText
+from foon_asp.editor.json_rpc import (
+    CONTENT_MODIFIED,
+    INTERNAL_ERROR,
+    INVALID_PARAMETERS,
+    INVALID_REQUEST,
+    METHOD_NOT_FOUND,
+    RequestError,
+    parameter,
+    read_message,
+    write_message,
+)
+from foon_asp.text.json_value import Json
+
+_PAUSE = 0.25  # seconds without a change, before a text is checked
+_CAPABILITIES = {
+    "textDocumentSync": {"openClose": True, "change": 1},  # the whole text
+    "completionProvider": {"triggerCharacters": ["\t", "[", "{", ","]},
+    "codeActionProvider": {"codeActionKinds": ["quickfix"]},
+    "renameProvider": {"prepareProvider": True},
+    "hoverProvider": True,
+    "definitionProvider": True,
+    "documentSymbolProvider": True,
+    "foldingRangeProvider": True,
+    "documentFormattingProvider": True,
+}
+
+
+class LanguageServer:
+    """Answers an editor; when a text rests, a thread checks it whole, and the newest text counts."""
+
+    def __init__(self, stdin: BinaryIO, stdout: BinaryIO) -> None:
+        self._in, self._out = stdin, stdout
+        self._texts: dict[str, EditedText] = {}
+        self._checks: dict[str, asyncio.Task[CheckedText]] = {}
+        self._checked: dict[str, CheckedText] = {}  # the last that was, maybe of an earlier text
+        self._worker = ThreadPoolExecutor(1)
+        self._complaint = ""
+        self._ending: set[str] = set()  # "shutdown" and "exit", once the editor has said so
+        self._methods: dict[str, Callable[[object], object]] = {
+            "initialize": self._initialize,
+            "shutdown": lambda _: self._ending.add("shutdown"),
+            "exit": lambda _: self._ending.add("exit"),
+            "textDocument/didOpen": self._open,
+            "textDocument/didChange": self._change,
+            "textDocument/didClose": self._close,
+            "textDocument/formatting": lambda parameters: answers.formatted(self._text(parameters)),
+        }
+
+    async def run(self) -> bool:
+        """Answer until the editor ends this, or is gone; return whether it ended as the protocol has it."""
+        async with asyncio.TaskGroup() as responses:
+            while "exit" not in self._ending:
+                message = await asyncio.to_thread(read_message, self._in)
+                if message is None:
+                    break
+                responses.create_task(self._respond(message))
+                await asyncio.sleep(0)  # the response begins before the next message is read
+        return self._ending != {"exit"}
+
+    async def _respond(self, message: Json) -> None:
+        """Do what a message says, and answer it unless it is a notification."""
+        id_ = message["id"] if type(message.get("id")) in {str, int} else None
+        asks = "id" in message or "method" not in message
+        try:
+            if asks and (id_ is None or self._ending or message.get("jsonrpc") != "2.0"):
+                words = "found no request of JSON-RPC 2.0, or one after the editor has ended the server"
+                raise RequestError(INVALID_REQUEST, words)
+            response: Json = {"result": await self._result(str(message.get("method")), message.get("params"))}
+        except RequestError as error:
+            response = _error(error.code, str(error))
+        except asyncio.CancelledError:
+            response = _error(CONTENT_MODIFIED, "the text has changed")
+        except Exception as error:  # the editor waits for an answer
+            response = _error(INTERNAL_ERROR, repr(error))
+        if asks:
+            write_message(self._out, {"id": id_, **response})
+
+    async def _result(self, method: str, parameters: object) -> object:
+        if method in self._methods:
+            return self._methods[method](parameters)
+        if method == "textDocument/completion":
+            text = self._text(parameters)
+            checked = self._checked.get(text.uri) or await self._checks[text.uri]
+            return answers.completion(text, checked.names, parameters)
+        if answer := answers.ANSWERS.get(method):
+            return answer(await self._checks[self._text(parameters).uri], parameters)
+        raise RequestError(METHOD_NOT_FOUND, f"there is no method {method}")
+
+    def _initialize(self, parameters: object) -> Json:
+        parameter(parameters, "capabilities", dict)
+        return {
+            "capabilities": _CAPABILITIES,
+            "serverInfo": {"name": "foon-asp", "version": __version__},
+        }
+
+    def _open(self, parameters: object) -> None:
+        uri = parameter(parameters, "textDocument.uri", str)
+        self._begin(EditedText(uri, parameter(parameters, "textDocument.text", str)), 0)
+
+    def _change(self, parameters: object) -> None:
+        text = self._text(parameters)
+        for change in parameter(parameters, "contentChanges", list):
+            self._begin(EditedText(text.uri, parameter(change, "text", str)), _PAUSE)
+
+    def _close(self, parameters: object) -> None:
+        uri = self._text(parameters).uri
+        self._checks.pop(uri).cancel()
+        self._checked.pop(uri, None)
+        del self._texts[uri]
+        self._tell("textDocument/publishDiagnostics", {"uri": uri, "diagnostics": []})
+
+    def _text(self, parameters: object) -> EditedText:
+        """Return the text that a message is about; raise an error where it is not open."""
+        uri = parameter(parameters, "textDocument.uri", str)
+        if uri not in self._texts:
+            raise RequestError(INVALID_PARAMETERS, f"found {uri}, expected a text that is open")
+        return self._texts[uri]
+
+    def _begin(self, text: EditedText, seconds: float) -> None:
+        """Check a text after some time, and no earlier one that has the same name."""
+        if check_before := self._checks.get(text.uri):
+            check_before.cancel()
+        self._texts[text.uri] = text
+        self._checks[text.uri] = asyncio.create_task(self._check(text, seconds))
+
+    async def _check(self, text: EditedText, seconds: float) -> CheckedText:
+        await asyncio.sleep(seconds)
+        checked = await asyncio.get_running_loop().run_in_executor(self._worker, check, text)
+        self._checked[text.uri] = checked
+        if checked.complaint not in {"", self._complaint}:
+            self._tell("window/showMessage", {"type": 1, "message": checked.complaint})  # an error
+        self._complaint = checked.complaint
+        found = {"uri": text.uri, "diagnostics": answers.diagnostics(checked)}
+        self._tell("textDocument/publishDiagnostics", found)
+        return checked
+
+    def _tell(self, method: str, parameters: Json) -> None:
+        write_message(self._out, {"method": method, "params": parameters})
+
+
+def _error(code: int, message: str) -> Json:
+    return {"error": {"code": code, "message": message}}
+
+
+def serve() -> bool:
+    """Answer an editor over standard input and output; return whether it ended as the protocol has it."""
+    sys.setswitchinterval(0.0005)  # seconds until the thread that checks lets an answer go first
+    return asyncio.run(LanguageServer(sys.stdin.buffer, sys.stdout.buffer).run())

@@ -1,0 +1,36 @@
+"""Names as the one-line notation of object nodes has them: in quotes where they would be read otherwise.
+
+A name in quotes is a string of JSON. ``docs/formats.md`` describes the notation.
+"""
+
+import json
+import re
+from json.encoder import encode_basestring_ascii
+from typing import Final
+
+from foon_asp.escapes import UNSAFE
+
+_ANYWHERE = rf'\A["\s]|\s\Z|\A\Z|[;\[\]{{}}\t\n]|{UNSAFE.pattern}'
+NAME: Final = re.compile(_ANYWHERE)
+"""What makes a name need quotes: it is empty, has blanks around it, or letters with a meaning."""
+LISTED: Final = re.compile(rf"{_ANYWHERE}|,")
+"""The same of a name in brackets, where a comma separates names."""
+FIRST: Final = re.compile(rf"{_ANYWHERE}|\A[#@]|\A::")
+"""The same of the name that a notation begins with: in files, ``#`` begins a comment and ``@`` a word."""
+_ESCAPED = re.compile(rf'["\\\t\n]|{UNSAFE.pattern}')
+
+
+def quoted(name: str, special: re.Pattern[str] = NAME) -> str:
+    """Return a name as the notation has it: in quotes only where it holds something ``special``."""
+    return in_quotes(name) if special.search(name) else name
+
+
+def in_quotes(name: str) -> str:
+    """Return a name as a string of JSON, with escapes for all that a terminal is not sent as it is."""
+    return '"' + _ESCAPED.sub(lambda letter: encode_basestring_ascii(letter[0])[1:-1], name) + '"'
+
+
+def unquoted(written: str) -> str:
+    """Return the name that is written in the notation, with or without quotes, blanks around it left out."""
+    written = written.strip(" ")
+    return str(json.loads(written, strict=False)) if written.startswith('"') else written

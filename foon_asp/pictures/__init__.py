@@ -1,0 +1,1 @@
+"""Charts, drawings of task trees and networks, and the page of ``view``."""

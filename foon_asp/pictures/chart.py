@@ -1,0 +1,91 @@
+"""Charts by matplotlib: their look, and writing them as SVG or PNG."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from foon_asp.errors import UserError
+from foon_asp.report.whole_file import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Okabe and Ito's colors, which people with any of the common color deficiencies can tell apart.
+COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
+
+_WIDTH = 7.15  # inches: both columns of a page
+_SUFFIXES = (".svg", ".png")
+_INK = "#333333"  # of text and axes
+_STYLE: dict[Any, Any] = {  # by the names that matplotlib has for its settings
+    "font.family": "sans-serif",
+    # The first comes with matplotlib, so every machine lays out alike; the others are for viewers of an SVG
+    # who do not have it.
+    "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial"],
+    "font.size": 8.0,
+    "text.parse_math": False,  # a $ in a name is a $
+    "text.color": _INK,
+    "axes.edgecolor": _INK,
+    "axes.labelcolor": _INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.prop_cycle": f"cycler('color', {COLORS})",
+    "figure.titlesize": 9.0,
+    "figure.titleweight": "bold",
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "savefig.dpi": 300,
+    "svg.fonttype": "none",  # text stays text, which can be searched, read aloud and edited
+    "svg.hashsalt": "foon-asp",  # names within the file come from what they name, and not from chance
+}
+
+
+def check_suffix(file: Path) -> None:
+    """Raise :class:`UserError` for a file whose name says neither SVG nor PNG."""
+    if file.suffix.lower() not in _SUFFIXES:
+        raise UserError(f"{file}: the name of a chart ends in {' or '.join(_SUFFIXES)}")
+
+
+def write_chart(file: Path, title: str, height: float, draw: "Callable[[Figure, Axes], None]") -> None:
+    """Write what ``draw`` adds to a figure of this height in inches, as SVG or PNG by the file's suffix.
+
+    The file is complete or not written at all. Raises :class:`UserError` for another suffix, and where
+    matplotlib is not installed.
+    """
+    check_suffix(file)
+    picture = BytesIO()
+    with new_figure(_WIDTH, height, layout="constrained") as figure:
+        figure.suptitle(title, wrap=True)
+        draw(figure, figure.subplots())
+        figure.savefig(picture, format=file.suffix.lower().removeprefix("."), metadata={"Date": None})
+    write_whole(file, picture.getvalue())
+
+
+@contextmanager
+def new_figure(width: float, height: float, **options: Any) -> "Iterator[Figure]":
+    """Yield a figure of this size in inches, which looks the same whatever settings the user has.
+
+    Those stay as they are. Raises :class:`UserError` where matplotlib is not installed.
+    """
+    try:
+        # Slow to import, and not installed by everyone.
+        import matplotlib as mpl  # noqa: PLC0415
+        from matplotlib.figure import Figure  # noqa: PLC0415
+    except ImportError as error:
+        raise UserError(
+            f"a picture needs more packages ({error}): pip install 'foon-asp[pictures]'"
+        ) from None
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(_STYLE)
+        yield Figure((width, height), **options)
+
+
+def missing(what: object) -> UserError:
+    """Return an error that says which package a picture needs, and how to install it."""
+    return UserError(f"a picture needs more packages ({what}): pip install 'foon-asp[pictures]'")

@@ -1,0 +1,94 @@
+r"""A drawing in DOT, Graphviz' language.
+
+Labels are plain and not HTML-like, which not every build of Graphviz understands. The class of a node names
+its role and how many lines of its label are its head, for a style sheet to make them bold.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from textwrap import wrap
+
+from foon_asp.pictures.drawing import Box, Drawing, Role
+
+# Graphviz knows how wide this font is even where no font is installed, and few are wider: a text that is
+# shown in another one still fits its box.
+FONT = "DejaVu Sans"
+
+BOXED_UNITS = 300  # of more, boxes would take minutes to lay out, and nobody would find anything among them
+_CAPTION_LINE = 90  # letters
+_NAMED = 24  # object nodes of a large network whose names are written: those that most arrows meet
+
+# Objects are green and motions red, as everywhere in the field. For those who cannot tell the two apart,
+# motions are dark and have corners, and objects are light and rounded.
+_LOOKS = {
+    Role.MOTION: 'style=filled, fillcolor="#c62828", color="#8e0000", fontcolor="#ffffff", fontsize=11',
+    Role.KITCHEN: 'fillcolor="#e3f4e1", color="#7cb97c", fontsize=9',
+    Role.OBJECT: 'fillcolor="#93d293", color="#2e7d32"',
+    Role.BY_PRODUCT: 'fillcolor="#ffffff", color="#7cb97c", style="filled,rounded,dashed", fontsize=9',
+    Role.GOAL: 'fillcolor="#ffd54f", color="#a67c00", penwidth=2, peripheries=2, fontsize=12',
+}
+_BOXES = f"""\
+  graph [fontname="{FONT}", fontsize=12, labelloc=t, nodesep=0.12, ranksep=0.3, pad=0.15]
+  node [fontname="{FONT}", fontsize=10, shape=box, style="filled,rounded",
+    margin="0.13,0.05", width=0, height=0]
+  edge [color="#616161", arrowsize=0.6]"""
+_SPOTS = f"""\
+  graph [fontname="{FONT}", fontsize=40, labelloc=t, pad=0.5, outputorder=edgesfirst,
+    layout=sfdp, start=1, K=4, repulsiveforce=0.5, overlap=true]
+  node [fontname="{FONT}", label="", shape=circle, style=filled,
+    fixedsize=true, width=0.1, height=0.1]
+  edge [color="#455a6438", arrowhead=none]"""
+
+
+def dot_text(drawing: Drawing) -> str:
+    """Return a drawing as DOT, from top to bottom; a network of many units as :func:`graph_text`."""
+    if drawing.graph and drawing.units > BOXED_UNITS:
+        return graph_text(drawing)
+    labels = (_node(box, (*box.head, *box.details), _LOOKS[box.role]) for box in drawing.boxes)
+    return _text(drawing, _BOXES, [*_legend(drawing), *labels])
+
+
+def graph_text(drawing: Drawing) -> str:
+    """Return a network as squares and circles in DOT, where what hangs together is to lie together.
+
+    The whole text of a node is its tooltip, and the nodes that most arrows meet have their names written.
+    """
+    met = Counter(name for arrow in drawing.arrows for name in arrow)
+    objects = [box for box in drawing.boxes if box.node is not None]
+    named = {box.name for box in sorted(objects, key=lambda box: -met[box.name])[:_NAMED]}
+    motions = [box.name for box in drawing.boxes if box.node is None]
+    lines = [f"  {' -> '.join(motions)} [style=invis]"]  # neighbours in a file lie together
+    for box in sorted(drawing.boxes, key=lambda box: box.name in named):  # names lie above all else
+        label = box.head if box.name in named else ()
+        look = f"{_LOOKS[box.role].partition(', penwidth')[0]}, fontsize=24, fontcolor=black, style=filled"
+        shape = "circle" if box.node else "square"
+        tooltip = _quoted(["; ".join((*box.head, *box.details))])
+        lines.append(_node(box, label, f"{look}, shape={shape}, tooltip={tooltip}"))
+    return _text(drawing, _SPOTS, lines)
+
+
+def _text(drawing: Drawing, defaults: str, nodes: Iterable[str]) -> str:
+    caption = _quoted([line for text in drawing.caption for line in wrap(text, _CAPTION_LINE)])
+    arrows = (f"  {tail} -> {head}" for tail, head in drawing.arrows)
+    return "\n".join(("digraph foon {", defaults, f"  label={caption}", *nodes, *arrows, "}\n"))
+
+
+def _legend(drawing: Drawing) -> Iterator[str]:
+    """Frame a sample of every role that there is."""
+    roles = {box.role for box in drawing.boxes}
+    yield '  subgraph cluster_legend {\n    label="" color="#bdbdbd"'
+    for number, role in enumerate(Role):
+        if role in roles:
+            yield "  " + _node(Box(f"legend{number}", role, role), (role,), _LOOKS[role])
+    yield "  }"
+
+
+def _node(box: Box, label: Sequence[str], look: str) -> str:
+    class_ = f"{box.role.replace(' ', '-')} head{len(box.head)}"
+    return f'  {box.name} [label={_quoted(label)}, class="{class_}", {look}]'
+
+
+def _quoted(lines: Sequence[str]) -> str:
+    r"""Quote lines so that Graphviz shows them as they are: neither ``\N`` nor ``&amp;`` means anything."""
+    plain = (line.replace("\\", r"\\").replace('"', r"\"").replace("&", "&amp;") for line in lines)
+    return '"' + r"\n".join(plain) + '"'

@@ -1,0 +1,53 @@
+"""A drawing as a Mermaid flowchart, which many viewers of Markdown show as a picture."""
+
+import re
+from collections.abc import Iterator
+
+from foon_asp.pictures.drawing import Box, Drawing, Role
+from foon_asp.text.json_value import json_line
+
+# By role: what opens and closes a box, and its look. A border cannot be double: a goal's is thick.
+_BOXES = {
+    Role.MOTION: ("[", "]", "fill:#c62828,stroke:#8e0000,color:#ffffff"),
+    Role.KITCHEN: ("(", ")", "fill:#e3f4e1,stroke:#7cb97c,color:#000000"),
+    Role.OBJECT: ("(", ")", "fill:#93d293,stroke:#2e7d32,color:#000000"),
+    Role.BY_PRODUCT: ("(", ")", "fill:#ffffff,stroke:#7cb97c,color:#000000,stroke-dasharray:4"),
+    Role.GOAL: ("([", "])", "fill:#ffd54f,stroke:#a67c00,color:#000000,stroke-width:4px"),
+}
+
+# What could mean something to Mermaid, Markdown or HTML. Brackets, braces and commas mean nothing in quotes.
+_SPECIAL = re.compile(r"[!-'*+\-./:;<-@\\^_`|~]")
+
+
+def mermaid_text(drawing: Drawing) -> str:
+    """Give a drawing as a Mermaid flowchart, from top to bottom."""
+    return "\n".join(_lines(drawing)) + "\n"
+
+
+def mermaid_markdown(drawing: Drawing) -> str:
+    """Give the same as a block of a Markdown page."""
+    return f"```mermaid\n{mermaid_text(drawing)}```\n"
+
+
+def _lines(drawing: Drawing) -> Iterator[str]:
+    # The header is YAML, in which a text can be written as in JSON.
+    yield f"---\ntitle: {json_line(' | '.join(drawing.caption))}\n---"
+    yield "flowchart TD"
+    yield from (f"  {_node(box)}" for box in drawing.boxes)
+    yield from (f"  {tail} --> {head}" for tail, head in drawing.arrows)
+    yield from (f"  classDef {_css(role)} {look}" for role, (_, _, look) in _BOXES.items())
+
+
+def _node(box: Box) -> str:
+    opening, closing, _ = _BOXES[box.role]
+    head = "<br/>".join(map(_escaped, box.head))
+    label = "<br/>".join((f"<b>{head}</b>", *map(_escaped, box.details)))
+    return f'{box.name}{opening}"{label}"{closing}:::{_css(box.role)}'
+
+
+def _css(role: Role) -> str:
+    return role.replace(" ", "_").replace("-", "_")
+
+
+def _escaped(text: str) -> str:
+    return _SPECIAL.sub(lambda found: f"#{ord(found[0])};", text)

@@ -1,0 +1,35 @@
+"""How values show themselves in a notebook: as text, and as a picture below it."""
+
+import base64
+import contextlib
+import html
+from collections.abc import Iterable
+
+from foon_asp.errors import UserError
+from foon_asp.pictures.drawing import Drawing
+from foon_asp.pictures.graphviz import svg_picture
+
+
+def picture_bundle(value: object, drawing: Drawing) -> dict[str, str]:
+    """Give by media type what shows a value as a picture; as text where no picture can be drawn."""
+    try:
+        return {"text/plain": repr(value), "image/svg+xml": svg_picture(drawing)}
+    except UserError:
+        return page_bundle(value, ())
+
+
+def page_bundle(value: object, drawings: Iterable[Drawing]) -> dict[str, str]:
+    """Give by media type what shows a value as text, with pictures below it as far as they can be drawn.
+
+    A cell of a notebook shows the page; lists of values and consoles show the short form.
+    """
+    parts = [f"<pre>{html.escape(str(value))}</pre>"]
+    with contextlib.suppress(UserError):
+        parts += [_image(svg_picture(drawing)) for drawing in drawings]
+    return {"text/plain": repr(value), "text/html": "\n".join(parts)}
+
+
+def _image(svg: str) -> str:
+    # as an image, so that the style and the names in one picture stay its own
+    coded = base64.b64encode(svg.encode()).decode()
+    return f'<img alt="task tree" src="data:image/svg+xml;base64,{coded}"/>'

@@ -1,0 +1,127 @@
+"""The translator of Fast Downward, which reads PDDL and grounds it, as a process of its own.
+
+It comes with the extra ``pddl`` (GPL, so it is never installed otherwise, and never imported).
+"""
+
+import importlib.util
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from foon_asp.deadline import Deadline
+from foon_asp.errors import UserError
+from foon_asp.planning.pddl_outline import PddlOutline
+
+_MODULE = "fast_downward.translate"
+_ADVICE = "pip install 'foon-asp[pddl]' brings it along"
+_INPUT_ERROR, _OUT_OF_MEMORY = 31, 20  # exit codes of the translator
+# Without invariants each atom is a variable with two values, so that facts are atoms and their negations, and
+# no action is left out that runs only in the delete relaxation.
+_OPTIONS = ("--invariant-generation-max-candidates", "0")
+
+
+def installed() -> bool:
+    """Return whether the translator can be called."""
+    try:
+        return importlib.util.find_spec(_MODULE) is not None
+    except ModuleNotFoundError:
+        return False
+
+
+def require_translator(what: str) -> None:
+    """Raise :class:`UserError` where the translator is not installed, which ``what`` takes."""
+    if not installed():
+        raise UserError(f"{what} takes Fast Downward's translator, which is not installed: {_ADVICE}")
+
+
+def translated(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> str:
+    """Return a planning task as the translator writes it.
+
+    Raises :class:`UserError` for what the translator refuses, or where it fails; :class:`LimitError` at the
+    deadline.
+    """
+    require_translator(f"{problem.file}: reading PDDL")
+    with tempfile.TemporaryDirectory(prefix="foon-asp-") as name:
+        folder = Path(name)
+        for outline in (domain, problem):
+            (folder / f"{outline.kind}.pddl").write_text(outline.text, encoding="utf-8")
+        code, output = _run(folder, deadline)
+        written = folder / "output.sas"
+        if code == 0 and written.is_file():
+            return written.read_text(encoding="ascii")
+    raise _failure(domain, problem, code, output)
+
+
+def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
+    """Run the translator in a folder; return its exit code and its output."""
+    # Unbuffered, it notices at its next line that nobody reads it any more, should this process be killed.
+    command = [sys.executable, "-P", "-u", "-m", _MODULE, *_OPTIONS, "domain.pddl", "problem.pddl"]
+    process = subprocess.Popen(
+        command,
+        cwd=folder,
+        env={**os.environ, "PYTHONHASHSEED": "0"},  # the same task gets the same numbers
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        errors="replace",
+    )
+    deadline.count(process.pid)
+    try:
+        while True:
+            try:
+                output, _ = process.communicate(timeout=deadline.slice())
+            except subprocess.TimeoutExpired:
+                deadline.check()
+            else:
+                return process.returncode, output
+    finally:
+        process.kill()
+        process.wait()
+        deadline.uncount(process.pid)
+        if process.stdout is not None:
+            process.stdout.close()
+
+
+def _failure(domain: PddlOutline, problem: PddlOutline, code: int, output: str) -> UserError:
+    """Return an error with the translator's words on its input, or on its own failure."""
+    lines = [line.strip() for line in output.splitlines() if line.strip()]
+    if code == _INPUT_ERROR:
+        return UserError(_input_error(domain, problem, lines))
+    last = lines[-1] if lines else "it says nothing"
+    if code == _OUT_OF_MEMORY or last.startswith("MemoryError"):
+        what = "Fast Downward's translator ran out of memory"
+    elif code < 0:
+        what = f"Fast Downward's translator was ended by signal {-code}"
+    elif last.startswith("RecursionError"):
+        what = "found conditions nested too deeply for Fast Downward's translator: nest them less"
+    else:
+        what = f"Fast Downward's translator fails on these files, with {last[:200]!r}"
+    return UserError(f"{domain.file}, {problem.file}: {what}")
+
+
+def _input_error(domain: PddlOutline, problem: PddlOutline, lines: list[str]) -> str:
+    """Return what the translator refuses, in one line, with the file that it is in.
+
+    The translator says where it is ("Parsing problem", "->Parsing goal"), its message, and then mostly what
+    it expects ("Syntax: ...") and what it found ("Got: ...").
+    """
+    where, words, tail = list[str](), list[str](), ""
+    for line in lines:
+        label, _, said = line.removeprefix("->").partition(": ")
+        if label.startswith("Parsing"):
+            where.append(label.removeprefix("Parsing "))
+        elif label == "Got":
+            tail = f": found {said[:120]}" + tail
+        elif label == "Syntax":
+            tail = f", expected {said}"
+        elif label == "Error":
+            where.append("domain" if "domain file" in said else "problem")
+        elif line not in words and label != "Warning":
+            words.append(line.removeprefix("Reason: ").removesuffix("."))
+    message = "; ".join(words)[:500]
+    file = (domain if where[:2] == ["Parsing...", "domain"] else problem).file
+    place = f" (in {', '.join(dict.fromkeys(where[2:]))})" if where[2:] else ""
+    return f"{file}: error: {message}{tail}{place}: so says Fast Downward's translator"

@@ -1,0 +1,214 @@
+"""Whether a tree runs where items are used up: each of its steps once, in the order listed or in another.
+
+Whether each of a multiset of steps can be done once is a question about the firing sequences of a Petri net.
+Where some node is used up more often than it is made, there is no such sequence; otherwise it is searched
+for, depth first.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from foon_asp.network import FunctionalUnit, ObjectNode
+from foon_asp.problem import Problem, UsedUp, given_outputs, needed_inputs
+from foon_asp.proof.replay import Shortage
+
+_MAX_LOOKS = 100_000  # at steps that may be next: some 50 ms; no tree of the corpus takes 1,000
+
+
+class UsedUpRun(NamedTuple):
+    """How a tree runs where items are used up and each of its steps is done once.
+
+    ``order`` has positions in the tree, from 0, in an order that runs, the listed one where that does. It is
+    ``None`` where there is none, which is ``proved``, or where the search for one was given up. ``shortage``
+    is the copy that is missing then.
+    """
+
+    order: tuple[int, ...] | None
+    shortage: Shortage | None = None
+    proved: bool = True
+
+    @property
+    def runs(self) -> bool | None:
+        """Whether it runs, ``None`` where that is not known."""
+        return None if not self.proved else self.order is not None
+
+
+def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
+    """Look for an order in which the steps of a tree, each once, run from the kitchen to the goals.
+
+    Items are used up as the problem says, or, where they last in it, by the rule of docs/plans.md, and what
+    is in the kitchen never runs out. A unit that is listed several times is as many steps. Below level 3 it
+    is not asked, since contents say what is used up.
+
+    Parameters:
+        problem: What the tree is for.
+        tree: The units in the order listed.
+    """
+    if problem.network.level < 3:
+        return UsedUpRun(None, proved=False)
+    items = problem.items or UsedUp()
+
+    def is_finite(node: ObjectNode) -> bool:
+        return node in items.stock or not problem.at_hand(node)
+
+    flows = [_flow(problem, items, unit, is_finite) for unit in tree]
+    stock = Counter({node: n for node, n in items.stock.items() if problem.at_hand(node)})
+    search = _OrderSearch(flows, stock, frozenset(filter(is_finite, problem.goal_nodes)))
+    listed = search.listed()
+    if listed is None:
+        return UsedUpRun(tuple(range(len(flows))))
+    overdrawn = search.overdrawn()
+    if overdrawn is not None:
+        return UsedUpRun(None, overdrawn)
+    order = search.order()
+    shortage = None if order else search.dead_end or listed
+    return UsedUpRun(order, shortage, order is not None or search.looks_left > 0)
+
+
+class _Flow(NamedTuple):
+    """What a step does with nodes that may run out: it ``asks`` for a copy of each, ``uses`` up some."""
+
+    asks: tuple[ObjectNode, ...]
+    uses: tuple[ObjectNode, ...]
+    adds: tuple[ObjectNode, ...]
+
+
+def _flow(
+    problem: Problem, items: UsedUp, unit: FunctionalUnit, is_finite: Callable[[ObjectNode], bool]
+) -> _Flow:
+    how = problem.containers, problem.utensils, problem.network
+    asks = tuple(filter(is_finite, dict.fromkeys(needed_inputs(unit, *how))))
+    uses = tuple(node for node in asks if not items.fate(unit, node, problem.utensils).stays)
+    made = dict.fromkeys(given_outputs(unit, *how))
+    return _Flow(asks, uses, tuple(node for node in made if node not in unit.inputs and is_finite(node)))
+
+
+class _OrderSearch:
+    """A search for an order of steps, depth first and the earliest listed step first.
+
+    ``looks_left`` says how many steps may still be looked at; at 0 the search was given up. ``dead_end`` is
+    what was missing after the most steps that could be done, where some other could not.
+    """
+
+    def __init__(
+        self, flows: Sequence[_Flow], copies: Counter[ObjectNode], goals: frozenset[ObjectNode]
+    ) -> None:
+        self._flows, self._copies, self._goals = flows, copies, goals
+        self.looks_left = _MAX_LOOKS
+        self.dead_end: Shortage | None = None
+        # the steps that wait, as a ring in the order listed, which ends in a step that there is not
+        self._next = [*range(1, len(flows) + 1), 0]
+        self._previous = [len(flows), *range(len(flows))]
+        self._done = 0  # a bit for each step that was done
+        self._consumers = Counter(node for flow in flows for node in flow.uses)  # of the steps that wait
+        self._readers = Counter(node for flow in flows for node in set(flow.asks).difference(flow.uses))
+
+    def listed(self) -> Shortage | None:
+        """Return the copy that is missing when the steps are done as listed; ``None`` where none is."""
+        copies, taken = self._copies.copy(), dict[ObjectNode, list[int]]()
+
+        def missing(step: int | None, nodes: Iterable[ObjectNode]) -> Shortage | None:
+            node = next((node for node in nodes if not copies[node]), None)
+            return None if node is None else Shortage(step, node, tuple(taken.get(node, ())))
+
+        for step, (asks, uses, adds) in enumerate(self._flows):
+            shortage = missing(step, asks)
+            if shortage is not None:
+                return shortage
+            copies.subtract(uses)
+            copies.update(adds)
+            for node in uses:
+                taken.setdefault(node, []).append(step)
+        return missing(None, self._goals)
+
+    def overdrawn(self) -> Shortage | None:
+        """Return the first copy that is missing in every order, as more are used up than there ever are."""
+        copies = self._copies + Counter(node for flow in self._flows for node in flow.adds)
+        consumers: dict[ObjectNode, list[int]] = {}
+        for position, flow in enumerate(self._flows):
+            for node in flow.uses:
+                consumers.setdefault(node, []).append(position)
+        ends = len(self._flows)
+        lacking: list[tuple[int, Shortage]] = []
+        for node, steps in consumers.items():
+            served = steps[: copies[node]]
+            if len(served) < len(steps):
+                step = steps[len(served)]
+                lacking.append((step, Shortage(step, node, tuple(served))))
+            elif len(served) == copies[node] and node in self._goals:
+                lacking.append((ends, Shortage(None, node, tuple(served))))
+        return min(lacking, key=lambda each: each[0])[1] if lacking else None
+
+    def order(self) -> tuple[int, ...] | None:
+        """Return an order that runs, where no node is overdrawn; ``None`` where there is none."""
+        done: list[int] = []
+        dead: set[int] = set()  # what was done where no order of the others was found
+        choices, longest = [self._ready(dead)], -1
+        while choices:
+            step = next(choices[-1], None)
+            if step is not None:
+                self._do(step)
+                done.append(step)
+                if len(done) == len(self._flows):
+                    return tuple(done)
+                choices.append(self._ready(dead))
+                continue
+            if len(done) > longest:
+                longest, self.dead_end = len(done), self._missing(done)
+            if self.looks_left <= 0:
+                return None
+            dead.add(self._done)
+            choices.pop()
+            if done:
+                self._undo(done.pop())
+        return None
+
+    def _ready(self, dead: set[int]) -> Iterator[int]:
+        """Yield the steps that can be next, up to the first that takes nothing from another."""
+        end = len(self._flows)
+        step = end if self._done in dead else self._next[end]
+        while step != end and self.looks_left > 0:
+            self.looks_left -= 1
+            flow = self._flows[step]
+            if all(self._copies[node] for node in flow.asks):
+                yield step
+                if all(map(self._plentiful, flow.uses)):  # if no order goes on with this step, none does
+                    return
+            step = self._next[step]
+
+    def _missing(self, done: Sequence[int]) -> Shortage | None:
+        """Return what a step that waits is missing, since steps that were done used it up."""
+        step = self._next[-1]
+        while step != len(self._flows):
+            for node in self._flows[step].asks:
+                taken = tuple(each for each in sorted(done) if node in self._flows[each].uses)
+                if taken and not self._copies[node]:
+                    return Shortage(step, node, taken)
+            step = self._next[step]
+        return None
+
+    def _plentiful(self, node: ObjectNode) -> bool:
+        """Whether there are copies of a node for all steps that wait, and for the end."""
+        spare = node in self._goals or self._readers[node] > 0
+        return self._copies[node] >= self._consumers[node] + spare
+
+    def _do(self, step: int) -> None:
+        before, after = self._previous[step], self._next[step]
+        self._next[before], self._previous[after] = after, before
+        self._shift(step, 1)
+
+    def _undo(self, step: int) -> None:
+        self._shift(step, -1)
+        self._next[self._previous[step]] = self._previous[self._next[step]] = step
+
+    def _shift(self, step: int, sign: int) -> None:
+        self._done ^= 1 << step
+        asks, uses, adds = self._flows[step]
+        for node in asks:
+            counted = self._consumers if node in uses else self._readers
+            counted[node] -= sign
+        for node in uses:
+            self._copies[node] -= sign
+        for node in adds:
+            self._copies[node] += sign

@@ -1,0 +1,161 @@
+"""The optimum of every goal by itself, under one or several lists of objectives."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from fractions import Fraction
+from itertools import chain
+from typing import Unpack
+
+from foon_asp.asp import Outcome, Settings, Status
+from foon_asp.asp import solve as find
+from foon_asp.dataset.nearby import NearbyProblem, shown
+from foon_asp.dataset.nearby_optimum import near_goals
+from foon_asp.deadline import Deadline
+from foon_asp.problem import Objective, Problem
+from foon_asp.questions.answer import Answer, answered_nearby
+from foon_asp.questions.arguments import asked_with, chosen_objectives, limits, read
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import asked_in_python
+from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.report.answer import figure_text
+from foon_asp.results.table import Cell, Part, Table
+from foon_asp.results.values_of import head_of
+from foon_asp.text.json_value import schema_name
+
+_ALWAYS = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)  # columns; others where they are asked for
+_STYLES = {Status.OPTIMAL: "good", Status.INFEASIBLE: "bad"}
+_LEFT = frozenset({0, 1})
+
+
+class Optima(AboutGoals, frozen=True, kw_only=True, tag=schema_name("optima")):
+    """The best trees for each goal by itself.
+
+    Attributes:
+        answers: Goal by goal, one answer for each list of objectives.
+
+    Example:
+        >>> best = foon_asp.solve_all_goals(foon_asp.load(), ["units", "success"], goal="ice")
+        >>> [str(answer.objectives[0]) for answer in best.answers]
+        ['units', 'success']
+    """
+
+    ROWS = "answers"
+
+    answers: tuple[Answer, ...]
+
+    @property
+    def ending(self) -> Ending:
+        """Done when every answer is proved, a goal without a tree included."""
+        stopped = any(answer.ending is Ending.LIMIT for answer in self.answers)
+        return Ending.LIMIT if stopped else Ending.DONE
+
+    def show(self) -> Iterator[Part]:
+        """Return a table with a row for each tree that is best by something."""
+        first = self.answers[0]
+        trees, tree = ("task trees", "tree") if self.items == "lasting" else ("plans", "plan")
+        yield f"The best {trees} ({first.conditions})"
+        yield ""
+        asked = list(dict.fromkeys(answer.objectives for answer in self.answers))
+        others = [each for each in dict.fromkeys(chain(*asked)) if each not in _ALWAYS]
+        columns = (*_ALWAYS, *others)
+        rows: list[list[str | Cell]] = []
+        for goal, equal in self._by_goal():
+            for place, answers in enumerate(equal):
+                cells = _cells(answers, len(asked), columns)
+                rows.append([Cell("" if place else goal, "strong"), *cells])
+        yield Table(["goal", "best by", *columns, "status", "seconds"], rows, _LEFT | {len(columns) + 2})
+        if any(answer.status is Status.OPTIMAL for answer in self.answers):
+            yield "optimal: proved best by the objective named"
+        if any(answer.status is Status.INFEASIBLE for answer in self.answers):
+            yield f"infeasible: proved that no {tree} exists"
+        if any(map(_is_short_of_copies, self.answers)):
+            yield "* with each item used once, it does not run: see --items used-up"
+
+    def _by_goal(self) -> Iterator[tuple[str, list[list[Answer]]]]:
+        """Yield each goal with its answers, those of the same status and costs together."""
+        goals: dict[object, dict[object, list[Answer]]] = {}
+        for answer in self.answers:
+            rows = goals.setdefault(answer.goals, {})
+            rows.setdefault((answer.status, answer.costs), []).append(answer)
+        for rows in goals.values():
+            equal = list(rows.values())
+            yield " + ".join(goal.label for goal in equal[0][0].goals), equal
+
+    def __repr__(self) -> str:
+        return f"<Optima: {len(self.answers)} answers>"
+
+
+def _cells(answers: list[Answer], asked: int, columns: Iterable[Objective]) -> Iterator[str | Cell]:
+    """Yield the cells of answers with the same tree, behind their goal."""
+    first = answers[0]
+    names = [" then ".join(answer.objectives) for answer in answers]
+    leading = {answer.objectives[0] for answer in answers}
+    mark = " *" if any(map(_is_short_of_copies, answers)) else ""
+    yield "" if first.costs is None else ("all" if len(names) == asked > 1 else ", ".join(names)) + mark
+    for objective in columns:
+        measure = None if first.costs is None else first.costs.measures.get(objective)
+        text = "" if first.costs is None else "–" if measure is None else _measure_text(objective, measure)
+        yield Cell(text, "good" if objective in leading and first.status is Status.OPTIMAL else "")
+    yield Cell(first.status, _STYLES.get(first.status, ""))
+    yield f"{sum(sum(answer.seconds.values()) for answer in answers):.2f}"
+
+
+def _measure_text(objective: Objective, measure: int | Fraction) -> str:
+    if objective is not Objective.SUCCESS:
+        return figure_text(objective, measure)
+    return f"{float(measure):.4f}" if measure >= Fraction(1, 1000) else f"{float(measure):.3e}"
+
+
+def _is_short_of_copies(answer: Answer) -> bool:
+    """Return whether there is a tree that would not run if items were used up."""
+    return answer.used_up is not None and answer.used_up.runs is False
+
+
+@asked_in_python
+def solve_all_goals(
+    problem: Problem, objectives: str | Iterable[str] = "units", **how: Unpack[How]
+) -> Optima:
+    """Find the best tree for each goal of a problem by itself, under several lists of objectives.
+
+    The limits are for each answer.
+
+    Parameters:
+        objectives: Several objectives; each is one name, or a list separated by commas.
+
+    Returns:
+        The ``answers``: for each goal in order, one :class:`Answer` for each list of objectives.
+
+    Raises:
+        UserError: for a wrong argument or constraint, or an objective that needs rates or prices not given.
+
+    Example:
+        >>> foon = foon_asp.load()
+        >>> found = foon_asp.solve_all_goals(foon, ["units", "success"], goal=["ice", "tea"])
+        >>> [answer.costs.units for answer in found.answers]
+        [2, 3, 7, 7]
+    """
+    texts = [objectives] if isinstance(objectives, str) else objectives
+    lists = [chosen_objectives(problem, text) for text in texts]
+    each_limits = limits(how.pop("time_limit", None), how.pop("memory_limit", None))
+    # limits are for each answer, ctrl-C is for all of them
+    settings, within = settings_of(how), Deadline(within=caller().deadline)
+    outcomes: list[Outcome] = []
+    for goal in _each_goal(problem, settings):
+        for chosen in lists:
+            now = settings._replace(deadline=Deadline(*each_limits, within=within))
+            near = near_goals(goal, chosen, now)
+            if near is None:
+                outcomes.append(find(read(goal), chosen, now, caller().reporter))
+            else:
+                outcomes.append(answered_nearby(near, chosen, now).outcome)
+    every = dict.fromkeys(each for outcome in outcomes for each in outcome.objectives)
+    return Optima(**head_of(shown(problem), every), answers=tuple(map(Answer.of, outcomes)))
+
+
+def _each_goal(problem: Problem, settings: Settings) -> list[Problem]:
+    """Return a problem for each goal; a large store without rules is read as far as an answer takes."""
+    if isinstance(problem, NearbyProblem) and not settings.constraints and settings.replaced is None:
+        return problem.each_goal()
+    problem = asked_with(problem, settings)
+    return [replace(problem, goals=(goal,)) for goal in problem.goals]

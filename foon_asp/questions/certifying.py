@@ -1,0 +1,110 @@
+"""Certificates of the best tree, and of one that is given: proofs that are checked without a solver."""
+
+import contextlib
+from collections.abc import Sequence
+from pathlib import Path
+
+from foon_asp.asp import Settings
+from foon_asp.certificate import (
+    Certificate,
+    NotBestError,
+    certify,
+    certify_outcome,
+    certify_plan,
+    coverage,
+    covered_for_plans,
+)
+from foon_asp.dataset import Dataset
+from foon_asp.dataset.nearby_optimum import near_goals
+from foon_asp.dataset.paths import File
+from foon_asp.problem import Objective, Problem, levels
+from foon_asp.proof.verify import Subject
+from foon_asp.questions.answer import Answer, answered, answered_nearby
+from foon_asp.questions.arguments import reading, whole
+from foon_asp.questions.result import Ending
+from foon_asp.questions.tree import Tree
+from foon_asp.report.answer import costs_text
+from foon_asp.report.certified import bound_text, certificate_lines, looked_at
+from foon_asp.report.whole_file import write_whole
+
+
+def certified(
+    problem: Problem, objectives: Sequence[Objective], how: Settings, file: File | None = None
+) -> Answer:
+    """Solve a problem, and look for a certificate; at a limit or ctrl-C the answer comes without one.
+
+    Where it is written into a ``file``, notes of the answer say what it proves.
+    """
+    deadline = how.begun
+    how = how._replace(deadline=deadline)
+    ruled = how.constraints or how.constants or how.encodings
+    plain = not ruled and problem.items is None and Objective.PRICE not in objectives
+    near = near_goals(problem, objectives, how) if plain else None
+    with reading():
+        subject = near.subject() if near is not None else _subject(problem) if plain else None
+    if near is None:
+        answer = answered(whole(problem) if subject is None else problem, objectives, how)
+        proved = answer.problem
+    else:
+        answer = answered_nearby(near, objectives, how)
+        proved = near.relaxed
+    certificate = None
+    with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
+        outcome, certificate = certify_outcome(
+            answer.outcome._replace(problem=proved), how, lambda: deadline.passed, subject
+        )
+        answer = Answer.of(outcome._replace(problem=answer.problem))
+    if file is None:
+        return answer.having(certificate=certificate)
+    _write(certificate, file)
+    return answer.having(certificate_lines(answer.outcome, certificate, str(file)), certificate)
+
+
+def _subject(problem: Problem) -> Subject | None:
+    """Return what a certificate speaks about, if it need not be read; ``None`` where the problem has it."""
+    data = problem.origin
+    if not problem.network.object_numbers or not isinstance(data, Dataset) or problem.own_rates:
+        return None
+    network = problem.network
+    goals = [network.object_number(goal) for goal in problem.goals]
+    return data.with_kitchen_of(problem).subject(False, goals)
+
+
+def certify_tree(
+    tree: Tree, objectives: tuple[Objective, ...], how: Settings, file: File
+) -> tuple[Certificate | None, Ending, str]:
+    """Prove a tree or plan that executes the best, without a search, and write the certificate.
+
+    Returns the certificate, how the proof ended, and what it proves.
+    """
+    objectives, certificate = levels(objectives), None
+    try:
+        certificate = _of_tree(tree, objectives, how)
+    except NotBestError as better:
+        by = ", then ".join(objectives)
+        return None, Ending.NEGATIVE, f"not the best by {by}: there is one with {costs_text(better.costs)}"
+    _write(certificate, file)
+    if certificate is None:
+        return None, Ending.LIMIT, "no certificate was found, and nothing is written"
+    content, sure = certificate.content, certificate.certified
+    if certificate.claim == "bound":
+        said = f"the certificate {file} proves a bound only: {bound_text(content)}"
+        return certificate, Ending.LIMIT, said
+    ending = Ending.DONE if sure == objectives else Ending.LIMIT
+    return certificate, ending, f"proved best by {', then '.join(sure)} ({file}, {looked_at(content)})"
+
+
+def _of_tree(tree: Tree, objectives: tuple[Objective, ...], how: Settings) -> Certificate | None:
+    problem, deadline, covered, units = tree.problem, how.begun, coverage(how), tree.ids
+    with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
+        if problem.items is not None:
+            covered = covered_for_plans(covered)
+            return certify_plan(problem, objectives, units, covered, lambda: deadline.passed)
+        units = tuple(dict.fromkeys(units))
+        return certify(problem, objectives, units, covered, lambda: deadline.passed)
+    return None
+
+
+def _write(certificate: Certificate | None, file: File) -> None:
+    if certificate is not None:
+        write_whole(Path(file), certificate.text().encode())

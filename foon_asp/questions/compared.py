@@ -1,0 +1,186 @@
+"""Comparisons of searches as tables: a row for each goal and search, and what many goals sum up to."""
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+
+from foon_asp.asp import Status
+from foon_asp.comparison.comparison import MEASURED, Comparison, SearchResult
+from foon_asp.comparison.published_table import PublishedTable
+from foon_asp.comparison.summary import Summary
+from foon_asp.network import counted
+from foon_asp.problem import Objective, multiplies
+from foon_asp.proof.simulation import Verdict
+from foon_asp.results.plain import flat_row, plain
+from foon_asp.results.table import Cell, Part, Table
+from foon_asp.results.values import Figure
+from foon_asp.text.json_value import Json
+
+_HEADINGS = ("search", "units", "inputs", "success", "executes", "used up")
+_EXECUTES = {
+    Verdict.AS_LISTED: ("as listed", "good"),
+    Verdict.REORDERED: ("when reordered", ""),
+    Verdict.NEVER: ("never", "bad"),
+}
+_NO_RATIO = " " * len("  1.00×")
+_BETTER = "† better than the proved optimum, as only a tree that does not execute can be"
+_SHARES: dict[str, Callable[[SearchResult], bool | None]] = {
+    "execute": lambda result: result.executes,
+    "as listed": lambda result: result.verdict is Verdict.AS_LISTED,
+    "when reordered": lambda result: result.verdict is Verdict.REORDERED,
+    "never": lambda result: result.verdict is Verdict.NEVER,
+    "used up": lambda result: result.runs_used_up,
+}
+_RARE: dict[str, Callable[[SearchResult], bool]] = {
+    "(cycle)": lambda result: result.waits,
+    "break a rule": lambda result: bool(result.breaks),
+    "† smaller": lambda result: result.beats_the_optimum(Objective.UNITS),
+}
+
+
+def tidy_rows(comparison: Comparison) -> Iterator[Json]:
+    """Return a row for each search, with the optimum, its status and the ratio for each objective."""
+    for result in comparison.searches:
+        missing = result.stuck_at if result.obstacle is None else result.obstacle.missing
+        row: Json = {
+            "goal": comparison.goal.node,
+            "search": result.search,
+            "ending": result.ending,
+            "verdict": result.verdict,
+            "executes": result.executes,
+            "runs_used_up": result.runs_used_up,
+            "cycle": result.waits,
+            "missing": missing and missing.node,
+            "breaks": result.breaks,
+        }
+        for objective in MEASURED:
+            optimum = comparison.optimum.get(objective)
+            row[objective] = result.measures.get(objective)
+            row[f"{objective}_optimum"] = optimum and optimum.value
+            row[f"{objective}_status"] = optimum and optimum.status
+            row[f"{objective}_ratio"] = result.ratios.get(objective)
+        yield flat_row(plain(row))
+
+
+def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> Iterator[Part]:
+    """Return a table of comparisons, and notes for the signs in it.
+
+    Parameters:
+        comparisons: The comparisons, one for each goal.
+        used_up_noted: Whether to explain the column on items that are used up.
+    """
+    results = [result for comparison in comparisons for result in comparison.searches]
+    broken = sorted({rule for result in results for rule in result.breaks})
+    rows: list[Sequence[str | Cell] | str] = []
+    for comparison in comparisons:
+        optima = [comparison.optimum.get(objective) for objective in MEASURED]
+        figures = [
+            "" if best is None or best.value is None else _figure_text(each, best.value) + _NO_RATIO
+            for each, best in zip(MEASURED, optima, strict=True)
+        ]
+        status = " ".join(dict.fromkeys(best.status for best in optima if best))
+        rows += ["", comparison.goal.node]
+        rows.append([Cell(text, "strong") for text in ("optimum", *figures, status, "")])
+        rows += [tuple(_cells(result, broken)) for result in comparison.searches]
+    yield Table(_HEADINGS, rows, frozenset({0, 4, 5}))
+    yield ""
+    yield "× how many times the proved optimum of that objective"
+    if used_up_noted:
+        yield "used up: whether the tree runs if each item is used once (--items used-up)"
+    if any(result.beats_the_optimum(objective) for result in results for objective in MEASURED):
+        yield _BETTER + (", or one that breaks a rule" if broken else "")
+    yield from (f"({number}) breaks {rule}" for number, rule in enumerate(broken, 1))
+    if any(result.waits for result in results):
+        yield "(cycle) units of the tree wait for each other"
+    if any(best.status is Status.FEASIBLE for row in comparisons for best in row.optimum.values()):
+        yield "feasible: stopped at the time limit, so that optimum is not proved and has no ratios"
+
+
+def _cells(result: SearchResult, broken: Sequence[str]) -> Iterator[str | Cell]:
+    yield result.search
+    yield from (_cell(result, objective) for objective in MEASURED)
+    if result.verdict is None:
+        yield f"no tree: {result.ending}" + (f" at {result.stuck_at}" if result.stuck_at else "")
+    else:
+        text, style = _EXECUTES[result.verdict]
+        numbers = ",".join(str(broken.index(rule) + 1) for rule in result.breaks)
+        yield Cell(text + (" (cycle)" if result.waits else f" ({numbers})" if numbers else ""), style)
+    yield "" if result.runs_used_up is None else "yes" if result.runs_used_up else "no"
+
+
+def _cell(result: SearchResult, objective: Objective) -> str:
+    measure = result.measures.get(objective)
+    if measure is None:
+        return ""
+    text = ("†" if result.beats_the_optimum(objective) else "") + _figure_text(objective, measure)
+    ratio = result.ratios[objective]
+    if ratio is None:
+        return text + _NO_RATIO
+    return f"{text} {float(ratio):>5.2f}×" if ratio >= Fraction(1, 100) else f"{text} {float(ratio):.0e}×"
+
+
+def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Part]:
+    """Return what a paper would say of many goals: which trees execute, and how far they are off.
+
+    Parameters:
+        summaries: One for each search.
+        proved: Whether every optimum is proved.
+    """
+    goals = max(len(summary.results) for summary in summaries)
+    yield f"{counted(goals, 'goal')}; {'every' if proved else 'NOT every'} optimum is proved"
+    rare = {
+        heading: share
+        for heading, share in _RARE.items()
+        if any(map(share, (result for summary in summaries for result in summary.results)))
+    }
+    rows = []
+    for summary in summaries:
+        trees = [result for result in summary.results if result.verdict is not None]
+        counts = [sum(map(bool, map(share, trees))) for share in (_SHARES | rare).values()]
+        shares = (f"{count} ({count / max(len(trees), 1):.1%})" for count in counts)
+        rows.append((summary.search, f"{len(trees)} ({len(trees) / goals:.1%})", *shares))
+    yield from ("", Table(("search", "with a tree", *_SHARES, *rare), rows, frozenset({0})))
+    distances = [
+        (
+            summary.search,
+            objective,
+            f"{float(distance.share):.1%}",
+            *map(_times, (distance.mean, distance.median, distance.percentile_90, distance.worst)),
+            distance.worst_goal if distance.worst > 1 else "",
+        )
+        for summary in summaries
+        for objective, distance in summary.distances.items()
+    ]
+    if distances:
+        yield from ("", "times worse than the optimum, of the trees that execute and keep to the rules")
+        figures = ("optimal", "mean", "median", "90th percentile", "worst")
+        yield Table(("search", "objective", *figures, "worst goal"), distances, frozenset({0, 1, 7}))
+
+
+def published_table(table: PublishedTable, comparisons: Sequence[Comparison]) -> Iterator[Part]:
+    """Return published figures beside those measured, and how many agree."""
+    yield from ("Functional units, published → measured; = where they agree", "")
+    agree = dict.fromkeys(table.columns, 0)
+    rows = []
+    for comparison in comparisons:
+        label, best = comparison.goal.label, comparison.optimum[Objective.UNITS]
+        units = {result.search: result.measures.get(Objective.UNITS) for result in comparison.searches}
+        cells = []
+        for search in table.columns:
+            published, here = table.goals[label][search], units.get(search)
+            agree[search] += here == published
+            measured = "no tree" if here is None else str(here)
+            cells.append(f"{published} =" if here == published else f"{published} → {measured}")
+        rows.append((label, *cells, best.status if best.value is None else str(best.value)))
+    yield Table(("goal", *table.columns, "optimum"), rows, frozenset({0}))
+    counts = ", ".join(f"{search} {number} of {len(rows)}" for search, number in agree.items())
+    yield from ("", f"Agreeing: {counts}", "", f"Published: {table.source}")
+
+
+def _figure_text(objective: Objective, value: Figure) -> str:
+    if not multiplies(objective):
+        return str(value)
+    return f"{float(value):.4f}" if value >= Fraction(1, 1000) else f"{float(value):.2e}"
+
+
+def _times(value: Fraction) -> str:
+    return f"{float(value):.3g}" if value < 1000 else f"{float(value):.1e}"

@@ -1,0 +1,189 @@
+"""What two files have in common: two task trees, or two networks."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple, Unpack
+
+from foon_asp.dataset import Dataset
+from foon_asp.dataset.paths import File
+from foon_asp.errors import UserError
+from foon_asp.foon import Foon, load
+from foon_asp.network import LEVELS, Network, NetworkBuilder, ObjectNode
+from foon_asp.problem import Problem
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import begin
+from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
+from foon_asp.questions.diff.networks import NetworkDifference as NetworkDifference
+from foon_asp.questions.diff.networks import compare_networks
+from foon_asp.questions.diff.trees import TreeDifference as TreeDifference
+from foon_asp.questions.diff.trees import compare_trees
+from foon_asp.questions.how import Limits
+from foon_asp.questions.options import CONTAINERS, GOALS
+from foon_asp.questions.posing import Command
+from foon_asp.questions.posing_plan import listed_tree, own_networks, settle_data
+from foon_asp.questions.result import ENDINGS, NoTreeError
+from foon_asp.questions.tree import Tree, read_answer
+from foon_asp.text.answer_file import ListedTree
+from foon_asp.text.plain_file import is_store
+
+
+class Named(NamedTuple):
+    """A task tree or a network, and the file that it was read from."""
+
+    name: str
+    read: Tree | Network
+
+
+_Given = Answer | Tree | Foon | File | Named
+
+
+def _posed(
+    command: Command, a: Path, b: Path, goals_named: Sequence[str], containers: str
+) -> tuple[Named, Named, int]:
+    """Read two files; the data are read for trees alone."""
+    chosen = containers if command.given("containers") else None
+    with command.reading():
+        return (*_of_files((a, b), goals_named, chosen, partial(settle_data, command)), command.level)
+
+
+def _of_files(
+    files: tuple[Path, Path],
+    goals: Sequence[str | ObjectNode],
+    containers: str | None,
+    data: Callable[[Mapping[Path, ListedTree]], Dataset],
+) -> tuple[Named, Named]:
+    """Read two files as trees, with the data that these are about, or as networks."""
+    read: dict[Path, ListedTree | Tree | Network] = {file: _read(file) for file in dict.fromkeys(files)}
+    listed = {file: each for file, each in read.items() if isinstance(each, ListedTree)}
+    if goals or any(tree.is_tree for tree in listed.values()):
+        dataset = data(listed)
+        goals = goals or [goal for tree in listed.values() for goal in tree.goals]
+        for file, tree in listed.items():
+            read[file] = listed_tree(dataset, file, tree, goals, containers or tree.containers or "strict")
+    a, b = (Named(str(file), _network(read[file])) for file in files)
+    return a, b
+
+
+def _data_of(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
+    """Return the data of trees in files, where Python names none: the bundled kitchen, or the files."""
+    kitchen = load(level=level)
+    own = own_networks(kitchen.network, files)
+    return load(own, level=level).dataset if own else kitchen.dataset
+
+
+def _read(file: Path) -> ListedTree | Network:
+    """Read a file once: as the units that it lists, in order; a folder or a store as a network."""
+    return load(file).network if file.is_dir() or is_store(file) else read_answer(file)
+
+
+def _network(read: ListedTree | Tree | Network) -> Tree | Network:
+    """Return the network of listed units; others as they are."""
+    if not isinstance(read, ListedTree):
+        return read
+    builder = NetworkBuilder()
+    for unit, source in read.units or ():
+        builder.add(unit.motion, unit.inputs, unit.outputs, source)
+    return builder.build()
+
+
+def _named(name: str, given: _Given, problem: Problem | None) -> Named:
+    """Return what Python gives by ``name``; a file is a tree where there is the problem of the other one."""
+    if isinstance(given, str | PathLike):
+        name, file = str(given), Path(given)
+        return Named(name, Tree.read(problem, file) if problem else _network(_read(file)))
+    if isinstance(given, Foon):
+        return Named(name, given.network.detailed or given.network)
+    if isinstance(given, Answer):
+        if given.tree is None:
+            raise NoTreeError(f"{name}: the answer has no tree")
+        return Named(name, given.tree)
+    return given if isinstance(given, Named) else Named(name, given)
+
+
+@question(
+    Option(
+        "a",
+        "A task tree or a network: a file; networks may be folders or stores.",
+        Kind.FILE,
+        Part.PROBLEM,
+        metavar="A",
+        positional=True,
+    ),
+    Option("b", "The other one.", Kind.FILE, Part.PROBLEM, metavar="B", positional=True),
+    GOALS,
+    CONTAINERS,
+    formats=("text", "json", "html", *TABLES[2:]),
+    suffixes=ENDINGS,
+    pose=_posed,
+    help_="""
+    \b
+    foon-asp diff mine.txt answer.json --goal macaroni      two trees
+    foon-asp diff v1/FOON.txt v2/FOON.txt --level 2         two networks
+    foon-asp diff mine.txt yours.txt -o page.html           side by side
+
+    A and B are compared as task trees where one is an answer in JSON, or FOON text that says it is a task
+    tree, as solve writes it, or where --goal is given; else as networks. The first line says so.
+
+    The kitchen, the rates and the goal of trees are those that the options name; an answer knows its goals.
+    Trees part at an object node that both need on the way to the goals but get in different ways.
+
+    Units are the same when motion, inputs and outputs are, ids, times and order aside; level 2 ignores
+    contents, level 1 all but labels. Units nearly agree when they differ in three things at most (a motion, a
+    label, a state, a relation, an ingredient, a whole object) and agree in more than half of what they say;
+    each is paired with one other at most. Jaccard is what both have, of all that there is; F1 is twice what
+    both have, by the sum of both.
+
+    Exits with 0 when both were compared, whether they differ or not, and with 1 when an answer has no tree.
+    """,
+)
+def diff(
+    a: _Given,
+    b: _Given,
+    level: int = 3,
+    **limits: Unpack[Limits],
+) -> TreeDifference | NetworkDifference:
+    """Compare two task trees or two networks: the units of both, of only one, and those that nearly agree.
+
+    Trees are also compared by what they cost, and by where they part. A file is compared as a tree with an
+    answer or a tree; two files are, where one of them says that it is a tree or a ``goal`` is given.
+
+    Parameters:
+        a: An answer, a tree, data that were loaded, or a path.
+        b: The same.
+        level: The level of detail at which units of files and networks are compared, 1 to 3.
+        goal: A goal or several of trees in files; without it, that of an answer, or what the last step makes.
+        containers: The container rule of trees in files.
+
+    Returns:
+        The units, and of trees their costs and where they part, of networks how much they agree.
+
+    Raises:
+        UserError: for a path without a tree or network, an answer without a tree, a tree and a network, and
+            another level.
+
+    Example:
+        >>> problem = foon_asp.load().problem("macaroni")
+        >>> found = foon_asp.diff(foon_asp.search(problem, "bfs").tree, foon_asp.solve(problem))
+        >>> [unit.motion for unit in found.only_in_a]
+        ['drain', 'pour']
+        >>> found = foon_asp.diff("data/kitchen/FOON.txt", foon_asp.load())
+        >>> len(found.in_both), found.nearly_the_same
+        (220, ())
+    """
+    if level not in LEVELS:
+        raise UserError(f"found level={level}, expected 1, 2 or 3")
+    with begin(limits.get("time_limit"), limits.get("memory_limit")).watched("comparing"):
+        if isinstance(a, str | PathLike) and isinstance(b, str | PathLike):
+            goal = limits.get("goal", ())
+            goals = [goal] if isinstance(goal, str | ObjectNode) else [*goal]
+            data = partial(_data_of, level)
+            a, b = _of_files((Path(a), Path(b)), goals, limits.get("containers"), data)
+        problem = next((each.problem for each in (a, b) if isinstance(each, Answer | Tree)), None)
+        (name_a, left), (name_b, right) = _named("a", a, problem), _named("b", b, problem)
+        if isinstance(left, Tree) and isinstance(right, Tree):
+            return compare_trees((name_a, name_b), (left, right))
+        if isinstance(left, Network) and isinstance(right, Network):
+            return compare_networks((name_a, name_b), (left, right), level)
+        raise UserError(f"{name_a} and {name_b}: found a task tree and a network, expected two of a kind")

@@ -1,0 +1,95 @@
+"""What two lists of units have in common, be they task trees or networks."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from foon_asp.network import FunctionalUnit, counted
+from foon_asp.network.near_units import nearest_units
+from foon_asp.pictures.two_columns import Pair, two_columns
+from foon_asp.questions.result import Document
+from foon_asp.results.plain import flat_row, plain
+from foon_asp.results.values import Unit, UnitDifference, Value
+from foon_asp.results.values_of import differences_of
+from foon_asp.text.json_value import Json
+
+
+class NearUnits(Value, frozen=True):
+    """Two units that are nearly the same, and in what they differ."""
+
+    a: Unit
+    b: Unit
+    differences: tuple[UnitDifference, ...]
+
+
+class Difference(Document, frozen=True, kw_only=True):
+    """The units that only one of two has, those of one that the other nearly has, and those of both.
+
+    Attributes:
+        only_in_a: The units that only the first has; those that are nearly the same are not among them.
+        only_in_b: The units that only the other has.
+        nearly_the_same: Pairs of units that differ in three things at most.
+        in_both: The units that both have, as the first has them.
+    """
+
+    a: object
+    b: object
+    only_in_a: tuple[Unit, ...]
+    only_in_b: tuple[Unit, ...]
+    nearly_the_same: tuple[NearUnits, ...]
+    in_both: tuple[Unit, ...]
+
+    def figures(self) -> Sequence[Sequence[str]]:
+        """Return the rows of a table with figures of both, the headings first."""
+        raise NotImplementedError
+
+    def unit_lines(self) -> Iterator[str]:
+        """Return how many units both have, and the others one by one."""
+        yield f"in both: {counted(len(self.in_both), 'unit', ',')}"
+        if self.nearly_the_same:
+            yield from ("", f"nearly the same: {counted(len(self.nearly_the_same), 'unit', ',')} in each")
+        for pair in self.nearly_the_same:
+            yield f"  {pair.a.motion}    [A {pair.a.source[0]}, B {pair.b.source[0]}]"
+            yield from (f"    {difference}" for difference in pair.differences)
+        for letter, units in (("A", self.only_in_a), ("B", self.only_in_b)):
+            if units:
+                yield from ("", f"only in {letter}: {counted(len(units), 'unit', ',')}")
+            yield from (line for unit in units for line in unit.lines())
+
+    def table_rows(self) -> Iterator[Json]:
+        """Return a row for each unit, which says in which of the two it is."""
+        lists = [("a", self.only_in_a), ("b", self.only_in_b), ("both", self.in_both)]
+        for pair in self.nearly_the_same:
+            lists += [("a, nearly b", (pair.a,)), ("b, nearly a", (pair.b,))]
+        return (flat_row({"in": where, **plain(unit)}) for where, units in lists for unit in units)
+
+    def html(self) -> str:
+        """Return a page with a column for each of the two."""
+        return two_columns(
+            f"{self.a} and {self.b}",
+            [str(self.a), str(self.b)],
+            self.figures(),
+            [
+                Pair(
+                    "nearly the same", [(near.a, near.b, near.differences) for near in self.nearly_the_same]
+                ),
+                Pair("only in A", [(unit, None, ()) for unit in self.only_in_a]),
+                Pair("only in B", [(None, unit, ()) for unit in self.only_in_b]),
+                Pair("in both", [(unit, None, ()) for unit in self.in_both], folded=True),
+            ],
+        )
+
+
+def compared(a: Mapping[FunctionalUnit, Unit], b: Mapping[FunctionalUnit, Unit]) -> dict[str, Any]:
+    """Return the fields of a :class:`Difference` for the units of two, each with its value."""
+    pairs = nearest_units([unit for unit in a if unit not in b], [unit for unit in b if unit not in a])
+    paired = {unit for left, right, _ in pairs for unit in (left, right)}
+    only_in_a, only_in_b = (
+        tuple(value for unit, value in ours.items() if unit not in theirs and unit not in paired)
+        for ours, theirs in ((a, b), (b, a))
+    )
+    return {
+        "only_in_a": only_in_a,
+        "only_in_b": only_in_b,
+        "nearly_the_same": tuple(NearUnits(a[p.left], b[p.right], differences_of(p)) for p in pairs),
+        "in_both": tuple(value for unit, value in a.items() if unit in b),
+    }

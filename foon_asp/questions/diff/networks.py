@@ -1,0 +1,103 @@
+"""What two networks have in common: two annotations of one video, or two versions of a FOON."""
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import Self
+
+from foon_asp.network import LEVELS, Network, network_at_level
+from foon_asp.questions.diff.difference import Difference, compared
+from foon_asp.results.table import Part, Table
+from foon_asp.results.values import Value
+from foon_asp.results.values_of import unit_of
+from foon_asp.text.json_value import schema_name
+
+
+class Agreement(Value, frozen=True):
+    """How much two sets have in common.
+
+    Attributes:
+        a: How many the first has.
+        b: How many the other has.
+        both: How many both have.
+        jaccard: The share of all of them that both have; 1 where the sets are the same.
+        f1: Twice what both have, by the sum of what each has.
+    """
+
+    a: int
+    b: int
+    both: int
+    jaccard: Fraction
+    f1: Fraction
+
+    @classmethod
+    def of(cls, sides: Sequence[Sequence[object]]) -> Self:
+        """Return the agreement of two lists, each without repeats."""
+        a, b = map(len, sides)
+        both = len(set(sides[0]).intersection(sides[1]))
+        jaccard, f1 = (Fraction(both, a + b - both), Fraction(2 * both, a + b)) if a + b else (1, 1)
+        return cls(a, b, both, Fraction(jaccard), Fraction(f1))
+
+
+class LevelAgreement(Value, frozen=True):
+    """How much two networks agree at a level: their units, and their object nodes."""
+
+    level: int
+    units: Agreement
+    nodes: Agreement
+
+
+class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("diff-network")):
+    """Two networks, compared at a level.
+
+    Attributes:
+        a: The name of the first network.
+        b: The name of the other one.
+        agreement: How much they agree at each level.
+
+    Example:
+        >>> foon = foon_asp.load()
+        >>> found = foon_asp.diff(foon, foon)
+        >>> found
+        <NetworkDifference: compared as networks, at level 3>
+        >>> len(found.in_both), str(found.agreement[0].units.jaccard), found.html()[:15]
+        (220, '1', '<!DOCTYPE html>')
+    """
+
+    a: str
+    b: str
+    level: int
+    agreement: tuple[LevelAgreement, ...]
+
+    def figures(self) -> Sequence[Sequence[str]]:
+        """Return how much the networks agree at each level."""
+        return [
+            ("agreement", "A", "B", "both", "Jaccard", "F1"),
+            *(
+                (
+                    f"{noun}, level {each.level}",
+                    *(f"{count:,}" for count in (found.a, found.b, found.both)),
+                    *(f"{float(figure):.3f}" for figure in (found.jaccard, found.f1)),
+                )
+                for noun, field in (("units", "units"), ("object nodes", "nodes"))
+                for each in self.agreement
+                for found in (getattr(each, field),)
+            ),
+        ]
+
+    def show(self) -> Iterator[Part]:
+        """Return the figures of all levels, and the units in which the networks differ."""
+        yield from (f"compared as networks, at level {self.level}", f"A: {self.a}", f"B: {self.b}", "")
+        headings, *rows = self.figures()
+        yield from (Table(headings, rows), "")
+        yield from self.unit_lines()
+
+
+def compare_networks(names: Sequence[str], networks: Sequence[Network], level: int) -> NetworkDifference:
+    """Compare two networks of level 3, and list the units at a level."""
+    at_level = {each: [network_at_level(network, each) for network in networks] for each in LEVELS}
+    a, b = ({n.unit(u): unit_of(n, u) for u in range(len(n))} for n in at_level[level])
+    agreement = tuple(
+        LevelAgreement(each, Agreement.of([[*n] for n in both]), Agreement.of([n.objects for n in both]))
+        for each, both in at_level.items()
+    )
+    return NetworkDifference(a=names[0], b=names[1], level=level, agreement=agreement, **compared(a, b))

@@ -1,0 +1,192 @@
+"""What two task trees have in common, what each costs, and where they part."""
+
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Literal
+
+from msgspec import UNSET, UnsetType
+
+from foon_asp.network import FunctionalUnit, ObjectNode, counted
+from foon_asp.problem import ContainerRule, Costs, Objective, given_outputs, needed_inputs
+from foon_asp.questions.diff.difference import Difference, compared
+from foon_asp.questions.tree import Tree
+from foon_asp.report.answer import costs_text
+from foon_asp.report.used_up_note import used_up_note
+from foon_asp.results.table import Part
+from foon_asp.results.values import Node, Unit, UsedUpRun, Value
+from foon_asp.results.values_of import head_of, listed_unit, named_node, used_up_of
+from foon_asp.text.json_value import schema_name
+
+
+class Side(Value, frozen=True, kw_only=True):
+    """One of two trees, and the question that it is for.
+
+    Attributes:
+        name: The file, or ``a`` and ``b`` for trees in Python.
+        costs: What the tree costs by every objective; null where a unit is not in the network.
+        used_up: Whether the steps, each done once, run where items are used up.
+    """
+
+    name: str
+    goals: tuple[Node, ...]
+    containers: ContainerRule
+    items: Literal["lasting", "used-up"]
+    level: int
+    objectives: tuple[Objective, ...]
+    starting_kitchen: tuple[Node, ...] | None
+    costs: Costs | None
+    used_up: UsedUpRun | None
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def costs_text(self) -> str:
+        """What the tree costs in words."""
+        return "costs unknown: units are not in the network" if self.costs is None else costs_text(self.costs)
+
+
+class Making(Value, frozen=True):
+    """Where a tree has an object node from, one of these.
+
+    Attributes:
+        unit: The unit that makes it first.
+        kitchen: It is in the kitchen.
+        missing: It is neither in the kitchen nor made.
+    """
+
+    unit: Unit | UnsetType = UNSET
+    kitchen: bool | UnsetType = UNSET
+    missing: bool | UnsetType = UNSET
+
+    def __str__(self) -> str:
+        if self.unit is not UNSET:
+            return f"{self.unit.motion}    [{self.unit.source[0]}]"
+        return "not made" if self.kitchen is UNSET else "from the kitchen"
+
+
+class Parting(Value, frozen=True):
+    """An object node that both trees come to on the way back from the goals, and get in different ways."""
+
+    object: Node
+    a: Making
+    b: Making
+
+
+class TreeDifference(Difference, frozen=True, kw_only=True, tag=schema_name("diff")):
+    """Two task trees: what each costs, the units of only one and of both, and where the trees part.
+
+    Attributes:
+        same_units: Whether both have the same units.
+        same_order: Whether the units that both have stand in the same order in both.
+        they_part_at: The object nodes that both need on the way to the goals but get in different ways.
+
+    Example:
+        >>> problem = foon_asp.load().problem("macaroni")
+        >>> found = foon_asp.diff(foon_asp.solve(problem), foon_asp.solve(problem, "success"))
+        >>> found
+        <TreeDifference: compared as task trees>
+        >>> len(found.in_both), str(found.they_part_at[0].b), found.trees[1]
+        (6, 'pour    [FOON.txt:1049]', <Tree for macaroni; cooked; in [pot]: 11 units>)
+    """
+
+    a: Side
+    b: Side
+    same_units: bool
+    same_order: bool
+    they_part_at: tuple[Parting, ...]
+
+    @property
+    def trees(self) -> tuple[Tree, Tree]:
+        """The two trees."""
+        found: tuple[Tree, Tree] = self.__dict__["trees"]
+        return found
+
+    def figures(self) -> Sequence[Sequence[str]]:
+        """Return what each tree costs."""
+        return [("", "costs"), ("A", self.a.costs_text), ("B", self.b.costs_text)]
+
+    def show(self) -> Iterator[Part]:
+        """Return the costs of both, the units that only one has, and where they part."""
+        yield "compared as task trees"
+        for letter, side, tree in (("A", self.a, self.trees[0]), ("B", self.b, self.trees[1])):
+            yield f"{letter}: {side.name}    {side.costs_text}"
+            yield from used_up_note(tree.problem, tree)
+        yield ""
+        if self.same_units:
+            order = "the same" if self.same_order else "another"
+            yield f"the same {counted(len(self.in_both), 'unit')}, in {order} order"
+        else:
+            yield from self.unit_lines()
+        if self.they_part_at:
+            yield from ("", "they part at")
+        for parting in self.they_part_at:
+            yield from (f"  {parting.object}", f"    A: {parting.a}", f"    B: {parting.b}")
+
+
+def compare_trees(names: Sequence[str], trees: tuple[Tree, Tree]) -> TreeDifference:
+    """Compare two trees, which are followed back from the goals of both to where they part."""
+    goals = [node for tree in trees for node in tree.problem.goal_nodes]
+    (units_a, origins_a), (units_b, origins_b) = ((_units(tree), _origins(tree, goals)) for tree in trees)
+    network = trees[0].problem.network
+    side_a, side_b = map(_side, names, trees)
+    found = TreeDifference(
+        a=side_a,
+        b=side_b,
+        same_units=units_a.keys() == units_b.keys(),
+        same_order=[unit for unit in units_a if unit in units_b] == [u for u in units_b if u in units_a],
+        they_part_at=tuple(
+            Parting(named_node(network, node), _making(origin, units_a), _making(origins_b[node], units_b))
+            for node, origin in origins_a.items()
+            if origins_b.get(node, origin) != origin
+        ),
+        **compared(units_a, units_b),
+    )
+    found.__dict__["trees"] = trees
+    return found
+
+
+def _side(name: str, tree: Tree) -> Side:
+    problem = tree.problem
+    ids = [number for unit in tree if (number := problem.network.unit_id(unit)) is not None]
+    costs = problem.costs(ids) if len(ids) == len(tree) else None
+    return Side(name=name, **head_of(problem), costs=costs, used_up=used_up_of(problem, tree))
+
+
+def _units(tree: Tree) -> dict[FunctionalUnit, Unit]:
+    """Return the units of a tree in order, each as it was listed first."""
+    units: dict[FunctionalUnit, Unit] = {}
+    for unit, place in zip(tree.units, tree.places, strict=True):
+        units.setdefault(unit, listed_unit(tree.problem.network, unit, place))
+    return units
+
+
+_Origin = FunctionalUnit | bool
+"""The unit that makes an object node first; or whether the kitchen has the node."""
+
+
+def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origin]:
+    """Return the nodes that a tree needs on the way back from goals, those near the goals first."""
+    problem = tree.problem
+    rule = problem.containers, problem.utensils, problem.network
+    needs: dict[object, tuple[ObjectNode, ...]] = {unit: needed_inputs(unit, *rule) for unit in tree}
+    makers = {
+        node: unit
+        for unit in reversed(tree.units)
+        for node in given_outputs(unit, *rule)
+        if node not in needs[unit]
+    }
+    origins: dict[ObjectNode, _Origin] = {}
+    queue = deque(goals)
+    while queue:
+        node = queue.popleft()
+        if node not in origins:
+            origins[node] = problem.at_hand(node) or makers.get(node, False)
+            queue += needs.get(origins[node], ())
+    return origins
+
+
+def _making(origin: _Origin, units: Mapping[FunctionalUnit, Unit]) -> Making:
+    if isinstance(origin, FunctionalUnit):
+        return Making(unit=units[origin])
+    return Making(kitchen=True) if origin else Making(missing=True)

@@ -1,0 +1,84 @@
+"""Where another tree becomes the best as one success rate changes: exact, and as decimals for people."""
+
+from decimal import Context, Decimal
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.problem.root import Root
+
+_DIGITS = 4  # of a rate, at least; of a change, at first
+_PERCENT_DIGITS = 3
+_SHORT = Fraction(1, 10**9)  # from which on a number is written without an exponent
+
+
+class Flip(NamedTuple):
+    """The value ``at`` of a rate, ``above`` it or below, beyond which another tree is the best.
+
+    Flips are in order of the relative change of the rate.
+    """
+
+    rate: Fraction
+    at: Root
+    above: bool
+
+    @property
+    def inwards(self) -> Fraction:
+        """The rate at which it is, rounded to a decimal on the side of the given rate."""
+        digits = _DIGITS
+        if self.at.rational == self.rate:
+            return self.rate
+        while True:
+            rounded = self.at.below(digits) if self.above else self.at.above(digits)
+            if rounded >= self.rate if self.above else rounded <= self.rate:
+                return rounded
+            digits += 1
+
+    @property
+    def percent(self) -> str:
+        """The relative change of the rate in percent, rounded to 0."""
+        digits = _DIGITS
+        while True:
+            low, high = self.change(digits)
+            if low == high == 0:
+                return "0 %"
+            if low > 0:
+                shown = {Root(1, 100 * each).below(_PERCENT_DIGITS) for each in (low, high)}
+                if len(shown) == 1:
+                    return f"{'+' if self.above else '-'}{decimal_text(shown.pop())} %"
+            digits *= 2
+
+    def change(self, digits: int) -> tuple[Fraction, Fraction]:
+        """Return two numbers between which the relative change of the rate is, by the digits that count.
+
+        They are one number where that is rational.
+        """
+        factor = self.at.over(self.rate)
+        exact = factor.rational
+        low, high = (factor.below(digits), factor.above(digits)) if exact is None else (exact, exact)
+        return (low - 1, high - 1) if self.above else (1 - high, 1 - low)
+
+    def __lt__(self, other: object) -> bool:
+        """Compare relative changes exactly, by as many digits as it takes.
+
+        Changes that are equal and not rational are on one side, and factors of the rate that are equal: were
+        the factors on two sides, they would add up to 2. But positive roots none of which is a rational
+        multiple of another are linearly independent over the rational numbers (Besicovitch, 1940).
+        """
+        assert isinstance(other, Flip)
+        if self.at.over(self.rate) == other.at.over(other.rate):
+            return False  # on one side, or both at the rate itself
+        digits = _DIGITS
+        while True:
+            (low, high), (others_low, others_high) = self.change(digits), other.change(digits)
+            if high < others_low or others_high <= low:
+                return high < others_low
+            digits *= 2
+
+
+def decimal_text(value: Fraction) -> str:
+    """Return a number as a decimal where it is one, and else as a fraction."""
+    context = Context(prec=value.numerator.bit_length() + value.denominator.bit_length())
+    decimal = context.divide(Decimal(value.numerator), Decimal(value.denominator)).normalize(context)
+    if Fraction(decimal) != value:
+        return str(value)
+    return f"{decimal:f}" if value >= _SHORT else f"{decimal}"

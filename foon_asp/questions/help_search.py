@@ -1,0 +1,229 @@
+"""The best tree of which a person does at most M units, for one M after another."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
+from foon_asp.asp.assisted import assisted, require_near, sees_who_does_it
+from foon_asp.asp.postconditions import Postconditions
+from foon_asp.asp.ranking import Ranked
+from foon_asp.problem import Objective, Problem, reach
+
+_PROVED = frozenset({Status.OPTIMAL, Status.INFEASIBLE})
+_SUCCESS = (Objective.SUCCESS,)
+_BEST = (Objective.SUCCESS, Objective.UNITS)
+
+
+class PricedHelp:
+    """Lagrangian relaxation of the number of helped units: help for a unit costs a factor of success.
+
+    Let S be the best success at such a price q. A tree with help for M units succeeds no more often than
+    S / q^M, since at the price it would be better than the best. If the best tree at the price succeeds that
+    often with help for M units, it is the best with M; by fewest units too, which decide between equals at
+    the price. Where no price has such a tree, trees are listed in order of success at the price with the
+    least bound, until the best one seen is as good as any that may follow.
+
+    The prices tried are those at which help for another motion becomes worth it. The logarithm of the bound
+    is convex in that of the price, so that the least bound is found where it rises for the first time.
+    """
+
+    def __init__(
+        self, problem: Problem, better: Mapping[str, Fraction], settings: Settings, reporter: Reporter
+    ) -> None:
+        """Take the person's rates of the motions that the person does better than the robot."""
+        self._problem, self._better, self._settings, self._reporter = problem, better, settings, reporter
+        self._rates = problem.rates or {}
+        self._worth = {motion: self._rates[motion] / rate for motion, rate in better.items()}
+        self._prices = sorted({*self._worth.values(), Fraction(1)})
+        self._outcomes: dict[Fraction, Outcome] = {}
+
+    def best(self, most: int) -> Outcome:
+        """Return the best tree with help for at most ``most`` units."""
+        bounds: dict[Fraction, Fraction] = {}
+        for price in self._prices:
+            found = self._at(price)
+            if found.status is Status.INFEASIBLE:
+                return found
+            if found.status is not Status.OPTIMAL or found.units is None:
+                return self._stopped(most)
+            tree = self._helped(most, found.units)
+            bounds[price] = Fraction(found.bounds[Objective.SUCCESS]) / price**most
+            if -_key(tree)[0] == bounds[price]:
+                return _proved(tree)
+            if bounds[price] > min(bounds.values()):
+                break
+        return self._listed(most, min(bounds, key=bounds.__getitem__))
+
+    def any_number(self) -> Outcome:
+        """Return the best tree with help for any number of its units."""
+        return self._at(Fraction(1))
+
+    def helped(self, most: int, units: Iterable[int]) -> list[int]:
+        """Return those of a tree's units that the person does best: where that makes most of a difference."""
+        motions = self._problem.network.motions
+        worth = sorted((self._worth[motions[u]], u) for u in units if motions[u] in self._worth)
+        return [unit for _, unit in worth[:most]]
+
+    def _listed(self, most: int, price: Fraction) -> Outcome:
+        """Return the best of the trees in order of success at a price, as many as may be better."""
+        best: Outcome | None = None
+        ranked = Ranked(self._at_price(price), _SUCCESS, self._settings, Reporter())
+        for units, costs in ranked:
+            tree = self._helped(most, units)
+            best = tree if best is None else min(best, tree, key=_key)
+            if _key(best) <= (costs.key(_SUCCESS)[0] / price**most, costs.units):
+                return _proved(best)
+        return self._stopped(most) if best is None or not ranked.complete else _proved(best)
+
+    def _stopped(self, most: int) -> Outcome:
+        """Return the best tree that was found before a limit."""
+        outcomes = self._outcomes.values()
+        trees = [self._helped(most, found.units) for found in outcomes if found.units is not None]
+        bounds = [
+            Fraction(found.bounds[Objective.SUCCESS]) / price**most
+            for price, found in self._outcomes.items()
+            if found.bounds
+        ]
+        best = min(trees, key=_key, default=next(iter(outcomes)))
+        return best._replace(bounds={Objective.SUCCESS: min(bounds)} if bounds else {})
+
+    def _helped(self, most: int, units: tuple[int, ...]) -> Outcome:
+        motions = self._problem.network.motions
+        own = {unit: self._better[motions[unit]] for unit in self.helped(most, units)}
+        problem = replace(self._problem, own_rates=own)
+        return Outcome(problem, _SUCCESS, Status.FEASIBLE, units, problem.costs(units), {}, {})
+
+    def _at(self, price: Fraction) -> Outcome:
+        if price not in self._outcomes:
+            reporter = Reporter() if self._outcomes else self._reporter  # the others ask something else
+            self._outcomes[price] = solve(self._at_price(price), _SUCCESS, self._settings, reporter)
+        return self._outcomes[price]
+
+    def _at_price(self, price: Fraction) -> Problem:
+        paid = {m: max(rate, self._better.get(m, 0) * price) for m, rate in self._rates.items()}
+        return replace(self._problem, rates=paid)
+
+
+class CountedHelp:
+    """Trees whose helped units are counted: those that the person does better are in the network twice.
+
+    For rules and encodings that look at who does a unit.
+    """
+
+    def __init__(
+        self, problem: Problem, better: Mapping[str, Fraction], settings: Settings, reporter: Reporter
+    ) -> None:
+        """Take the person's rates of the motions that the person does better than the robot."""
+        self._problem, self._settings, self._reporter = problem, settings, reporter
+        network = problem.network
+        units = [unit for unit in sorted(reach(problem).units) if network.motions[unit] in better]
+        self._originals = dict(enumerate(units, len(network)))
+        own = {twin: better[network.motions[unit]] for twin, unit in self._originals.items()}
+        self._twins = replace(problem, network=network.with_copies(units), own_rates=own)
+
+    def best(self, most: int) -> Outcome:
+        """Return the best tree with help for at most ``most`` units."""
+        number = self._twins.network.unit_number
+        twins = {number(twin): number(unit) for twin, unit in self._originals.items()}
+        settings = self._settings._replace(bounded=assisted(twins, most))
+        found = solve(self._twins, _SUCCESS, settings, self._reporter)
+        self._reporter = Reporter()  # the others ask something else
+        if found.units is None:
+            return found._replace(problem=self._problem)
+        units = tuple(self._originals.get(unit, unit) for unit in found.units)
+        own = {self._originals[u]: self._twins.own_rates[u] for u in found.units if u in self._originals}
+        problem = replace(self._problem, own_rates=own)
+        return found._replace(problem=problem, units=units, costs=problem.costs(units))
+
+    def any_number(self) -> Outcome:
+        """Return the best tree with help for any number of its units."""
+        return self.best(len(self._originals))
+
+
+class HelpedTrees(NamedTuple):
+    """The best trees with help for at most 0, 1, 2, ... units.
+
+    The problem of each outcome has the person's rates of the helped units as their own. ``greatest`` is the
+    best success with help for any number, ``None`` where there is no tree at all and where a limit came
+    first. ``complete`` says that every row is proved and none is left out.
+    """
+
+    rows: tuple[Outcome, ...]
+    greatest: Fraction | None
+    complete: bool
+
+
+def helped_trees(
+    problem: Problem,
+    person: Mapping[str, Fraction] | None,
+    settings: Settings,
+    reporter: Reporter,
+    most: int | None,
+    wanted: Fraction | None,
+) -> HelpedTrees:
+    """Find the best trees with help for 0, 1, 2, ... units.
+
+    They end with ``most``, with the first that succeeds as often as ``wanted``, or where more help changes
+    nothing. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+    """
+    better = {
+        motion: rate
+        for motion, robot in (problem.rates or {}).items()
+        if (rate := Fraction(1) if person is None else person.get(motion, Fraction(0))) > robot
+    }
+    counts = settings.replaced is not None
+    if not counts and sees_who_does_it(settings.constraints):
+        require_near(settings)
+        counts = True
+    search = (CountedHelp if counts else PricedHelp)(problem, better, settings, reporter)
+    rows: list[Outcome] = []
+    any_number: Outcome | None = None
+    complete = False
+    try:
+        while not complete:
+            row = search.best(len(rows))
+            before = rows[-1] if rows else row
+            if row.status not in _PROVED and before.units is not None:  # help never makes a tree worse
+                row = min(row, before._replace(status=Status.FEASIBLE, bounds=row.bounds), key=_key)
+            _require_sound(len(rows), row, before, settings)
+            rows.append(row)
+            if row.status not in _PROVED:
+                break
+            any_number = any_number or search.any_number()
+            if any_number.status not in _PROVED:
+                break
+            reached = wanted is not None and -_key(row)[0] >= wanted
+            # a number that is asked for is answered, since with more help fewer units may do
+            done = _key(row) == _key(any_number) if most is not None else _key(row)[0] == _key(any_number)[0]
+            complete = reached or done or any_number.units is None or len(rows) - 1 == most
+    except KeyboardInterrupt:
+        if not rows:
+            raise
+    known = any_number is not None and any_number.status in _PROVED and any_number.costs
+    return HelpedTrees(tuple(rows), known.success if known else None, complete)
+
+
+def _key(outcome: Outcome) -> tuple[int | Fraction, ...]:
+    """Return the success and the number of units as a key by which the best tree comes first."""
+    return (1,) if outcome.costs is None else outcome.costs.key(_BEST)
+
+
+def _proved(tree: Outcome) -> Outcome:
+    assert tree.costs is not None
+    return tree._replace(status=Status.OPTIMAL, bounds={each: tree.costs.measure(each) for each in _BEST})
+
+
+def _require_sound(most: int, row: Outcome, before: Outcome, settings: Settings) -> None:
+    """Require that the person does few enough units, that the costs say so, and that help never hurts."""
+    if row.units is None:
+        return
+    holds = Postconditions(row.problem, _BEST, settings)
+    helped = row.problem.own_rates.keys()
+    holds.require(
+        len(helped) <= most and helped <= set(row.units),
+        lambda: f"the tree {row.units} with help for {most} units at most has help for {sorted(helped)}",
+    )
+    holds.outcome(row)
+    holds.no_better(before, row, f"with help for {most} units")

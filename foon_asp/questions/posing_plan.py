@@ -1,0 +1,115 @@
+"""What a file with a tree or plan is about: the data, where none are named, and the goals."""
+
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+
+from foon_asp.dataset import Dataset
+from foon_asp.dataset.items import items_of
+from foon_asp.dataset.paths import File
+from foon_asp.errors import UserError
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, counted, unit_at_level
+from foon_asp.problem import Problem, UsedUp
+from foon_asp.questions.caller import caller
+from foon_asp.questions.posing import Command
+from foon_asp.questions.tree import Tree, read_answer
+from foon_asp.text.answer_file import ListedTree
+
+
+def a_plan(
+    command: Command,
+    plan: Path,
+    goals_named: Sequence[str],
+    containers: str,
+    items: str,
+    stock: File | None,
+    stays: File | None,
+) -> tuple[Problem, Tree]:
+    """Pose what a plan is for, as an answer says it where the command does not, and read the plan."""
+    answer = read_answer(plan)
+    settle_data(command, {plan: answer})
+    if not command.given("containers"):
+        containers = answer.containers or containers
+    dataset = command.dataset
+    with command.reading():
+        how = items_of(dataset, items, stock, stays)
+        tree = listed_tree(dataset, plan, answer, goals_named, containers, how)
+    return tree.problem, tree
+
+
+def listed_tree(
+    dataset: Dataset,
+    file: Path,
+    answer: ListedTree,
+    goals_named: Sequence[str | ObjectNode],
+    containers: str,
+    items: UsedUp | None = None,
+) -> Tree:
+    """Return the tree that a file lists, for the goals that are named, or those of an answer.
+
+    Without an answer and a goal it is for the only goal of the data, or for what the last step makes.
+    """
+    ordered = not answer.numbers
+    listed = answer.with_units(file, lambda: dataset.whole_network).units or ()
+    if answer.goals and not goals_named:
+        goals = dataset.named_goals(answer.goals)
+    elif goals_named:
+        goals = dataset.goals(goals_named)
+    elif len(dataset.listed) == 1:
+        goals = dataset.goals(())
+    elif listed and ordered:
+        goals = dataset.named_goals(_last_made(listed[-1][0]))
+    else:
+        why = "use(U) names no goal, and has no last step" if listed else "there is no step"
+        raise UserError(f"{file}: {why}; name a goal with --goal")
+    problem = dataset.problem(goals, containers, items=items)
+    if not goals_named and not answer.goals and (len(dataset.listed) != 1 or dataset.goals_from):
+        shown = " + ".join(map(str, problem.goal_nodes))
+        caller().reporter.warning(f"No --goal: using what the last step makes: {shown}")
+    return Tree.given(problem, [unit for unit, _ in listed], [place for _, place in listed])
+
+
+def a_tree(command: Command, tree: Path, **how: object) -> tuple[Problem, Tree]:
+    """Pose the same of what is called a tree."""
+    return a_plan(command, tree, **how)  # type: ignore[arg-type]
+
+
+def settle_data(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
+    """Return the data of trees in files, which are their own network where :func:`own_networks` says so."""
+    if not command.names_data:
+        command.add_sources(own_networks(command.dataset.data.network, files))
+    return command.dataset
+
+
+def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence[Path]:
+    """Return the files with trees that are their own network, where no data are named.
+
+    None is returned where the bundled kitchen has half of their units: a recipe may have one in common with
+    it, and a tree of it units that a program made up. An answer does not have all of the data that it is of:
+    raises :class:`UserError` for one of other data.
+    """
+    listed = [each for tree in files.values() for each in tree.units or ()]
+    known = units_in(kitchen, [unit for unit, _ in listed])
+    names = ", ".join(map(str, files))
+    if known == len(listed):
+        return ()
+    if 2 * known >= len(listed):
+        caller().reporter.warning(
+            f"{names}: no network is named, so it is the bundled kitchen, which has {known} of "
+            f"{counted(len(listed), 'unit')}; another one is named with --network"
+        )
+        return ()
+    if texts := [file for file, tree in files.items() if not tree.goals]:
+        caller().reporter.warning(f"no network is named, so it is {' and '.join(map(str, texts))}")
+        return texts
+    places = ", ".join(dict.fromkeys(place.file for _, place in listed))
+    raise UserError(f"{names}: not of the bundled kitchen; name the data with --network: {places}")
+
+
+def units_in(network: Network, units: Collection[FunctionalUnit]) -> int:
+    """Count the units that a network has."""
+    return sum(network.unit_id(unit_at_level(unit, network.level)) is not None for unit in units)
+
+
+def _last_made(unit: FunctionalUnit) -> list[ObjectNode]:
+    made = [node for node in unit.outputs if node not in unit.inputs]
+    return made[:1] or list(unit.outputs)

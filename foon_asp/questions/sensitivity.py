@@ -1,0 +1,280 @@
+"""How wrong success rates may be: the interval of each in which the best tree stays the best."""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Literal, Unpack
+
+from foon_asp.asp import Status, solve
+from foon_asp.asp.assembly import assemble
+from foon_asp.errors import UserError
+from foon_asp.network import counted
+from foon_asp.problem import Objective, Problem, success_rate
+from foon_asp.questions.answer import Answer, WithAnswer
+from foon_asp.questions.arguments import asked_with
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import TABLES, question
+from foon_asp.questions.envelope import End, Envelope
+from foon_asp.questions.flip import Flip, decimal_text
+from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.options import CONTAINERS, GOALS
+from foon_asp.questions.result import Ending
+from foon_asp.report.answer import changes_text, success_text
+from foon_asp.results.plain import fraction_text
+from foon_asp.results.table import Part, Table
+from foon_asp.results.values import CostedTree, Value, steps_not_in
+from foon_asp.results.values_of import costed_tree, head_of
+from foon_asp.text.json_value import schema_name
+
+_SUCCESS = (Objective.SUCCESS,)
+
+Side = Literal["below", "above"]
+
+
+class FlipRate(Value, frozen=True):
+    """The rate at which another tree is as good.
+
+    Attributes:
+        root: The rate is the root of this degree ...
+        of: ... of this rational number.
+        inwards: The rate, rounded to a decimal within the interval.
+        change: The relative change of the rate, for people.
+    """
+
+    root: int
+    of: str
+    inwards: Fraction
+    change: str
+
+
+class TreeBeyond(CostedTree, frozen=True):
+    """The tree that is the best beyond an end, with its costs at the given rates.
+
+    Attributes:
+        gone: The ids of the units that only the best tree has.
+        new: The ids of the units that the best tree does not have.
+    """
+
+    gone: tuple[int, ...]
+    new: tuple[int, ...]
+
+
+class RateEnd(Value, frozen=True):
+    """How far a rate may go to one side.
+
+    Attributes:
+        proved: Whether this is the end; if not, a limit came first, and it may be nearer to the rate.
+        at: Where another tree is as good; null where no rate on that side makes another tree better.
+        beyond: The tree that is the best beyond.
+    """
+
+    proved: bool
+    at: FlipRate | None
+    beyond: TreeBeyond | None
+
+
+class RateInterval(Value, frozen=True):
+    """The rates of one motion at which the best tree stays the best, while all others are as given.
+
+    Attributes:
+        rate: The rate that is given.
+        units: How many units of the tree have it.
+        below: The end below; without one, the interval goes down to 0, which is not in it.
+        above: The end above; without one, the interval goes up to 1.
+    """
+
+    motion: str
+    rate: Fraction
+    units: int
+    below: RateEnd
+    above: RateEnd
+
+    @property
+    def proved(self) -> bool:
+        """Whether both ends are proved."""
+        return self.below.proved and self.above.proved
+
+    @property
+    def flips(self) -> bool:
+        """Whether some rate makes another tree the best."""
+        return self.below.at is not None or self.above.at is not None
+
+    def __str__(self) -> str:
+        return self.motion if self.units == 1 else f"{self.motion} ({self.units})"
+
+
+class FirstFlip(Value, frozen=True):
+    """The end with the smallest relative change of the rate."""
+
+    motion: str
+    side: Side
+
+
+class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensitivity")):
+    """How wrong each success rate may be before another tree is the best.
+
+    Attributes:
+        answer: The best tree by ``success``.
+        intervals: One for each motion that a tree for the goals may have, that with the smallest relative
+            change to another best tree first; empty if there is no tree, or if it was not proved the best.
+        others: Motions that no tree for the goals needs.
+        first: Whose rate makes another tree the best first; null where none does.
+
+    Example:
+        >>> found = foon_asp.sensitivity(foon_asp.load().problem("ice"))
+        >>> len(found.intervals), found.first.motion, found.first.side
+        (4, 'pound', 'below')
+    """
+
+    ROWS = "intervals"
+
+    answer: Answer
+    intervals: tuple[RateInterval, ...]
+    others: tuple[str, ...]
+    first: FirstFlip | None
+
+    @property
+    def ending(self) -> Ending:
+        """Done when every end is proved."""
+        proved = all(interval.proved for interval in self.intervals)
+        return self.answer.ending if proved else Ending.LIMIT
+
+    def show(self) -> Iterator[Part]:
+        """Return the motions whose rates can make another tree the best, then those whose rates cannot."""
+        yield from (*self.goal_lines(), *self.answer.headlines())
+        flipping = [interval for interval in self.intervals if interval.flips]
+        still = [interval for interval in self.intervals if not interval.flips]
+        if flipping:
+            known = "each proved" if self.ending is Ending.DONE else "as far as they are known"
+            yield f"one rate may be wrong between these ends, {known}"
+            yield ""
+            headings = ("rate", "from", "to", "motion", "beyond")
+            yield Table(headings, [*map(self._cells, flipping)], left=frozenset({3, 4}), indent=2)
+        kept = [str(interval) for interval in still if interval.proved and interval.units]
+        foreign = sum(interval.proved and not interval.units for interval in still) + len(self.others)
+        if foreign:
+            kept.append(f"{counted(foreign, 'motion')} that the tree does not have")
+        unknown = [str(interval) for interval in still if not interval.proved]
+        for title, names in (("at any rate", kept), ("not known", unknown)):
+            if names:
+                yield ""
+                yield f"{title}: {', '.join(names)}"
+        if self.intervals:
+            yield ""
+            yield from self._advice()
+
+    def _cells(self, interval: RateInterval) -> tuple[str, ...]:
+        network, ends, beyond = self.answer.problem.network, [], []
+        for end, limit in ((interval.below, "0"), (interval.above, "1")):
+            ends.append((decimal_text(end.at.inwards) if end.at else limit) + "?" * (not end.proved))
+            if end.at and end.beyond:
+                gone, new = map(network.units_of_numbers, (end.beyond.gone, end.beyond.new))
+                beyond.append(f"{end.at.change}: {changes_text(network, gone, new)}")
+        return success_text(interval.rate), *ends, str(interval), "; ".join(beyond)
+
+    def _advice(self) -> Iterator[str]:
+        if self.ending is Ending.LIMIT:
+            yield "stopped at a limit: an end with ? may be nearer to the rate"
+        if self.first is not None:
+            motion, side = self.first.motion, self.first.side
+            end: RateEnd = getattr(self.intervals[0], side)
+            if end.at:
+                flip = f"{side} {decimal_text(end.at.inwards)} ({end.at.change})"
+                yield f"flips first: {motion}, {flip}; measure it before others"
+        elif self.ending is Ending.DONE:
+            yield "no rate makes another tree better by itself: there is nothing to measure"
+
+
+@question(
+    GOALS,
+    CONTAINERS,
+    formats=TABLES,
+    help_="""
+    \b
+    foon-asp sensitivity --goal macaroni
+    foon-asp sensitivity --goal macaroni --constraint forbid_motion -c forbidden_motion=tilt
+
+    The best tree is the best by success. Each rate varies by itself; the rate with the smallest
+    relative change to another best tree comes first. Ends are exact; the text shows them rounded inwards.
+
+    Exits with 0 when every end is proved, 1 when there is no tree at all, 3 when a limit came first.
+    """,
+)
+def sensitivity(problem: Problem, **how: Unpack[How]) -> Sensitivity:
+    """Find how wrong each success rate may be before another tree is the best by ``success``.
+
+    One rate varies while the others stay as given. Constraints see the rates as given. The limits are for
+    the whole question.
+
+    Returns:
+        The best tree as the ``answer``, and an interval for each motion, that with the nearest end first.
+
+    Raises:
+        UserError: for a wrong argument or constraint, for rates not given, or for rules about ``risk/2``.
+
+    Example:
+        >>> found = foon_asp.sensitivity(foon_asp.load().problem("macaroni"))
+        >>> found.intervals[0].motion, float(found.intervals[0].rate)
+        ('pour', 0.95)
+    """
+    problem.require_known_for(_SUCCESS)
+    for motion in sorted(set(problem.network.motions)):
+        success_rate((problem.rates or {})[motion], f"the success rate of {motion!r}")
+    for rate in problem.own_rates.values():
+        success_rate(rate, "the success rate of a unit")
+    settings = settings_of(how)
+    program = assemble(settings, lambda _: None)
+    if program.replaced:
+        raise UserError(
+            f"{settings.replaced}: it is not known what these encodings measure at other success "
+            "rates: leave them out, or put what they add into a constraint"
+        )
+    if ("risk", 2) in program.looked_at:
+        raise UserError(
+            "a constraint uses risk/2, which changes with the rates asked about: use rate/2, "
+            "which stays as given, or leave the constraint out"
+        )
+    problem = asked_with(problem, settings)
+    outcome = solve(problem, _SUCCESS, settings, caller().reporter)
+    answer, head = Answer.of(outcome), head_of(problem, _SUCCESS)
+    if outcome.units is None or outcome.status is not Status.OPTIMAL:
+        return Sensitivity(**head, answer=answer, intervals=(), others=(), first=None)
+    envelope = Envelope(problem, outcome.units, settings)
+    flipping: list[tuple[Flip, RateInterval]] = []
+    still: list[RateInterval] = []
+    for motion in envelope.motions:
+        rate = (problem.rates or {})[motion]
+        flips, ends = [], []
+        for above in (False, True):
+            end = envelope.end(motion, above)
+            flip = None if end.at is None else Flip(rate, end.at, above)
+            ends.append(_end(answer, end, flip))
+            flips += [] if flip is None else [flip]
+        interval = RateInterval(motion, rate, envelope.units(motion), *ends)
+        if flips:
+            flipping.append((min(flips), interval))
+        else:
+            still.append(interval)
+    flipping.sort(key=lambda each: each[0])
+    nearest = [FirstFlip(each.motion, "above" if flip.above else "below") for flip, each in flipping[:1]]
+    return Sensitivity(
+        **head,
+        answer=answer,
+        intervals=(*(interval for _, interval in flipping), *still),
+        others=tuple(sorted({*problem.network.motions}.difference(envelope.motions))),
+        first=nearest[0] if nearest else None,
+    )
+
+
+def _end(best: Answer, end: End, flip: Flip | None) -> RateEnd:
+    if flip is None or end.beyond is None:
+        return RateEnd(end.proved, None, None)
+    tree, ours = costed_tree(best.problem, end.beyond, best.problem.costs(end.beyond)), best.units or ()
+    gone, new = (
+        tuple(step.id for step in steps_not_in(steps, others) if step.id is not None)
+        for steps, others in ((ours, tree.units), (tree.units, ours))
+    )
+    return RateEnd(
+        end.proved,
+        FlipRate(flip.at.degree, fraction_text(flip.at.of), flip.inwards, flip.percent),
+        TreeBeyond(tree.costs, tree.used_up, tree.units, gone, new),
+    )

@@ -1,0 +1,75 @@
+"""Several goals of one tree: what each would cost by itself, and which units serve several of them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from foon_asp.asp import Outcome, Reporter, Settings, solve
+from foon_asp.asp.postconditions import Postconditions
+from foon_asp.dataset.nearby import NearbyProblem
+from foon_asp.problem import Objective, Problem, levels, multiplies
+from foon_asp.questions.answer import Alone, Answer, Serving, answered_under
+from foon_asp.results.values_of import node_of, nodes_of
+
+
+def with_goals_apart(answer: Answer, settings: Settings, asked: Problem) -> Answer:
+    """Return an answer for several goals with the optimum for each of them, and the goals of each unit.
+
+    ``asked`` is the problem as it was posed, of which a large store reads what each goal needs.
+    """
+    together, problem, objectives = answer.outcome, answer.problem, answer.objectives
+    if isinstance(asked, NearbyProblem):
+        single = asked.each_goal()
+        apart = [answered_under(each, objectives, settings, Reporter()).outcome for each in single]
+    else:
+        single = [replace(problem, goals=(goal,)) for goal in problem.goals]
+        apart = [solve(each, objectives, settings, Reporter()) for each in single]
+    if settings.constraints == () and settings.replaced is None:  # else goals may have rules of their own
+        holds = Postconditions(problem, levels(objectives), settings)
+        for goal, alone in zip(problem.goals, apart, strict=True):
+            holds.no_better(together, alone, f"for goal {goal} alone")
+    network = problem.network
+    nodes = [node_of(network, goal) for goal in problem.goals]
+    return answer.having(
+        goals_alone=tuple(
+            Alone(node, alone.status, alone.costs) for node, alone in zip(nodes, apart, strict=True)
+        ),
+        sum_of_goals_alone=_sum(apart, objectives[0]),
+        serves=tuple(
+            Serving(network.unit_number(unit), nodes_of(network, goals))
+            for unit, goals in _served(problem, together.units or ()).items()
+        ),
+    )
+
+
+def _sum(apart: Sequence[Outcome], objective: Objective) -> int | Fraction | None:
+    """Return the sum of what trees cost (``success``: the product); ``None`` if one goal has no tree."""
+    total: int | Fraction = Fraction(1) if multiplies(objective) else 0
+    for alone in apart:
+        if alone.costs is None:
+            return None
+        measure = alone.costs.measure(objective)
+        total = total * measure if multiplies(objective) else total + measure
+    return total
+
+
+def _served(problem: Problem, units: Sequence[int]) -> dict[int, list[int]]:
+    """Return the goals that each unit of a tree, in an order that executes, is needed for.
+
+    Each goal is followed back through the first achievers.
+    """
+    achievers: dict[int, int] = {}
+    for unit in units:
+        for o in problem.gives[unit]:
+            if o not in problem.kitchen:
+                achievers.setdefault(o, unit)
+    served: dict[int, list[int]] = {unit: [] for unit in units}
+    for goal in problem.goals:
+        stack, seen = [goal], set[int]()
+        while stack:
+            achiever = achievers.get(stack.pop())
+            if achiever is not None and achiever not in seen:
+                seen.add(achiever)
+                served[achiever].append(goal)
+                stack.extend(problem.needs[achiever])
+    return served

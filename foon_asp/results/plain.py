@@ -1,0 +1,187 @@
+"""Values as plain ones: for JSON, and as rows for CSV, Markdown and data frames."""
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Iterator
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import PurePath
+from typing import Any
+
+import msgspec
+
+from foon_asp.errors import UserError
+from foon_asp.escapes import escaped
+from foon_asp.problem import Costs, Objective
+from foon_asp.text.json_value import Json
+
+_EXACT = "_exact"
+_NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)
+_DIGITS = 6  # of a figure in Markdown
+
+
+def plain(value: object) -> Any:
+    """Return a value as dictionaries, lists, texts and numbers, in the order in which JSON has them.
+
+    A fraction is ``{"exact": "27/1250", "approx": 0.0216}``; ``approx`` is ``None`` above all floats.
+    """
+    return msgspec.to_builtins(value, enc_hook=_plain)
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, Fraction):
+        return {"exact": fraction_text(value), "approx": nearest_float(value)}
+    if isinstance(value, Costs):
+        return costs_plain(value)
+    if isinstance(value, str | PurePath):
+        return str(value)
+    raise TypeError(f"found {type(value).__name__}, which JSON cannot hold")
+
+
+def costs_plain(costs: Costs) -> Json:
+    """Return what a tree costs by every objective, ``None`` where nothing is known, and its ingredients."""
+    measures = {**dict.fromkeys(Objective), **costs.measures}
+    figures = {str(objective): _measure(objective, measure) for objective, measure in measures.items()}
+    return figures | {"ingredients": costs.ingredients}
+
+
+def _measure(objective: Objective, measure: int | Fraction | None) -> object:
+    if measure is None or objective.row.whole:
+        return None if measure is None else int(measure)
+    return _plain(Fraction(measure))
+
+
+def fraction_text(value: Fraction) -> str:
+    """Return an exact number as a text, of however many digits."""
+    # through Decimal: products of long rates have more digits than Python turns into text at once
+    parts = [str(Decimal(n)) for n in (value.numerator, value.denominator)]
+    return "/".join(parts) if value.denominator != 1 else parts[0]
+
+
+def nearest_float(value: Fraction) -> float | None:
+    """Return the nearest float; ``None`` for a number above all."""
+    try:
+        return float(value)
+    except OverflowError:
+        return None
+
+
+def flat_row(row: Json) -> Json:
+    """Return a row without parts: a value inside another has a name with a dot, ``costs.units``.
+
+    Exact numbers are decimals, with the exact one beside it under a name that ends in ``_exact``; nodes and
+    places are in one-line notation; what lists parts of its own is left out.
+    """
+    return {
+        name: value for name, part in row.items() if name != "schema" for name, value in _flat(name, part)
+    }
+
+
+def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    word = _word(value)
+    if word is not value:
+        yield name, word
+    elif isinstance(value, dict) and value.keys() == {"exact", "approx"}:
+        yield name, value["approx"]
+        yield name + _EXACT, value["exact"]
+    elif isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _flat(f"{name}.{key}", inner)
+    elif not isinstance(value, list | tuple):
+        yield name, value
+    elif not any(isinstance(_word(each), dict | list | tuple) for each in value):
+        yield name, [_word(each) for each in value]
+
+
+def _word(value: Any) -> Any:
+    """Return a node, a place or a constant in one-line notation; other values as they are."""
+    if isinstance(value, dict):
+        if "node" in value and "label" in value:
+            return value["node"]
+        if value.keys() >= {"file", "line"} and "motion" not in value:
+            return f"{value['file']}:{value['line']}"
+        if value.keys() >= {"name", "example"}:
+            return f"{value['name']}={value['example']}"
+    return value
+
+
+def table(rows: Iterable[Json]) -> tuple[list[str], list[list[Any]]]:
+    """Return flat rows as columns by name and a list for each row, ``None`` where a row has no value.
+
+    A whole number of a column that has fractions too is exact by itself.
+    """
+    rows = list(rows)
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    inner = {name.rpartition(".")[0] for name in names}
+    columns = [
+        name for name in names if name not in inner
+    ]  # else null in some rows, and in others with parts
+    return columns, [[_cell(row, name) for name in columns] for row in rows]
+
+
+def _cell(row: Json, name: str) -> Any:
+    if name not in row and name.endswith(_EXACT):
+        whole = row.get(name.removesuffix(_EXACT))
+        return None if whole is None else str(whole)
+    return row.get(name)
+
+
+def csv_text(rows: Iterable[Json]) -> str:
+    """Return flat rows as CSV, with a line of headings, and true and false as pandas reads them."""
+    columns, cells = table(rows)
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerows(
+        [columns, *([safe_cell(_text(cell, words=("false", "true"))) for cell in row] for row in cells)]
+    )
+    return file.getvalue()
+
+
+def safe_cell(text: str) -> str:
+    """Return the text of a cell that no spreadsheet takes for a formula: one like it gets an apostrophe."""
+    text = escaped(text)  # of what begins a formula, tabs and line ends
+    return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _NUMBER.fullmatch(text) else text
+
+
+def markdown_text(rows: Iterable[Json]) -> str:
+    """Return flat rows as a table in Markdown, for people: no empty columns, six digits, nothing exact."""
+    columns, cells = table(rows)
+    lists = [
+        [name, *map(_rounded, column)] for name, column in zip(columns, zip(*cells, strict=True), strict=True)
+    ]
+    shown = [each for each in lists if not each[0].endswith(_EXACT) and any(each[1:])]
+    if not shown:
+        return ""
+    headings, *lines = zip(*shown, strict=True)
+    return "".join(markdown_row(line) for line in (headings, ["---"] * len(headings), *lines))
+
+
+def markdown_row(cells: Iterable[str]) -> str:
+    """Return a line of a table in Markdown."""
+    shown = (escaped(cell).replace("|", "\\|") for cell in cells)
+    return f"| {' | '.join(shown)} |\n"
+
+
+def _rounded(value: Any) -> str:
+    if isinstance(value, float):
+        return str(int(value)) if value.is_integer() else f"{value:.{_DIGITS}g}"
+    return _text(value)
+
+
+def _text(value: Any, words: tuple[str, str] = ("no", "yes")) -> str:
+    if isinstance(value, list):
+        return " + ".join(map(_text, value))
+    if isinstance(value, bool):
+        return words[value]
+    return "" if value is None else str(value)
+
+
+def frame(rows: Iterable[Json]) -> Any:
+    """Return flat rows as a data frame of pandas; raises :class:`UserError` where that is not installed."""
+    try:
+        import pandas  # noqa: PLC0415 (an extra)
+    except ImportError:
+        raise UserError("a data frame needs pandas: pip install 'foon-asp[notebook]'") from None
+    columns, cells = table(rows)
+    return pandas.DataFrame(cells, columns=columns)

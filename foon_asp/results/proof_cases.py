@@ -1,0 +1,163 @@
+"""A certificate taken apart for people: the cases of its proof, and who crosses each cut."""
+
+import math
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from typing import Any, Self
+
+from msgspec import UNSET, UnsetType
+
+from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.results.values import Mention, Node, Value
+from foon_asp.results.values_of import mention_of, nodes_of
+from foon_asp.text.json_value import Json
+
+
+class Choice(Value, frozen=True):
+    """A unit, an item of the kitchen or a step of the rules.
+
+    Attributes:
+        taken: Whether every tree of a case has it, or none.
+    """
+
+    kind: str
+    id: int
+    taken: bool | UnsetType = UNSET
+
+
+class WeighedCut(Value, frozen=True):
+    """A cut with its weight by the first objective; the one that nobody crosses has none.
+
+    Attributes:
+        members: The units that make a node of the cut and need none.
+    """
+
+    nodes: tuple[int, ...]
+    weight: float | None
+    members: tuple[int, ...]
+
+
+class ProofCase(Value, frozen=True):
+    """A part of a proof without branches.
+
+    Attributes:
+        given: What is taken, or left out, in every tree of this case.
+        dear: Every tree of this case has one of these, and costs too much for that. Later cases leave them
+            out.
+        ends: What settles the case.
+        paid: What that costs which is given to be taken.
+        cuts: The cuts that carry weight, or the one that nobody crosses.
+    """
+
+    given: tuple[Choice, ...]
+    dear: tuple[Choice, ...]
+    ends: str
+    paid: float
+    cuts: tuple[WeighedCut, ...]
+
+
+class ProofCases(Value, frozen=True):
+    """A certificate, its cases, and the units and object nodes that these are about.
+
+    Weights and costs are those by the first objective, and approximate: for products of rates, negative
+    logarithms. Nodes that rules of the claim add are left out.
+
+    Attributes:
+        cost: Of the tree, or the bound.
+    """
+
+    certificate: Json
+    cost: float | None
+    cases: tuple[ProofCase, ...]
+    units: tuple[Mention, ...]
+    objects: tuple[Node, ...]
+
+    @classmethod
+    def of(cls, problem: Problem, content: Json) -> Self:
+        """Take the certificate of a problem apart.
+
+        Parameters:
+            problem: The problem.
+            content: The certificate as plain values.
+        """
+        network, cases = problem.network, []
+        waiting: list[tuple[Json, tuple[Choice, ...]]] = [(content["proof"], ())]
+        while waiting:
+            part, given = waiting.pop()
+            if "branch" in part:
+                ((kind, number),) = part["branch"].items()
+                waiting += (
+                    (part[side], (*given, Choice(kind, number, side == "using")))
+                    for side in ("without", "using")
+                )
+                continue
+            dear = tuple(Choice(*each) for choice in part.get("dear", ()) for each in choice.items())
+            cases.append(_case(problem, content, part, given, dear))
+            if "others" in part:
+                excluded = (Choice(each.kind, each.id, False) for each in dear)
+                waiting.append((part["others"], (*given, *excluded)))
+        known = {o for case in cases for cut in case.cuts for o in cut.nodes}
+        units = {member for case in cases for cut in case.cuts for member in cut.members}
+        for each in (choice for case in cases for choice in (*case.given, *case.dear)):
+            {"unit": units, "item": known}.get(each.kind, set()).add(each.id)
+        return cls(
+            content,
+            _cost(content),
+            tuple(cases),
+            tuple(mention_of(network, unit) for unit in sorted(units) if unit < len(network)),
+            nodes_of(network, sorted(o for o in known if o < len(network.objects))),
+        )
+
+
+def _case(
+    problem: Problem, content: Json, part: Json, given: tuple[Choice, ...], dear: tuple[Choice, ...]
+) -> ProofCase:
+    excluded = {each.id for each in given if each.kind == "unit" and not each.taken}
+    weights = part["weights"] if "weights" in part else [[part["hopeless"], None]] * ("hopeless" in part)
+    cuts = []
+    for number, weight in weights:
+        nodes = tuple(o for o in content["cuts"][number] if o < len(problem.network.objects))
+        members = sorted(_members(problem, nodes) - excluded)
+        cuts.append(WeighedCut(nodes, None if weight is None else _approximate(weight[0]), tuple(members)))
+    ends = next(key for key in ("hopeless", "broken", "weights") if key in part)
+    return ProofCase(given, dear, ends, _paid(problem, content, given), tuple(cuts))
+
+
+def _members(problem: Problem, cut: Iterable[int]) -> set[int]:
+    """Return the units that make a node of a cut and need none."""
+    inside = frozenset(cut)
+    makers = (unit for o in inside - problem.kitchen for unit in problem.makers[o])
+    return {unit for unit in makers if inside.isdisjoint(problem.needs[unit])}
+
+
+def _cost(content: Json) -> float | None:
+    """Return what the tree of a certificate costs, or its bound, in the measure of the weights."""
+    if content["claim"] == "optimal":
+        return _measured(content["objective"][0], content["costs"][0])
+    return None if content["bound"] is None else _approximate(content["bound"][0])
+
+
+def _paid(problem: Problem, content: Json, given: Iterable[Choice]) -> float:
+    """Return what the units and items cost that are given to be taken."""
+    if not content["objective"]:
+        return 0.0
+    name = content["objective"][0]
+    taken = [each for each in given if each.taken]
+    total = float(sum(each.kind == "item" for each in taken))
+    for each in taken:
+        if each.kind == "unit" and name != "kitchen":
+            total += _measured(name, problem.costs([each.id]).measures[name])
+    return total
+
+
+def _measured(name: str, cost: Any) -> float:
+    """Return a cost by an objective; of a product, its negative logarithm."""
+    figure = float(Fraction(cost))
+    multiplied = name in Objective and multiplies(Objective(name))
+    return -math.log(figure) if multiplied else figure
+
+
+def _approximate(component: str | Mapping[str, str] | Any) -> float:
+    if isinstance(component, Mapping):
+        return math.fsum(-math.log(Fraction(r)) * float(Fraction(e)) for r, e in component.items())
+    return float(Fraction(component))

@@ -1,0 +1,119 @@
+"""JSON Schemas of results, made of their fields and of what their docstrings say of these."""
+
+import inspect
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import PurePath
+from typing import Any
+
+import msgspec
+
+from foon_asp.problem import Costs, Objective
+from foon_asp.results.values import Figure
+from foon_asp.text.json_value import Json, json_line
+
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
+_ATTRIBUTE = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
+_REFERENCE = "#/$defs/{name}"
+_KEY = "^[a-z][A-Za-z0-9_'+ -]*$"
+
+_UNSET = object()
+_FIGURE = {"anyOf": [{"type": "integer"}, {"$ref": "#/$defs/fraction"}]}
+_COUNT = {"type": "integer", "minimum": 0}
+_OWN: dict[Any, tuple[str, Json]] = {
+    Fraction: (
+        "fraction",
+        {
+            "description": "An exact number; approx is the nearest float, null above all of them.",
+            "type": "object",
+            "properties": {
+                "exact": {"type": "string", "pattern": "^-?[0-9]+(/[0-9]+)?$"},
+                "approx": {"type": ["number", "null"]},
+            },
+            "required": ["exact", "approx"],
+            "additionalProperties": False,
+        },
+    ),
+    Figure: ("figure", {"description": "A whole number, or an exact fraction.", **_FIGURE}),
+    Costs: (
+        "costs",
+        {
+            "description": "What a tree costs by every objective, null where nothing is known for it.",
+            "type": "object",
+            "properties": dict.fromkeys(("units", "inputs", "ingredients", "kitchen"), _COUNT),
+            "required": ["units", "inputs", "ingredients", "kitchen", "success"],
+            "additionalProperties": {"anyOf": [{"$ref": "#/$defs/figure"}, {"type": "null"}]},
+        },
+    ),
+}
+
+
+def schema_of(result: type[msgspec.Struct]) -> Json:
+    """Return the JSON Schema of a result, draft 2020-12, complete in itself."""
+    (top,), parts = msgspec.json.schema_components([result], schema_hook=_hook, ref_template=_REFERENCE)
+    for part in parts.values():
+        _describe(part)
+    for name, part in reversed(_OWN.values()):  # each may refer to one before it
+        if _REFERENCE.format(name=name) in repr(parts):
+            parts[name] = part
+    whole = parts.pop(top["$ref"].rpartition("/")[2])
+    keys = {field.name: field.encode_name for field in msgspec.structs.fields(result)}
+    for base in inspect.getmro(result):
+        _describe_fields(whole, base.__doc__ or "", keys)
+    schema = {"$schema": _DRAFT, **whole, "$defs": dict(sorted(parts.items()))}
+    _put_null_last(schema)
+    _name_keys(schema)
+    return schema
+
+
+def _name_keys(part: Any) -> None:
+    """Say what keys look like that are objectives or phases."""
+    for inner in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
+        _name_keys(inner)
+    if isinstance(part, dict) and isinstance(part.get("additionalProperties"), dict):
+        part["propertyNames"] = {"pattern": _KEY}
+
+
+def _put_null_last(part: Any) -> None:
+    """Order the kinds that a field may have, which versions of msgspec list in different orders."""
+    for inner in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
+        _put_null_last(inner)
+    if isinstance(part, dict) and "anyOf" in part:
+        part["anyOf"].sort(key=lambda each: (each == {"type": "null"}, json_line(each)))
+
+
+def _hook(kind: type) -> Json:
+    """Return the schema of a type that is no struct."""
+    if kind in _OWN:
+        return {"$ref": _REFERENCE.format(name=_OWN[kind][0])}
+    if issubclass(kind, Objective | PurePath):
+        return {"type": "string"}
+    raise NotImplementedError(kind)
+
+
+def _describe(part: Json) -> None:
+    """Say of each field what the docstring says of it, which is the description, and allow no other keys."""
+    docstring = part.pop("description", "")
+    part["description"] = docstring.partition("\n")[0]
+    if "properties" in part:
+        _require_written(part)
+        part["additionalProperties"] = False
+        _describe_fields(part, docstring, {})
+
+
+def _require_written(part: Json) -> None:
+    """Require the keys that are always written: all but those of fields that are unset."""
+    fields = part["properties"]
+    written = {name for name in fields if fields[name].pop("default", _UNSET) is not _UNSET}
+    required = {*written, *part.get("required", ())}
+    part["required"] = [name for name in part["properties"] if name in required]
+    if not required:
+        part["minProperties"] = 1
+
+
+def _describe_fields(part: Json, docstring: str, keys: Mapping[str, str]) -> None:
+    for name, text in _ATTRIBUTE.findall(inspect.cleandoc(docstring)):
+        key = keys.get(name, name)
+        if key in part["properties"]:
+            part["properties"][key].setdefault("description", " ".join(text.split()))

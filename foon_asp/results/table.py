@@ -1,0 +1,121 @@
+"""What a result shows to people: lines and tables, laid out for the width of a terminal in one place."""
+
+import re
+import textwrap
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from foon_asp.escapes import escaped, escaped_lines
+
+NARROW = 75  # columns of a terminal: with fewer, a table is stacked
+_LEAST = 20  # columns
+_BEGINS = re.compile(r" *(?:\d+  )?")  # how far in a line stands, behind its number if it has one
+_COLOURS = {"good": "32", "bad": "31", "dim": "2", "strong": "1"}
+
+
+class Cell(NamedTuple):
+    """The text of a cell, with a ``style`` that a terminal shows in colour: good, bad, dim or strong."""
+
+    text: str
+    style: str
+
+
+class Table(NamedTuple):
+    """Rows under headings; columns of figures are aligned to the right.
+
+    A row that is one text is a line of its own, over the rows that follow it.
+    ``left`` are the places of the columns that are aligned to the left, of which the last one is folded where
+    it is too long. ``indent`` is how far in the table stands. ``headed`` says whether the headings are shown
+    where there is room; a narrow terminal shows a block for each row, a line ``heading: cell`` for each cell.
+    """
+
+    headings: Sequence[str]
+    rows: Sequence[Sequence[str | Cell] | str]
+    left: frozenset[int] = frozenset()
+    indent: int = 0
+    headed: bool = True
+
+
+Part = str | Table
+"""A line, or a table."""
+
+
+def rendered(parts: Iterable[Part], width: int | None = None, coloured: bool = False) -> str:
+    """Return lines and tables as text.
+
+    Parameters:
+        parts: The lines, without a line end, and tables, from top to bottom.
+        width: The columns of the terminal; lines that are longer are folded between words, and tables are
+            stacked below :data:`NARROW`. Without it, lines are as long as they are.
+        coloured: Whether cells are coloured.
+    """
+    lines: list[str] = []
+    for part in parts:
+        if isinstance(part, Table):
+            lines += (
+                _stacked(part, width)
+                if width is not None and width < NARROW
+                else _aligned(part, width, coloured)
+            )
+        else:
+            text = escaped_lines(part) if coloured else part
+            lines += (line for each in text.split("\n") for line in _folded(each, width))
+    return "".join(f"{line.rstrip()}\n" for line in lines)
+
+
+def _aligned(table: Table, width: int | None, coloured: bool) -> Iterator[str]:
+    rows = [*([table.headings] if table.headed else []), *table.rows]
+    columns = zip(*(row for row in rows if not isinstance(row, str)), strict=True)
+    widths = [max(len(_text(cell)) for cell in column) for column in columns]
+    inset = " " * table.indent
+    for number, row in enumerate(rows):
+        if isinstance(row, str):
+            yield _coloured(inset + escaped(row), row, coloured, heading=bool(row))
+            continue
+        cells = []
+        for place, (cell, wide) in enumerate(zip(row, widths, strict=True)):
+            text = _text(cell)
+            last = place == len(row) - 1
+            shown = (
+                text
+                if last and place in table.left
+                else text.ljust(wide)
+                if place in table.left
+                else text.rjust(wide)
+            )
+            cells.append(_coloured(shown, cell, coloured, heading=table.headed and not number))
+        yield from _folded(inset + "  ".join(cells), None if coloured else width)
+
+
+def _stacked(table: Table, width: int) -> Iterator[str]:
+    for place, row in enumerate(filter(None, table.rows)):
+        if place:
+            yield ""
+        if isinstance(row, str):
+            yield from _folded(escaped(row), width)
+            continue
+        for heading, cell in zip(table.headings, row, strict=True):
+            if text := _text(cell).strip():
+                name = f"{heading.strip()}: " if heading.strip() else ""
+                yield from _folded(f"{name}{text}", width)
+
+
+def _text(cell: str | Cell) -> str:
+    return escaped(cell.text if isinstance(cell, Cell) else cell)
+
+
+def _coloured(text: str, cell: str | Cell, coloured: bool, heading: bool) -> str:
+    style = "strong" if heading else cell.style if isinstance(cell, Cell) else ""
+    return f"\x1b[{_COLOURS[style]}m{text}\x1b[0m" if coloured and style else text
+
+
+def _folded(line: str, width: int | None) -> list[str]:
+    """Fold a line between words where it is longer than the terminal; what follows stands further in."""
+    if width is None or len(line) <= width:
+        return [line]
+    begins = _BEGINS.match(line)
+    assert begins
+    inner = " " * min(begins.end() + 2, width // 2)
+    return textwrap.wrap(
+        line, max(_LEAST, width), subsequent_indent=inner, break_on_hyphens=False, break_long_words=False
+    )

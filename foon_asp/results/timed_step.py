@@ -1,0 +1,53 @@
+"""The steps of a plan in time: when each is done, by whom, and with which tools."""
+
+from fractions import Fraction
+
+from foon_asp.results.values import NumberedStep, Value
+
+
+class Tool(Value, frozen=True):
+    """One tool or vessel.
+
+    Attributes:
+        tool: A label, or a vessel with what is in it.
+        number: Which of them, from 1.
+
+    Example:
+        >>> str(foon_asp.Tool("knife", 2))
+        'knife 2'
+    """
+
+    tool: str
+    number: int
+
+    def __str__(self) -> str:
+        return f"{self.tool} {self.number}"
+
+
+class TimedStep(NumberedStep, frozen=True):
+    """A step with its times in seconds, who does it, and with which tools.
+
+    Attributes:
+        product: The label of what it makes, of the first of several; null where it makes nothing.
+        agent: From 1; null where nobody has to stand by.
+        tools: Those that it alone uses at the time, in the order of the unit's objects.
+        after: The steps that have to be done before, as it takes what they make, or uses up what they need.
+
+    Example:
+        >>> problem = foon_asp.load().problem("ice")
+        >>> tree = foon_asp.solve(problem).tree
+        >>> foon_asp.schedule(problem, tree, durations={"twist": 10, "crush": 30}).timetable[1].agent
+        1
+    """
+
+    product: str | None
+    start: Fraction
+    end: Fraction
+    agent: int | None
+    tools: tuple[Tool, ...]
+    after: tuple[int, ...]
+
+    @property
+    def name(self) -> str:
+        """The motion, and what it is done to."""
+        return f"{self.motion} ({self.product})" if self.product else self.motion

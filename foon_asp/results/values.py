@@ -1,0 +1,355 @@
+"""The values that results are made of: object nodes, units, steps and places, without ids to look up."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from msgspec import UNSET, Struct, UnsetType, field
+
+from foon_asp.network import Source
+from foon_asp.problem import Costs, Objective
+
+if TYPE_CHECKING:
+    Figure = int | Fraction
+    """What an objective measures: a whole number, or an exact fraction."""
+else:
+    from numbers import Rational as Figure
+
+
+class Value(Struct, frozen=True):
+    """A value without an identity of its own: two are equal if all their fields are."""
+
+
+class Place(Value, frozen=True):
+    """Where a copy of a unit was read.
+
+    Attributes:
+        line: From 1; 0 for what was read from no line.
+        videos: The addresses that the annotator worked from.
+    """
+
+    file: str
+    line: int
+    videos: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return Source(self.file, self.line).short
+
+
+class Relation(Value, frozen=True):
+    """How an object stands to another one: ``in`` a ``bowl``."""
+
+    word: str
+    object: str
+
+
+class Contents(Value, frozen=True):
+    """The ingredients in an object, behind the word that they are read with."""
+
+    word: str
+    ingredients: tuple[str, ...]
+
+
+class Node(Value, frozen=True):
+    """An object node.
+
+    Attributes:
+        id: The id in the whole network, as in the facts; null where the network does not have it.
+        node: The one-line notation, which ``--goal`` understands.
+        stands_for: Below level 3: the level-3 nodes that a goal stands for.
+    """
+
+    id: int | None
+    node: str
+    label: str
+    states: tuple[str, ...]
+    relations: tuple[Relation, ...]
+    contents: tuple[Contents, ...]
+    stands_for: "tuple[Node, ...] | UnsetType" = UNSET
+
+    def __str__(self) -> str:
+        return self.node
+
+
+class Origin(Value, frozen=True):
+    """Where an input comes from, one of these. Only a list that does not execute has the last two.
+
+    Attributes:
+        kitchen: It is in the kitchen.
+        bought: It is in the kitchen, once the shopping list is.
+        step: The first step that makes it, from 1.
+        implied: It is taken as given by the container rule ``implied``.
+        later_step: The first step that makes it, which is too late.
+        missing: It is neither in the kitchen nor made.
+    """
+
+    kitchen: bool | UnsetType = UNSET
+    bought: bool | UnsetType = UNSET
+    step: int | UnsetType = UNSET
+    implied: bool | UnsetType = UNSET
+    later_step: int | UnsetType = UNSET
+    missing: bool | UnsetType = UNSET
+
+    def __str__(self) -> str:
+        if self.step is not UNSET:
+            return f"step {self.step}"
+        if self.later_step is not UNSET:
+            return f"step {self.later_step}, which is later"
+        return next(name for name in self.__struct_fields__ if getattr(self, name) is not UNSET)
+
+
+class Copy(Node, frozen=True, kw_only=True):
+    """One copy of an object node, and where it comes from."""
+
+    origin: Origin = field(name="from")
+
+
+class Copies(Value, frozen=True):
+    """How many copies of an object node there are."""
+
+    object: Node
+    copies: int
+
+
+class Input(Copy, frozen=True, kw_only=True):
+    """An input of a step.
+
+    Attributes:
+        stays: Where items are used up: whether it is still there after the step.
+    """
+
+    stays: bool | UnsetType = UNSET
+
+
+class Output(Node, frozen=True, kw_only=True):
+    """An output of a step.
+
+    Attributes:
+        made: False for what the unit takes as given, so that it does not make it.
+    """
+
+    made: bool
+
+
+class Mention(Value, frozen=True):
+    """The id, the motion and the places of a unit.
+
+    Attributes:
+        id: The id in the whole network, the number in ``use(U)``; null where the network does not have it.
+        source: A place for every copy.
+    """
+
+    id: int | None
+    motion: str
+    source: tuple[Place, ...]
+
+    def __str__(self) -> str:
+        return f"{self.motion}    [{self.source[0]}]"
+
+
+class NumberedStep(Value, frozen=True):
+    """The number of a step, and the id, the motion and the places of its unit.
+
+    Attributes:
+        step: The number of the step, from 1.
+        id: The id in the whole network, the number in ``use(U)``; null where the network does not have it.
+    """
+
+    step: int
+    id: int | None
+    motion: str
+    source: tuple[Place, ...]
+
+
+class Unit(Value, frozen=True):
+    """A functional unit.
+
+    Attributes:
+        id: The id in the whole network, the number in ``use(U)``; null where the network does not have it.
+        source: A place for every copy.
+        stands_for: Below level 3: the level-3 units that it stands for.
+    """
+
+    id: int | None
+    motion: str
+    inputs: tuple[Node, ...]
+    outputs: tuple[Node, ...]
+    source: tuple[Place, ...]
+    stands_for: "tuple[Unit, ...] | UnsetType" = UNSET
+
+    def __str__(self) -> str:
+        return f"{self.motion}: {' + '.join(map(str, self.inputs))} → {' + '.join(map(str, self.outputs))}"
+
+    def lines(self) -> Iterator[str]:
+        """Return the lines of the unit for people: motion and place, inputs, outputs."""
+        yield f"  {self.motion}    [{self.source[0]}]"
+        yield f"    {' + '.join(map(str, self.inputs))}"
+        yield f"  → {' + '.join(map(str, self.outputs))}"
+
+
+class UnitDifference(Value, frozen=True):
+    """One thing in which two units differ, however often it stands in them.
+
+    Attributes:
+        kind: motion, label, state, relation, ingredient, or for a whole object node input or output.
+        a: What the first has; null where only the second has something.
+        b: What the second has; null where only the first has something.
+        of: The label of the object that it is said of; null for what is no part of one.
+    """
+
+    kind: str
+    a: str | None
+    b: str | None
+    of: str | None
+
+    def __str__(self) -> str:
+        before = f"{self.of}: {self.kind}" if self.of else self.kind
+        if self.a and self.b:
+            return f"{before} {self.a!r} in A, {self.b!r} in B"
+        return f"{before} {self.a or self.b!r} only in {'A' if self.a else 'B'}"
+
+
+class Step(Value, frozen=True):
+    """A functional unit as a step of a tree or plan.
+
+    Attributes:
+        step: The number of the step, from 1.
+        id: The id in the whole network, the number in ``use(U)``.
+        source: A place for every copy.
+        stands_for: Below level 3: the level-3 units that it stands for.
+        by: Who does it, where a person helps: ``robot`` or ``person``.
+    """
+
+    step: int
+    id: int | None
+    motion: str
+    inputs: tuple[Input, ...]
+    outputs: tuple[Output, ...]
+    source: tuple[Place, ...]
+    stands_for: tuple[Unit, ...] | UnsetType = UNSET
+    by: str | UnsetType = UNSET
+
+    def lines(self, details: int = 5) -> Iterator[str]:
+        """Return the lines of the step for people: motion and place, inputs with their origin, outputs.
+
+        ``details`` is how many of the units that it stands for are listed.
+        """
+        who = "    by the person" if self.by == "person" else ""
+        yield f"{self.step:>3}  {self.motion}    [{self.source[0]}]{who}"
+        for taken in self.inputs:
+            used = ", used up" if taken.stays is False else ""
+            yield f"       {taken}  ({taken.origin}{used})"
+        for made in self.outputs:
+            yield f"     → {made}{'' if made.made else '  (implied, not made here)'}"
+        if self.stands_for is not UNSET:
+            number = len(self.stands_for)
+            yield f"     stands for {number} unit{'s' if number != 1 else ''} at level 3:"
+            for unit in self.stands_for[:details]:
+                yield f"       {unit.id}    [{unit.source[0]}]  {unit}"
+            if number > details:
+                yield f"       ... and {number - details} more; --format json lists all"
+
+
+class Lack(Value, frozen=True):
+    """A copy that is missing.
+
+    Attributes:
+        position: The step that lacks it, from 1; null for a goal, in the end.
+        used_up_by: The steps that use up the copies there are, from 1.
+        unit: The unit of the step, of a plan that is replayed.
+    """
+
+    position: int | None
+    missing: Node
+    used_up_by: tuple[int, ...]
+    unit: Unit | UnsetType | None = UNSET
+
+
+class ListedConstraint(Value, frozen=True):
+    """A rule without a head (``:- ...``) of the user's.
+
+    Attributes:
+        number: The number of the rule among all of them, from 1.
+        constants: The constants in it that were set, as NAME=VALUE.
+    """
+
+    number: int
+    file: str
+    line: int
+    text: str
+    constants: tuple[str, ...]
+
+    def lines(self, remark: str = "") -> Iterator[str]:
+        """Return the place of the rule, a remark, and the constants; and below that its text."""
+        given = "".join(f"    -c {setting}" for setting in self.constants)
+        yield f"  {Source(self.file, self.line)}{remark}{given}"
+        yield f"      {self.text}"
+
+
+class UsedUpRun(Value, frozen=True):
+    """Whether the steps, each done once, run where items are used up.
+
+    Those of an answer are done in the order listed, those of another tree in some order.
+
+    Attributes:
+        runs: null where no order was found and it is not proved that there is none, and below level 3.
+        shortage: What is missing, if it does not run.
+    """
+
+    runs: bool | None
+    shortage: Lack | None
+
+
+class CostedTree(Value, frozen=True):
+    """A tree and what it costs.
+
+    Attributes:
+        costs: What the tree costs by every objective.
+        used_up: Whether the steps, each done once, run where items are used up.
+        units: The steps, in an order that executes.
+    """
+
+    costs: Costs
+    used_up: UsedUpRun | None
+    units: tuple[Step, ...]
+
+    @property
+    def ids(self) -> tuple[int, ...]:
+        """The units by id in the whole network, in an order that executes."""
+        return tuple(step.id for step in self.units if step.id is not None)
+
+
+def steps_not_in(steps: Sequence[Step], others: Iterable[Step]) -> list[Step]:
+    """Return the steps whose units are not among others; those of a plan, as often as they are missing."""
+    left = Counter(step.id for step in steps) - Counter(step.id for step in others)
+    found = []
+    for step in steps:
+        if left[step.id]:
+            left[step.id] -= 1
+            found.append(step)
+    return found
+
+
+def step_lines(steps: Iterable[Step], sign: str = " ") -> Iterator[str]:
+    """Return a line for each step, behind a sign: the id of its unit, the motion and the place."""
+    for step in steps:
+        yield f"  {sign} {step.id}  {step.motion}    [{step.source[0]}]"
+
+
+def changed_motions(gone: Iterable[Step], new: Iterable[Step], named: int = 6) -> str:
+    """Return the motions of the steps that go and that come, ``- heat  + pour (2)``, so many at most."""
+    texts = []
+    for sign, steps in (("-", gone), ("+", new)):
+        counts = Counter(step.motion for step in steps)
+        motions = [motion if count == 1 else f"{motion} ({count})" for motion, count in counts.items()]
+        if len(motions) > named:
+            more = sum([*counts.values()][named - 1 :])
+            motions = [f"{', '.join(motions[: named - 1])} and {more} more"]
+        if motions:
+            texts.append(f"{sign} {', '.join(motions)}")
+    return "  ".join(texts)
+
+
+Measures = Mapping[Objective, Figure | None]
+"""What some objectives measure; ``None`` where nothing is known."""

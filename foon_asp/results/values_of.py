@@ -1,0 +1,286 @@
+"""Values made of the ids of a network, once, where an answer leaves the solver."""
+
+import functools
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Any, Literal, TypedDict, TypeVar
+
+from msgspec import UNSET, UnsetType
+
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source
+from foon_asp.network.near_units import NearUnits
+from foon_asp.problem import ContainerRule, Costs, Objective, Problem, kitchen_needed
+from foon_asp.proof.replay import Copy as Replayed
+from foon_asp.proof.replay import Shortage
+from foon_asp.proof.used_up_run import used_up_run
+from foon_asp.results.values import (
+    Contents,
+    Copies,
+    Copy,
+    CostedTree,
+    Input,
+    Lack,
+    Mention,
+    Node,
+    Origin,
+    Output,
+    Place,
+    Relation,
+    Step,
+    Unit,
+    UnitDifference,
+    UsedUpRun,
+)
+
+N = TypeVar("N", bound=Node)
+U = TypeVar("U", bound=Unit)
+
+_KITCHEN, _BOUGHT, _IMPLIED, _MISSING = (
+    Origin(**{name: True}) for name in ("kitchen", "bought", "implied", "missing")
+)
+
+
+class Head(TypedDict):
+    """The question, as every document about goals begins."""
+
+    goals: tuple[Node, ...]
+    containers: ContainerRule
+    items: Literal["lasting", "used-up"]
+    level: int
+    objectives: tuple[Objective, ...]
+    starting_kitchen: tuple[Node, ...] | None
+
+
+def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
+    """Return the question about a problem: its goals, the rules that they are asked under, objectives."""
+    network = problem.network
+    return {
+        "goals": goals_of(network, problem.goals),
+        "containers": problem.containers,
+        "items": "lasting" if problem.items is None else "used-up",
+        "level": network.level,
+        "objectives": tuple(objectives),
+        "starting_kitchen": nodes_of(network, kitchen_needed(problem)) if problem.starting else None,
+    }
+
+
+def goals_of(network: Network, goals: Iterable[int]) -> tuple[Node, ...]:
+    """Return goals; below level 3 with the level-3 nodes that each stands for."""
+    detailed = network.detailed
+    if detailed is None:
+        return nodes_of(network, goals)
+    return tuple(
+        node_as(Node, network, goal, stands_for=nodes_of(detailed, network.objects_stand_for[goal]))
+        for goal in goals
+    )
+
+
+def nodes_of(network: Network, ids: Iterable[int]) -> tuple[Node, ...]:
+    """Return the object nodes that have some ids."""
+    return tuple(node_of(network, o) for o in ids)
+
+
+def node_of(network: Network, o: int) -> Node:
+    """Return the object node that has an id."""
+    return node_as(Node, network, o)
+
+
+def node_as(kind: type[N], network: Network, o: int, **more: Any) -> N:
+    """Return the object node that has an id as a kind of node, with the fields that this kind has more."""
+    return kind(network.object_number(o), *_parts(network.objects[o]), **more)
+
+
+def named_node(network: Network, node: ObjectNode) -> Node:
+    """Return an object node that a network may have or not."""
+    o = network.object_id(node)
+    return Node(None if o is None else network.object_number(o), *_parts(node))
+
+
+def place_of(source: Source) -> Place:
+    """Return where a unit was read."""
+    return Place(source.file, source.line, tuple(source.videos))
+
+
+def mention_of(network: Network, unit: int) -> Mention:
+    """Return the id, the motion and the places of a unit."""
+    return Mention(network.unit_number(unit), network.motions[unit], _places(network, unit))
+
+
+def unit_of(network: Network, unit: int) -> Unit:
+    """Return the unit that has an id; below level 3 with the level-3 units that it stands for."""
+    return unit_as(Unit, network, unit)
+
+
+def unit_as(kind: type[U], network: Network, unit: int, **more: Any) -> U:
+    """Return the unit that has an id as a kind of unit, with the fields that this kind has more."""
+    return kind(
+        network.unit_number(unit),
+        network.motions[unit],
+        nodes_of(network, network.inputs[unit]),
+        nodes_of(network, network.outputs[unit]),
+        _places(network, unit),
+        _details(network, unit),
+        **more,
+    )
+
+
+def listed_unit(network: Network, unit: FunctionalUnit, place: Source) -> Unit:
+    """Return a unit that was listed at a place, and that a network may have or not."""
+    number = network.unit_id(unit)
+    inputs, outputs = (
+        tuple(named_node(network, node) for node in side) for side in (unit.inputs, unit.outputs)
+    )
+    return Unit(
+        None if number is None else network.unit_number(number),
+        unit.motion,
+        inputs,
+        outputs,
+        (place_of(place),),
+    )
+
+
+def differences_of(pair: NearUnits) -> tuple[UnitDifference, ...]:
+    """Return in what two units differ that are nearly the same."""
+    return tuple(
+        UnitDifference(kind, left or None, right or None, of or None)
+        for kind, left, right, of in pair.differences
+    )
+
+
+def steps_of(
+    problem: Problem,
+    units: Collection[int],
+    bought: Collection[int] = (),
+    helped: Collection[int] | None = None,
+) -> tuple[Step, ...]:
+    """Return units as the steps of a tree or plan: where each input comes from, and which outputs are made.
+
+    ``bought`` are the items of the kitchen, by id, that were not there before, and ``helped`` the units that
+    a person does, where one helps. In a list that does not execute as it is, a needed input may be made by a
+    later step only, or by none.
+    """
+    network, steps = problem.network, []
+    for number, (unit, origins) in enumerate(_origins(problem, units, bought), 1):
+        uses = None if problem.items is None else problem.flows[unit].uses
+        inputs = tuple(
+            node_as(Input, network, o, origin=origin, stays=UNSET if uses is None else o not in uses)
+            for o, origin in zip(network.inputs[unit], origins, strict=True)
+        )
+        gives = problem.gives[unit]
+        outputs = tuple(node_as(Output, network, o, made=o in gives) for o in network.outputs[unit])
+        by = UNSET if helped is None else "person" if unit in helped else "robot"
+        named = network.unit_number(unit), network.motions[unit]
+        steps.append(
+            Step(number, *named, inputs, outputs, _places(network, unit), _details(network, unit), by)
+        )
+    return tuple(steps)
+
+
+def costed_tree(problem: Problem, units: Collection[int], costs: Costs) -> CostedTree:
+    """Return a tree, by ids in an order that executes, and what it costs."""
+    return CostedTree(costs, used_up_of(problem, problem.tree(units)), steps_of(problem, units))
+
+
+def used_up_of(problem: Problem, tree: Iterable[FunctionalUnit] | None) -> UsedUpRun | None:
+    """Return whether a tree runs where items are used up.
+
+    ``None`` without a tree, and where items are used up anyway.
+    """
+    if tree is None or problem.items is not None:
+        return None
+    run = used_up_run(problem, tree)
+    lack = run.shortage
+    return UsedUpRun(run.runs, None if lack is None else lack_of(problem.network, lack))
+
+
+def lack_of(network: Network, shortage: Shortage) -> Lack:
+    """Return the copy that is missing."""
+    position = None if shortage.step is None else shortage.step + 1
+    return Lack(position, named_node(network, shortage.node), tuple(step + 1 for step in shortage.taken))
+
+
+def copy_of(network: Network, copy: Replayed) -> Copy:
+    """Return a copy of an object node, and where it comes from."""
+    origin = _KITCHEN if copy.made is None else Origin(step=copy.made + 1)
+    o = network.object_id(copy.node)
+    return Copy(None if o is None else network.object_number(o), *_parts(copy.node), origin=origin)
+
+
+def copies_of(network: Network, counts: Mapping[ObjectNode, int]) -> tuple[Copies, ...]:
+    """Return how many copies of some object nodes there are."""
+    return tuple(Copies(named_node(network, node), number) for node, number in counts.items())
+
+
+@functools.lru_cache(maxsize=10_000)  # units that are near each other share most of their nodes
+def _parts(node: ObjectNode) -> tuple[str, str, tuple[str, ...], tuple[Relation, ...], tuple[Contents, ...]]:
+    relations = tuple(Relation(*relation) for relation in sorted(node.relations))
+    contents = tuple(Contents(each.word, tuple(each.ingredients)) for each in node.contents)
+    return str(node), node.label, tuple(sorted(node.states)), relations, contents
+
+
+def _places(network: Network, unit: int) -> tuple[Place, ...]:
+    return tuple(map(place_of, network.sources[unit]))
+
+
+def _details(network: Network, unit: int) -> tuple[Unit, ...] | UnsetType:
+    detailed = network.detailed
+    if detailed is None:
+        return UNSET
+    return tuple(unit_of(detailed, detail) for detail in network.stands_for[unit])
+
+
+def _origins(
+    problem: Problem, units: Collection[int], bought: Collection[int]
+) -> Iterator[tuple[int, Sequence[Origin]]]:
+    """Yield each unit, in the order listed, with the origin of each of its inputs."""
+    if problem.items is not None:
+        yield from _origins_of_copies(problem, units)
+        return
+    makers: dict[int, list[int]] = {}
+    for step, unit in enumerate(units, 1):
+        for o in problem.gives[unit]:
+            makers.setdefault(o, []).append(step)
+    for step, unit in enumerate(units, 1):
+        needs = problem.needs[unit]
+        yield (
+            unit,
+            [_origin(problem, o, step, makers, o in needs, bought) for o in problem.network.inputs[unit]],
+        )
+
+
+def _origin(
+    problem: Problem,
+    o: int,
+    step: int,
+    makers: Mapping[int, Sequence[int]],
+    needed: bool,
+    bought: Collection[int],
+) -> Origin:
+    if o in problem.kitchen:
+        return _BOUGHT if o in bought else _KITCHEN
+    makes = makers.get(o, ())
+    if makes and makes[0] < step:
+        return Origin(step=makes[0])
+    if not needed:
+        return _IMPLIED
+    later = next((maker for maker in makes if maker > step), None)
+    return _MISSING if later is None else Origin(later_step=later)
+
+
+def _origins_of_copies(problem: Problem, plan: Collection[int]) -> Iterator[tuple[int, Sequence[Origin]]]:
+    """Yield the same of a plan in which items are used up: each input is the oldest copy."""
+    copies = {o: [_KITCHEN] * (problem.stock_of(o) or 0) for o in problem.kitchen}
+    for step, unit in enumerate(plan, 1):
+        asks, uses, adds = problem.flows[unit]
+        origins = []
+        for o in problem.network.inputs[unit]:
+            if o in problem.endless:
+                origins.append(_KITCHEN)
+            elif o not in asks:
+                origins.append(_IMPLIED)
+            elif not copies.get(o):
+                origins.append(_MISSING)
+            else:
+                origins.append(copies[o].pop(0) if o in uses else copies[o][0])
+        for o in adds:
+            copies.setdefault(o, []).append(Origin(step=step))
+        yield unit, origins

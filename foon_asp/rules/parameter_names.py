@@ -1,0 +1,47 @@
+"""Names in the parameters of ready-made constraints that nothing in the network has."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from foon_asp.encoding.encoding_file import string_constant
+from foon_asp.encoding.own_encodings import is_own
+from foon_asp.proof.constraint import LIBRARY
+from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
+from foon_asp.rules.fact_values import CONTENTS, MOTIONS, FactValues, has_text, nearest_text, unknown_text
+from foon_asp.rules.ready_made import LISTED
+
+_LABELS: Final = ("label",)
+
+# The facts that each parameter is the text of, one of them; other parameters are numbers.
+PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = {
+    **dict.fromkeys(("forbidden_motion", "limited_motion", "required_motion", "tied_motion"), MOTIONS),
+    **dict.fromkeys(("earlier_motion", "later_motion", "one_motion", "other_motion"), MOTIONS),
+    **dict.fromkeys(
+        ("forbidden_object", "limited_utensil", "required_intermediate", "required_object", "tied_utensil"),
+        _LABELS,
+    ),
+    **dict.fromkeys(("forbidden_ingredient", "required_ingredient", "unheated_ingredient"), CONTENTS),
+    "allowed_source": ("source",),
+}
+
+
+def unknown_parameters(
+    constraints: Sequence[Constraint], settings: Sequence[str], values: FactValues
+) -> Iterator[str]:
+    """Return a warning for each parameter whose name nothing in the network has, with the nearest name."""
+    shared = dict(setting.partition("=")[::2] for setting in settings)
+    for constraint in dict.fromkeys(map(find_constraint, constraints)):
+        file = constraint.file if isinstance(constraint, LibraryUse) else constraint
+        if not isinstance(file, Path) or file.stem not in LIBRARY or not is_own(file):
+            continue
+        given = constraint.constants if isinstance(constraint, LibraryUse) else shared
+        for value in LIBRARY[file.stem].values:
+            parameter = LISTED.get(value, value)
+            word = string_constant(given.get(parameter, "")) if parameter in PARAMETERS else ""
+            if word and not has_text(PARAMETERS[parameter], word, values):
+                place = (
+                    constraint if isinstance(constraint, LibraryUse) else f"{file.stem}:{parameter}={word}"
+                )
+                meant = nearest_text(PARAMETERS[parameter], word, values)
+                yield f"{place}: warning: {unknown_text(PARAMETERS[parameter], word, meant)}"

@@ -1,0 +1,53 @@
+"""Searches that other packages offer: run in a process of their own, and what they give is looked over."""
+
+import functools
+from typing import Any
+
+from foon_asp.deadline import Deadline, LimitError
+from foon_asp.offered.offer import Offer, Raised
+from foon_asp.offered.process import ask_offered
+from foon_asp.problem import Problem
+from foon_asp.searches.retrieval import Ending, Retrieval
+from foon_asp.searches.search import Search, SearchSettings
+
+
+def offered_search(offer: Offer) -> Search:
+    """Make a search of what a package offers."""
+    promise = f"what {offer.package} says of it; foon-asp has checked only its tree"
+    return Search(offer.name, promise, functools.partial(_retrieve, offer), offer.package)
+
+
+def _retrieve(offer: Offer, problem: Problem, settings: SearchSettings) -> Retrieval:
+    """Run it; ``unknown`` at a limit. Raises :class:`UserError` where it raises, or gives no retrieval."""
+    deadline = Deadline(settings.time_limit, settings.memory_limit)
+    try:
+        given = ask_offered(offer, deadline, problem.plain, settings)
+    except LimitError:
+        return Retrieval(Ending.UNKNOWN)
+    if isinstance(given, Raised):
+        raise offer.raised(given)
+    return _looked_over(offer, problem, given)
+
+
+def _looked_over(offer: Offer, problem: Problem, given: Any) -> Retrieval:
+    """Take what was given for a retrieval, if it is one."""
+    fault = offer.fault(f"gave {given!r}, expected a Retrieval")
+    try:
+        ending, units, stuck_at = given
+        ending = Ending(ending)
+    except (ValueError, TypeError):
+        raise fault from None
+    network = problem.network
+    tree = offer.units(units, len(network))
+    if tree and ending is not Ending.TREE:
+        raise offer.fault(f"gave units, and the ending {ending}")
+    if (stuck_at is not None) != (ending is Ending.STUCK):
+        raise offer.fault(f"gave the ending {ending}, and stuck_at={stuck_at!r}")
+    if stuck_at is not None:
+        if type(stuck_at) is not int or not 0 <= stuck_at < len(network.objects):
+            raise offer.fault(f"is stuck at {stuck_at!r}; objects are 0 to {len(network.objects) - 1}")
+        if stuck_at in problem.kitchen or network.producers[stuck_at]:
+            raise offer.fault(
+                f"is stuck at {network.objects[stuck_at]}, which is in the kitchen or made by a unit"
+            )
+    return Retrieval(ending, tree, stuck_at)

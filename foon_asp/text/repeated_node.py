@@ -1,0 +1,48 @@
+"""A node that a unit lists twice: it counts once, which is false where somebody means two of it."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from foon_asp.errors import UserError
+from foon_asp.network import ObjectNode, Source, counted
+
+
+class RepeatedNode(NamedTuple):
+    """The first node that a copy of a unit lists twice on one side, and where.
+
+    ``meant`` says that it is in neutral lines or JSON, which machines write: there it means two of it.
+    """
+
+    node: str
+    source: Source
+    meant: bool
+
+
+def repeated_node(inputs: Sequence[ObjectNode], outputs: Sequence[ObjectNode]) -> ObjectNode | None:
+    """Return the first node that is twice on one side of a unit."""
+    for nodes in (inputs, outputs):
+        if len(set(nodes)) < len(nodes):
+            return next(node for at, node in enumerate(nodes) if node in nodes[:at])
+    return None
+
+
+def repeated_note(repeated: Sequence[RepeatedNode]) -> list[str]:
+    """Return a line about all of them, or none."""
+    if not repeated:
+        return []
+    first = repeated[0]
+    units = f"{counted(len(repeated), 'unit')} {'lists' if len(repeated) == 1 else 'list'}"
+    return [
+        f"note: {units} an object node twice, which counts once: {first.node!r} in "
+        f"{first.source.file}:{first.source.line}; foon-asp lint shows each"
+    ]
+
+
+def refuse_repeated(repeated: Sequence[RepeatedNode]) -> None:
+    """Raise :class:`UserError` if a unit means two of a node, which items used up cannot count yet."""
+    for node, source, meant in repeated:
+        if meant:
+            raise UserError(
+                f"{source}: found {node!r} twice on one side of a unit, expected it once: with items used "
+                "up it would count as one; give each its own name, or ask with --items lasting"
+            )

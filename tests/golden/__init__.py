@@ -1,0 +1,1 @@
+"""Transcripts of the command line, which a person reads in a diff."""

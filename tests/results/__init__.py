@@ -1,0 +1,1 @@
+"""Values of results, and what is made of their fields."""
