@@ -43,7 +43,7 @@ from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
 from foon_asp.deadline import Deadline
 from foon_asp.network import Network, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, levels, reach
-from foon_asp.python_process import _end_all
+from foon_asp.processes.python_process import _end_all
 from foon_asp.questions.answer import answered_under
 from foon_asp.reduce import NONE
 from foon_asp.store.import_files import import_files

@@ -8,7 +8,7 @@ from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import AnswerRow, answer_row, failed_row
 from foon_asp.batch.asked import Asked, Opener
 from foon_asp.errors import UserError
-from foon_asp.pool import LostError, share
+from foon_asp.processes.pool import LostError, share
 
 GRACE: Final = 10.0  # seconds beyond its time limit after which a process that does not answer is ended
 

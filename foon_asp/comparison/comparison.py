@@ -124,7 +124,7 @@ def compare(
     time_limit: float | None = None,
     rules: Settings | None = None,
 ) -> Comparison:
-    """Run searches on a problem, simulate their trees and prove the optima beside them.
+    """Run searches on a problem of one goal, simulate their trees and prove the optima beside them.
 
     ``time_limit`` is in seconds for each optimum. Optima of ``success`` are left out where no rates are
     known. Optima keep to the ``rules``; the searches know nothing of them, and it is said of their trees

@@ -7,8 +7,8 @@ from functools import partial
 from foon_asp.asp import Settings
 from foon_asp.comparison.comparison import Comparison, compare
 from foon_asp.errors import UserError
-from foon_asp.pool import LostError, share
 from foon_asp.problem import Problem, reach
+from foon_asp.processes.pool import LostError, share
 from foon_asp.searches import Search, SearchSettings
 
 

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-OUT_OF_MEMORY = 77  # what a process ends with that has no more
-
 
 class ProgramError(Exception):
     """clingo refused a program or an option; ``messages`` are its reasons."""

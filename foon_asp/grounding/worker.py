@@ -1,33 +1,21 @@
-"""The other process: it obeys commands about one program, until no more come.
-
-A thread reads the commands, so that the end of the parent is noticed while clingo grounds, and the process
-ends with it.
-"""
+"""The other process: it obeys commands about one program, until no more come."""
 
 import contextlib
 import errno
 import os
-import queue
-import signal
 import traceback
-from io import FileIO
 from typing import Any
 
-from foon_asp.aside import Aside
 from foon_asp.errors import UserError
 from foon_asp.grounding.derived import derive
 from foon_asp.grounding.ground_program import GroundProgram
-from foon_asp.grounding.run import OUT_OF_MEMORY, ProgramError
-from foon_asp.pipe import receive, send
+from foon_asp.grounding.run import ProgramError
+from foon_asp.processes.pipe import OUT_OF_MEMORY, receive, requests, send
 
 
 def serve() -> None:
     """Obey the commands on standard input and answer on what was standard output."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    answers = FileIO(os.dup(1), "wb")
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # so that nothing else gets among the answers
-    commands: queue.SimpleQueue[tuple[Any, ...]] = queue.SimpleQueue()
-    Aside(_read, commands)
+    commands, answers = requests(receive)
     program: GroundProgram | None = None
 
     def obey(command: str, *given: Any) -> object:
@@ -39,9 +27,6 @@ def serve() -> None:
                 os.chdir(folder)
             _bound_memory(memory)
             program = GroundProgram(*described)
-            return None
-        if command == "forget":
-            program = None
             return None
         if command == "derive":
             *described, memory = given
@@ -56,8 +41,12 @@ def serve() -> None:
         return tuple(program.search(opt_mode, predicates, tree, bound))
 
     while True:
+        command = commands.get()
+        if command == ("forget",):  # nothing is answered
+            program = None
+            continue
         try:
-            answer: tuple[str, object] = "done", obey(*commands.get())
+            answer: tuple[str, object] = "done", obey(*command)
         except ProgramError as error:
             answer = "refused", (error.messages, error.otherwise)
         except UserError as error:
@@ -72,17 +61,6 @@ def serve() -> None:
             send(answers, answer)
         except OSError:
             return
-
-
-def _read(commands: "queue.SimpleQueue[tuple[Any, ...]]") -> None:
-    pipe = FileIO(0, "rb")
-    while True:
-        try:
-            commands.put(receive(pipe))
-        except EOFError:
-            os._exit(0)
-        except MemoryError:
-            os._exit(OUT_OF_MEMORY)
 
 
 def _bound_memory(size: int | None) -> None:

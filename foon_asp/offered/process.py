@@ -4,18 +4,15 @@ It cannot change our data, nor keep us past a limit, nor print among our answers
 nothing of it is believed.
 """
 
-import contextlib
 import json
-import os
-import queue
-import signal
 import sys
+from io import RawIOBase
 from typing import Any
 
 from foon_asp.deadline import Deadline
 from foon_asp.offered.offer import Offer, Raised
-from foon_asp.pipe import packed, write
-from foon_asp.python_process import PythonProcess
+from foon_asp.processes.pipe import packed
+from foon_asp.processes.worker import DiedError, Worker, give_back, take
 
 _MOST = 64 * 2**20  # bytes of an answer
 
@@ -26,22 +23,16 @@ def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
     Raises :class:`~foon_asp.deadline.LimitError` at a limit, and :class:`UserError` where there is no such
     function, or none that ends with plain values.
     """
-    key = (offer.package, *sys.path)
-    process = _idle.pop(key, None)
-    if process is None or not process.alive:
-        process = _Process("foon_asp.offered.worker", "what other packages offer is run")
+    key = (offer.package, *sys.path)  # and where it was found
+    worker = take(key, _start)
     try:
-        line = process.ask(packed((offer, arguments)), deadline)
-    except BaseException:
-        process.end()
-        raise
-    if not line.endswith(b"\n"):
-        code = process.end()
-        raise offer.fault(
-            "gave more than an answer can be" if len(line) > _MOST else f"ended its process ({code})"
-        )
-    if _idle.setdefault(key, process) is not process:
-        process.end()
+        kind, line = worker.ask(packed((offer, arguments)), deadline)
+    except DiedError as died:
+        raise offer.fault(f"ended its process ({died.code})") from None
+    if kind == "endless":
+        worker.end()
+        raise offer.fault("gave more than an answer can be")
+    give_back(key, worker)
     try:
         kind, value = json.loads(line)
     except (ValueError, TypeError, RecursionError):
@@ -51,41 +42,21 @@ def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
     return Raised(tuple(value[0]), *value[1:]) if kind == "raised" else value
 
 
-class _Process(PythonProcess):
-    """A process that imports what a package offers, and calls it."""
+def _start() -> Worker:
+    return Worker("foon_asp.offered.worker", "what other packages offer is run", read=_line)
 
-    def ask(self, request: bytes, deadline: Deadline) -> bytes:
-        """Send a request and give the answer, a line; it has no end where it is too long, or cut off."""
-        answers: queue.SimpleQueue[bytes] = queue.SimpleQueue()
-        self.beside(self._exchange, request, answers)
-        deadline.count(self._process.pid)
+
+def _line(pipe: RawIOBase) -> tuple[str, bytes]:
+    """Read a line, or as much as is too long for one; raises ``EOFError`` where it is cut off."""
+    line = bytearray()
+    while not line.endswith(b"\n"):
+        if len(line) > _MOST:
+            return "endless", b""
         try:
-            while True:
-                with contextlib.suppress(queue.Empty):
-                    return answers.get(timeout=max(0.001, deadline.slice()))
-                deadline.check()
-        finally:
-            deadline.uncount(self._process.pid)
-
-    def _exchange(self, request: bytes, answers: "queue.SimpleQueue[bytes]") -> None:
-        line = bytearray()
-        with contextlib.suppress(OSError, ValueError):
-            write(self._out, request)
-            while not line.endswith(b"\n") and len(line) <= _MOST:
-                part = self._in.read(1 << 20)
-                if not part:
-                    break
-                line += part
-        answers.put(bytes(line))
-
-    def end(self) -> int:
-        """End the process, and those it has started, whatever they are at; give what it ended with."""
-        if hasattr(os, "killpg"):
-            with contextlib.suppress(OSError):
-                os.killpg(self._process.pid, signal.SIGKILL)
-        return super().end()
-
-
-_idle: dict[tuple[str, ...], _Process] = {}  # by package, and where it was found
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_idle.clear)
+            part = pipe.read(1 << 20)
+        except (OSError, ValueError):  # closed
+            part = None
+        if not part:
+            raise EOFError
+        line += part
+    return "line", bytes(line)

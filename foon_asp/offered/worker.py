@@ -8,7 +8,7 @@ from importlib.metadata import EntryPoint
 from typing import Any
 
 from foon_asp.offered.offer import Offer
-from foon_asp.pipe import receive_packed, requests, write
+from foon_asp.processes.pipe import receive_packed, requests, write
 
 _LONGEST = 1000  # letters of a message
 

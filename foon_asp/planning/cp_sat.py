@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from io import FileIO
 from typing import Any
 
-from foon_asp.pipe import receive, requests, send
 from foon_asp.planning.schedule_task import ScheduleTask
+from foon_asp.processes.pipe import receive, requests, send
 from foon_asp.proof.timetable import ToolName
 
 _WORKERS = 1  # more find no schedule sooner for plans of some hundred steps, and not always the same one

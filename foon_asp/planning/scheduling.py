@@ -1,24 +1,21 @@
 """The shortest schedule of a task: asked of another process, and put in order."""
 
-import contextlib
-import os
-import queue
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
-from io import RawIOBase
 from itertools import accumulate, pairwise
 from math import ceil
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
-from foon_asp.pipe import receive, send
 from foon_asp.planning.schedule_task import ScheduleTask
 from foon_asp.planning.tool_order import first_schedule, tool_order
+from foon_asp.processes.pipe import packed
+from foon_asp.processes.worker import DiedError, Worker, give_back, take
 from foon_asp.proof.timetable import TimedStep, Tool, ToolName
-from foon_asp.python_process import PythonProcess
 
 _MISSING = "a schedule needs OR-Tools: pip install 'foon-asp[schedule]'"
+_KEY = "foon_asp.planning.cp_sat"
 _EXACT = 1e-6  # a bound arrives as a float: one so little above a whole number is that number
 
 
@@ -52,30 +49,29 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> Found:
         return Found(None, task.bound, True, order.lacking or _one_by_one(task)[1])
     deadline.doing = "scheduling"
     best = first_schedule(task, order.steps)
-    bound, ended = task.bound, ""
-    process = _idle.pop() if _idle and _idle[-1].alive else _CpSat()
+    bound = task.bound
+
+    def found(starts: list[int]) -> None:
+        nonlocal best
+        best = tuple(starts)
+
+    def bounded(value: float) -> None:
+        nonlocal bound
+        bound = max(bound, ceil(value - _EXACT))
+
+    worker = take(_KEY, lambda: Worker(_KEY, "schedules are found"))
     try:
-        for kind, value in process.ask(task, best, deadline):
-            if kind == "missing":
-                raise UserError(f"{_MISSING} ({value})")
-            if kind == "found":
-                best = tuple(value)
-            elif kind == "bound":
-                bound = max(bound, ceil(value - _EXACT))
-            else:
-                ended = value
-                _idle.append(process)
-                break
+        kind, ended = worker.ask(packed((task, best)), deadline, {"found": found, "bound": bounded})
     except LimitError:
-        ended = "limit"
-    except KeyboardInterrupt:
-        deadline.interrupt()
-        ended = "limit"
-    finally:
-        if process not in _idle:
-            process.end()
+        kind, ended = "end", "limit"
+    except DiedError as died:
+        raise BugError(f"CP-SAT {died}") from None
+    if kind == "missing":
+        worker.end()
+        raise UserError(f"{_MISSING} ({ended})")
+    give_back(_KEY, worker)
     if ended not in {"proved", "limit"}:
-        raise BugError(f"CP-SAT ends with {ended or 'its process'}")
+        raise BugError(f"CP-SAT ends with {ended}")
     if ended == "proved":
         bound = _length(task, best)
     return Found(best, bound, _length(task, best) == bound, {})
@@ -163,40 +159,3 @@ def _followers(
         in_order = sorted(turn, key=lambda use: spans[use])
         for first, second in pairwise(in_order):
             yield from ((before, later) for before in uses[first].steps for later in uses[second].steps)
-
-
-class _CpSat(PythonProcess):
-    """A process that looks for schedules, one after the other."""
-
-    def __init__(self) -> None:
-        super().__init__("foon_asp.planning.cp_sat", "schedules are found")
-        self._answers: queue.SimpleQueue[tuple[str, Any] | None] = queue.SimpleQueue()
-        self.beside(_hear, self._in, self._answers)
-
-    def ask(self, task: ScheduleTask, known: Sequence[int], deadline: Deadline) -> Iterator[tuple[str, Any]]:
-        """Hand it a task with a schedule, and give what it answers; raises :class:`LimitError` at a limit."""
-        deadline.count(self._process.pid)
-        try:
-            with contextlib.suppress(OSError):  # that it died is seen when the answer is waited for
-                send(self._out, (task, known))
-            while True:
-                with contextlib.suppress(queue.Empty):
-                    answer = self._answers.get(timeout=max(0.001, deadline.slice()))
-                    if answer is None:
-                        return
-                    yield answer
-                deadline.check()
-        finally:
-            deadline.uncount(self._process.pid)
-
-
-def _hear(said: RawIOBase, answers: "queue.SimpleQueue[tuple[str, Any] | None]") -> None:
-    with contextlib.suppress(EOFError):
-        while True:
-            answers.put(receive(said))
-    answers.put(None)
-
-
-_idle: list[_CpSat] = []  # one that did its work
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_idle.clear)

@@ -24,6 +24,7 @@ from foon_asp.cli.options import begin
 from foon_asp.deadline import Deadline, LimitError, none_lost, uninterrupted
 from foon_asp.grounding import worker_process
 from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.processes import worker
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.arguments import chosen_objectives
 from foon_asp.questions.caller import Caller, asked_by, caller
@@ -157,20 +158,6 @@ def test_rules_are_found_in_the_folder_of_the_moment(tmp_path: Path, monkeypatch
         monkeypatch.chdir(tmp_path / name)
         statuses.append(solve(hard_problem(3, 3, 2, 2), settings=Settings((Path("mine.lp"),))).status)
     assert statuses == [Status.OPTIMAL, Status.OPTIMAL, Status.INFEASIBLE, Status.OPTIMAL]
-
-
-def test_a_program_may_be_dropped_while_a_process_is_taken() -> None:
-    """Memory is collected at any moment, and what is dropped there gives its process back."""
-    program = worker_process.WorkerProgram([], "use(1).", [], 0, Deadline(None))
-
-    def drop() -> None:
-        with worker_process._lock:
-            program.close()
-
-    thread = threading.Thread(target=drop, daemon=True)
-    thread.start()
-    thread.join(20)
-    assert not thread.is_alive()
 
 
 def test_prices_of_a_large_network_are_not_looked_up_beyond_the_limit() -> None:
@@ -337,7 +324,7 @@ def test_an_interrupt_in_a_destructor_comes_again(capfd: pytest.CaptureFixture[s
 def test_a_search_without_memory_for_a_thread_is_stopped_by_the_memory_limit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(worker_process, "_idle", [])  # one that has had a thread has a stack to spare
+    monkeypatch.setattr(worker, "_idle", {})  # one that has had a thread has a stack to spare
     rules, deadline = "{use(1..3)}.", Deadline(memory=2**40)
     program = worker_process.WorkerProgram([], rules, [], 0, deadline)
     status = Path(f"/proc/{program._worker._process.pid}/status").read_text()

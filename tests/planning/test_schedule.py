@@ -3,7 +3,7 @@
 import importlib.util
 import random
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -15,12 +15,13 @@ from msgspec import structs
 
 import foon_asp
 from foon_asp import Duration, FunctionalUnit, ObjectNode, Problem, UserError, parse_node
-from foon_asp.deadline import Deadline
+from foon_asp.deadline import Deadline, LimitError
 from foon_asp.pictures.gantt import time_text
 from foon_asp.planning import scheduling
 from foon_asp.planning.schedule_task import ScheduleTask, Use, schedule_task
 from foon_asp.planning.scheduling import shortest, timed_steps
 from foon_asp.problem import ContainerRule, UsedUp
+from foon_asp.processes.worker import Worker
 from foon_asp.proof.replay import replay_for, replayable
 from foon_asp.proof.timetable import Means, TimedStep, Tool, timetable_fault
 from foon_asp.text.clip_times import median_clips
@@ -403,12 +404,15 @@ def test_schedules_of_random_plans_hold(seeds: range) -> None:
 def test_at_a_limit_the_best_is_given_with_its_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     task = random_task(4)
 
-    def answers(*_: object) -> Iterator[tuple[str, object]]:
-        yield "found", [3 * number for number in range(len(task.lengths))]
-        yield "bound", 5.0
-        raise KeyboardInterrupt
+    def ask(
+        _: object, __: bytes, deadline: Deadline, hear: dict[str, Callable[[object], None]]
+    ) -> tuple[str, object]:
+        hear["found"]([3 * number for number in range(len(task.lengths))])
+        hear["bound"](5.0)
+        deadline.interrupt()
+        raise LimitError(deadline)
 
-    monkeypatch.setattr(scheduling._CpSat, "ask", answers)
+    monkeypatch.setattr(Worker, "ask", ask)
     deadline = Deadline()
     found = shortest(task, deadline)
     assert deadline.stopped == "ctrl-C while scheduling"

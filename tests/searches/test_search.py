@@ -1,6 +1,7 @@
 """The searches: the published procedure by hand, iterative deepening against depths computed naively."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -168,7 +169,9 @@ def test_limits_end_in_unknown() -> None:
 @pytest.mark.parametrize("rule", RULES)
 def test_no_tree_that_executes_beats_the_optimum(rule: ContainerRule) -> None:
     for seed in range(200):
-        comparison = compare(random_problem(seed, rule), tuple(SEARCHES.values()), SearchSettings())
+        problem = random_problem(seed, rule)
+        problem = replace(problem, goals=problem.goals[:1])
+        comparison = compare(problem, tuple(SEARCHES.values()), SearchSettings())
         for result in comparison.searches:
             if result.executes:
                 assert not any(map(result.beats_the_optimum, result.measures))

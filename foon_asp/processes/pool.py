@@ -10,10 +10,9 @@ from itertools import islice
 from queue import Empty, SimpleQueue
 from typing import Any, Generic, NamedTuple, TypeVar
 
-from foon_asp.aside import Aside
 from foon_asp.errors import BugError
-from foon_asp.pipe import packed, receive, receive_packed, requests, send, write
-from foon_asp.python_process import PythonProcess
+from foon_asp.processes.pipe import packed, receive, receive_packed, requests, send, write
+from foon_asp.processes.python_process import PythonProcess
 
 Task = TypeVar("Task")
 Answer = TypeVar("Answer")
@@ -117,11 +116,11 @@ class _Worker(PythonProcess, Generic[Task]):
     """A process that does tasks, and the one that it is at."""
 
     def __init__(self, first: bytes, task: Task, number: int, heard: _Heard) -> None:
-        super().__init__("foon_asp.pool", "work is shared")
+        super().__init__("foon_asp.processes.pool", "work is shared")
         self.task = task
         self.is_late = False
         self.end_by: float | None = None
-        self._first = Aside(_write, self._out, first + packed(task))  # which it reads when it has started
+        self.beside(_write, self._out, first + packed(task))  # which it reads when it has started
         self.beside(_listen, self._in, number, heard)
 
     def begins(self, seconds: float | None) -> None:

@@ -3,6 +3,7 @@
 import atexit
 import contextlib
 import os
+import signal
 import subprocess
 import sys
 import weakref
@@ -16,7 +17,7 @@ from foon_asp.deadline import uninterrupted
 from foon_asp.errors import UserError
 
 _PATIENCE = 5.0  # seconds until what follows from the end of a process has happened
-_PACKAGES = str(Path(__file__).resolve().parents[1])
+_PACKAGES = str(Path(__file__).resolve().parents[2])
 
 # A process group of its own: ctrl-C at a terminal is for this process, which ends the other.
 _APART: dict[str, Any] = {"start_new_session": True}
@@ -51,7 +52,7 @@ class PythonProcess:
         )
         self._out = cast("RawIOBase", self._process.stdin)
         self._in = cast("RawIOBase", self._process.stdout)
-        self._beside: Aside | None = None
+        self._beside: list[Aside] = []
         _all.add(self)
 
     @property
@@ -62,15 +63,19 @@ class PythonProcess:
 
     def beside(self, target: Callable[..., None], *arguments: object) -> None:
         """Let a thread speak with the process, or listen to it, until it ends."""
-        self._beside = Aside(target, *arguments)
+        self._beside = [each for each in self._beside if not each.ended(0)]
+        self._beside.append(Aside(target, *arguments))
 
     def end(self) -> int:
-        """End it, whatever it is at; give what it ended with."""
+        """End it and the processes it has started, whatever they are at; give what it ended with."""
         with uninterrupted():
+            if hasattr(os, "killpg"):
+                with contextlib.suppress(OSError):
+                    os.killpg(self._process.pid, signal.SIGKILL)
             self._process.kill()
             code = self._process.wait()
-        if self._beside is not None:
-            self._beside.ended(_PATIENCE)  # before another file gets the number that it reads from
+        for thread in self._beside:
+            thread.ended(_PATIENCE)  # before another file gets the number that it reads from
         self._close()
         return code
 

@@ -14,6 +14,9 @@ from foon_asp.aside import Aside
 
 T = TypeVar("T")
 
+OUT_OF_MEMORY = 77
+"""The exit code of a process that has no more memory."""
+
 _LENGTH = struct.Struct("!Q")
 
 
@@ -65,6 +68,8 @@ def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], Fil
                 asked.put(read(incoming))
             except EOFError:  # nobody asks any more
                 os._exit(0)
+            except MemoryError:
+                os._exit(OUT_OF_MEMORY)
 
     Aside(listen)
     return asked, answers

@@ -1,0 +1,1 @@
+"""Other processes of this program, which end with it at the latest."""
