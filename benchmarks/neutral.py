@@ -32,9 +32,13 @@ def write_task(task: StripsTask, folder: Path) -> None:
     names = task.facts
     with (folder / "network.jsonl").open("w", encoding="utf-8") as file:
         for action in task.actions:
-            if action.gives:
-                needs, gives = ([names[o] for o in side] for side in (action.needs, action.gives))
-                file.write(write_neutral_unit(action.name, needs, gives, decimal_text(action.cost)))
+            if action.add_effects:
+                preconditions, add_effects = (
+                    [names[o] for o in side] for side in (action.preconditions, action.add_effects)
+                )
+                file.write(
+                    write_neutral_unit(action.name, preconditions, add_effects, decimal_text(action.cost))
+                )
     for name, facts in (("kitchen.json", sorted(task.start)), ("goal_nodes.json", task.goals)):
         listed = [{"label": names[o]} for o in facts]
         (folder / name).write_text(json.dumps(listed, indent=0) + "\n", encoding="utf-8")

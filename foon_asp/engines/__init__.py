@@ -1,4 +1,4 @@
-"""Second engines: the same questions put to others than our solver, and what to make of it."""
+"""Second engines: other solvers that check the answers of foon-asp."""
 
 from foon_asp.engines.agreement import ENGINES, Check, agree, cross_check, find_engines
 from foon_asp.engines.engine import Asked, DisagreementError, Engine, EngineAnswer, NotCheckedError, Solve

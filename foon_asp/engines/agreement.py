@@ -1,4 +1,4 @@
-"""Holding the answers of all engines against each other: one question, one answer."""
+"""Cross-check of an answer by all second engines, and the comparison of their trees and costs with it."""
 
 import math
 import time
@@ -22,10 +22,11 @@ from foon_asp.engines.offered_engine import offered_engine
 from foon_asp.offered.offer import find_offers, offers_by_name
 from foon_asp.problem import Costs, Objective, levels, multiplies
 
-# Engines compute logarithms of rates in floats or in millionths: closer than this for each unit is equal.
-_CLOSE = 2e-6
+# Engines compute logarithms of rates in floats or in millionths: closer than this, relative to costs and for
+# each unit, is equal. Wider, it would hide wrong answers; narrower, it would report rounding as a bug.
+_TOLERANCE_PER_UNIT = 2e-6
 PATIENCE = 60.0  # seconds for each engine, where no time limit says otherwise
-_LATE = 0.1  # seconds, after which what an engine did not end by itself is ended
+_GRACE_SECONDS = 0.1  # after its time, before an engine that does not stop by itself is stopped
 _EXTRA = "it is not installed (pip install 'foon-asp[cross-check]')"
 
 
@@ -34,25 +35,25 @@ ENGINES: Final = (
     Engine(highs.NAME, lambda: True, highs.solve_with_highs),
     Engine(fast_downward.NAME, fast_downward.installed, fast_downward.solve_with_fast_downward),
 )
-"""The built-in engines that are asked besides bare clingo."""
+"""The built-in engines besides bare clingo."""
 
 
 def find_engines() -> tuple[Engine, ...]:
-    """Return all engines that are asked besides bare clingo, the built-in ones first.
+    """Return all engines besides bare clingo, the built-in ones first, then those of installed packages.
 
-    Raises :class:`UserError` where a package offers one by a name that is taken.
+    Raises :class:`UserError` where a package offers an engine by a name that another one has.
     """
-    taken = ["foon-asp", bare_clingo.NAME, *(engine.name for engine in ENGINES)]
-    offers = offers_by_name(find_offers(ENTRY_POINTS), taken)
+    reserved = ["foon-asp", bare_clingo.NAME, *(engine.name for engine in ENGINES)]
+    offers = offers_by_name(find_offers(ENTRY_POINTS), reserved)
     return (*ENGINES, *map(offered_engine, offers.values()))
 
 
 class Check(NamedTuple):
-    """What came of asking an engine: it agrees, or has not checked the answer; to disagree is an exception.
+    """The verdict of an engine: it agrees, or has not checked the answer (to disagree is an exception).
 
-    ``objectives`` are those by which it finds our tree best, in the order of the list; ``reason`` says why it
-    has checked nothing, and is ``None`` where it agrees. An engine of another ``package`` may also disagree
-    and be wrong: then ``refuted`` says in what.
+    ``objectives`` are those by which it finds our tree optimal, the most important first. ``reason`` says why
+    it has checked nothing, and is ``None`` where it agrees. ``seconds`` is the time that it took. ``refuted``
+    is the claim of an engine of another ``package`` that disagrees and is wrong, and otherwise ``None``.
     """
 
     engine: str
@@ -64,22 +65,23 @@ class Check(NamedTuple):
 
 
 def cross_check(
-    asked: Asked, seconds: float | None = None, engines: tuple[Engine, ...] = ENGINES
+    claim: Asked, seconds: float | None = None, engines: tuple[Engine, ...] = ENGINES
 ) -> list[Check]:
-    """Ask every engine about an answer, each for at most ``seconds``.
+    """Have every engine check an answer, each for at most ``seconds``; return a verdict of each.
 
-    Without ``seconds``, each has its part of what is left to the question, or a minute.
-    Bare clingo is asked under whatever rules there are; ``engines`` where all rules are ours, or rule units
-    out one by one. From ctrl-C on nothing else is checked. Raises :class:`DisagreementError` at the first
-    that says otherwise. An engine of another package that does so is wrong, which our tree shows, or its own
-    that is none; only where its tree shows that we are wrong is it raised, too.
+    Without ``seconds``, the remaining time of the question is divided among the engines; without a time
+    limit, each has a minute. Bare clingo checks answers under any rules, ``engines`` only where all rules
+    are ours or forbid single units. After ctrl-C nothing else is checked.
+
+    Raises :class:`DisagreementError` for the first engine whose answer differs; for one of another package
+    only where its tree is valid and better than ours, since otherwise that engine is wrong.
     """
     if seconds is None:
-        left = asked.settings.begun.left
-        seconds = PATIENCE if left is None else left / (1 + len(engines))  # bare clingo is one more
+        remaining = claim.settings.begun.left
+        seconds = PATIENCE if remaining is None else remaining / (1 + len(engines))  # one more: bare clingo
     checks: list[Check] = []
     interrupted = False
-    others = () if asked.outcome.problem.items is not None else engines  # they know no items that are used up
+    others = () if claim.outcome.problem.items is not None else engines  # they cannot model consumption
     for engine in (None, *others):
         name, package = (bare_clingo.NAME, None) if engine is None else (engine.name, engine.package)
         began = time.monotonic()
@@ -89,10 +91,10 @@ def cross_check(
         try:
             if interrupted:
                 raise NotCheckedError("interrupted")
-            if asked.outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
+            if claim.outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
                 raise NotCheckedError("nothing is proved, so there is nothing to check")
-            with Deadline(seconds + _LATE).watched("asking another engine"):
-                objectives = _ask_clingo(asked, seconds) if engine is None else _ask(engine, asked, seconds)
+            with Deadline(seconds + _GRACE_SECONDS).watched("asking another engine"):
+                objectives = _ask_clingo(claim, seconds) if engine is None else _ask(engine, claim, seconds)
         except NotCheckedError as error:
             reason = str(error)
         except LimitError:
@@ -107,35 +109,41 @@ def cross_check(
     return checks
 
 
-def _ask_clingo(asked: Asked, seconds: float) -> tuple[Objective, ...]:
-    if asked.outcome.problem.items is not None:
-        return bare_plans.check_plan_with_bare_clingo(asked, seconds)
-    bare_clingo.check_with_bare_clingo(asked, seconds)
-    return () if asked.outcome.units is None else levels(asked.outcome.objectives)
+def _ask_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
+    """Return the objectives by which bare clingo agrees."""
+    if claim.outcome.problem.items is not None:
+        return bare_plans.check_plan_with_bare_clingo(claim, seconds)
+    bare_clingo.check_with_bare_clingo(claim, seconds)
+    return () if claim.outcome.units is None else levels(claim.outcome.objectives)
 
 
-def _ask(engine: Engine, asked: Asked, seconds: float) -> tuple[Objective, ...]:
-    """Ask another engine than clingo, which knows no rules but units that are ruled out."""
-    problem, covered = asked.outcome.problem, coverage(asked.settings)
-    unknown = [*covered.beyond(), *(name.partition(" ")[0] for name in covered.not_covered)]
-    if unknown := [*unknown, *(file.name for file in asked.soft)]:
-        raise NotCheckedError(f"it knows no rules such as {', '.join(unknown)}")
+def _ask(engine: Engine, claim: Asked, seconds: float) -> tuple[Objective, ...]:
+    """Return the objectives by which an engine other than clingo agrees, under rules that forbid units.
+
+    Raises :class:`NotCheckedError` under other rules, and :class:`DisagreementError` as :func:`agree`.
+    """
+    problem, covered = claim.outcome.problem, coverage(claim.settings)
+    unsupported = [*covered.beyond(), *(name.partition(" ")[0] for name in covered.not_covered)]
+    if unsupported := [*unsupported, *(file.name for file in claim.soft)]:
+        raise NotCheckedError(f"it knows no rules such as {', '.join(unsupported)}")
     if not engine.installed():
         raise NotCheckedError(_EXTRA)
     forbidden = covered.forbids(problem)
-    answer = engine.solve(problem, levels(asked.outcome.objectives), forbidden, seconds)
+    answer = engine.solve(problem, levels(claim.outcome.objectives), forbidden, seconds)
     if not forbidden.isdisjoint(answer.units or ()):
         raise DisagreementError(f"the tree of {answer.engine} has a unit that the rules forbid", answer)
-    return agree(asked.outcome, answer)
+    return agree(claim.outcome, answer)
 
 
 def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
-    """Return the objectives by which an engine finds our tree best, too.
+    """Return the objectives by which an engine finds our tree optimal, the most important first.
 
-    Costs are computed anew from the units, as rational numbers. Where costs are fractions or rates, an engine
-    that works in floats may take a tree for the best that is so by less than it can tell: then nothing is
-    said of that objective, nor of those after it. Raises :class:`DisagreementError` where both answers cannot
-    be right, and :class:`NotCheckedError` where nothing follows from the other.
+    Costs are computed anew from the units, as rational numbers. An engine that works in floats may call a
+    tree optimal whose cost differs from ours by less than its precision: then neither this objective nor any
+    less important one counts as checked.
+
+    Raises :class:`DisagreementError` where both answers cannot be right, and :class:`NotCheckedError` where
+    the engine's answer implies nothing about ours.
     """
     if not answer.finished:
         raise NotCheckedError("it found no answer in time")
@@ -155,20 +163,20 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
             difference = differing(str(objective), ours, theirs, answer, multiplies(objective))
             if difference.ours or not _is_close(objective, outcome.costs, costs):
                 raise difference
-            break  # what it then finds for the objectives after this one is about other trees
+            break  # it optimized the less important objectives over other trees
         agreed.append(objective)
     if not agreed:
         raise NotCheckedError("its floats cannot tell our tree from a slightly worse one")
     return tuple(agreed)
 
 
-def _is_close(objective: Objective, one: Costs, other: Costs) -> bool:
-    """Whether floats may take a tree for as good as another one."""
-    first, second = Fraction(one.measure(objective)), Fraction(other.measure(objective))
-    close = _CLOSE * (1 + one.units + other.units)
+def _is_close(objective: Objective, ours: Costs, theirs: Costs) -> bool:
+    """Return whether an engine that computes in floats may not distinguish the costs of two trees."""
+    our_cost, their_cost = Fraction(ours.measure(objective)), Fraction(theirs.measure(objective))
+    tolerance = _TOLERANCE_PER_UNIT * (1 + ours.units + theirs.units)
     if not multiplies(objective):
-        return not objective.row.whole and abs(first - second) <= close * (1 + abs(first))
-    if not first or not second:
+        return not objective.row.whole and abs(our_cost - their_cost) <= tolerance * (1 + abs(our_cost))
+    if not our_cost or not their_cost:
         return False
-    ratio = first / second
-    return abs(math.log(ratio.numerator) - math.log(ratio.denominator)) <= close
+    ratio = our_cost / their_cost
+    return abs(math.log(ratio.numerator) - math.log(ratio.denominator)) <= tolerance

@@ -1,14 +1,14 @@
-"""The same question put to stock clingo: a process of its own, on the text that ``foon-asp facts`` prints.
+"""Check of an answer by stock clingo, in a process of its own, on the text that ``foon-asp facts`` prints.
 
-Whatever the constraints, soft files, constants and encodings are, it reads them as they stand. Nothing is
-reduced before it, kept from a question before it, or known to it of our answer while it looks for its own; it
-searches in another way than ours, too. What it says is compared with our answer here, in exact numbers: the
-costs it adds up against those of its units, its tree against the simulation, our tree against its rules.
+clingo reads constraints, soft files, constants and encodings unchanged. The problem is not reduced, nothing
+is reused from earlier questions, and clingo does not know our answer while it searches, with other options
+than ours. Its answer is compared with ours in exact numbers: the costs that it adds up with those of its
+units, its tree with the simulation, our tree with its rules.
 
-By ``success`` and others that are fractions clingo goes by rounded weights, which are no answer yet. Every
-tree that is at least as good as ours has a rounded weight within a bound that is worked out here anew; see
-docs/dev/certificates.md. clingo gives the trees within it: rates are multiplied, or costs added up, as
-fractions.
+Objectives with fractions, such as ``success``, have rounded weights in the facts, so that clingo's optimum
+need not be the true one. Every tree at least as good as ours has a rounded weight below a bound that is
+computed here anew (docs/dev/certificates.md). clingo enumerates the trees below it, and their costs are
+compared as fractions.
 """
 
 import contextlib
@@ -38,27 +38,27 @@ from foon_asp.engines.engine import (
 from foon_asp.problem import Costs, Objective, levels, multiplies
 
 NAME: Final = "clingo"
-OPTIONS: Final = ("--opt-strategy=usc,pmres,disjoint,stratify",)  # ended most often of those tried
-MOST_KINDS = 10_000  # of trees within the bound
-_MEMORY: Final = 4 * 2**30  # bytes, where no memory limit says otherwise
-_ENDED: Final = {0, 10, 20, 30}  # the program and the Python module end otherwise where there was no fault
+OPTIONS: Final = ("--opt-strategy=usc,pmres,disjoint,stratify",)  # of all strategies, proved most optima
+MAX_KINDS = 10_000  # of trees within the bound: more prove more answers, and take longer to enumerate
+_MAX_MEMORY: Final = 4 * 2**30  # bytes, where no memory limit is smaller
+_EXIT_CODES: Final = {0, 10, 20, 30}  # without a fault: of the Python module, and of the program
 _OUT_OF_MEMORY: Final = (b"bad_alloc", b"MemoryError", b"cannot allocate memory")
 _STRING_OR_WEIGHT = re.compile(r'"(?:\\.|[^"\\])*"|(?<![\w\'])(?:risk\(|cost\((\w+),)(\d+),(\d+)\)')
 _USED = re.compile(r"(?:use|times)\((\d+)(?:,(\d+))?\)")
 
 
-def check_with_bare_clingo(asked: Asked, seconds: float) -> None:
-    """Hold an answer against clingo's own.
+def check_with_bare_clingo(claim: Asked, seconds: float) -> None:
+    """Compare an answer with clingo's own.
 
     Raises :class:`DisagreementError` where both cannot be right, and :class:`NotCheckedError` where clingo
-    did not finish within ``seconds``.
+    did not finish within ``seconds``, or its answer implies nothing about ours.
     """
-    outcome = asked.outcome
-    program = bare_program(outcome.problem, outcome.objectives, asked.settings, asked.soft)
-    _Check(asked, program, Clingo(program, seconds, asked.settings.begun.memory)).check()
+    outcome = claim.outcome
+    program = bare_program(outcome.problem, outcome.objectives, claim.settings, claim.soft)
+    _Check(claim, program, Clingo(program, seconds, claim.settings.begun.memory)).check()
 
 
-class Found(NamedTuple):
+class ClingoAnswer(NamedTuple):
     """An answer of clingo: how often each unit is used, by number, and the costs as clingo adds them up."""
 
     times: dict[int, int]
@@ -66,51 +66,54 @@ class Found(NamedTuple):
 
 
 class Clingo:
-    """Runs clingo, time after time until the end."""
+    """Runs of clingo on one program, which together take at most ``seconds``, and ``memory`` bytes each."""
 
     def __init__(self, program: BareProgram, seconds: float, memory: int | None) -> None:
         self._program, self._seconds = program, seconds
         self._end = time.monotonic() + seconds
-        self._memory = _MEMORY if memory is None else min(memory, _MEMORY)
+        self._memory = _MAX_MEMORY if memory is None else min(memory, _MAX_MEMORY)
 
-    def best(self, more: str = "", with_second_opinion: bool = True) -> Found | None:
-        """Return an optimal answer, ``None`` where there is none; ``more`` text is read beside the facts.
+    def best(self, extra_facts: str = "", with_second_opinion: bool = True) -> ClingoAnswer | None:
+        """Return an optimal answer, or ``None`` where no answer exists.
 
-        What reads that text is the encoding of the second opinion, if it is not the question itself.
+        ``extra_facts`` are read by the encoding of the second opinion, or without it by the program itself.
         """
         options = ("--opt-mode=opt", "--models=0", "--quiet=1")
-        result, _, answers = self._run(more, options, bool(more) and with_second_opinion)
+        result, _, answers = self._run(extra_facts, options, bool(extra_facts) and with_second_opinion)
         if result == "UNSATISFIABLE":
             return None
         if result != "OPTIMUM FOUND" or not answers:
             raise NotCheckedError(f"clingo ended with {result!r}")
         return answers[-1]
 
-    def all_kinds(self, more: str, bounds: Sequence[int]) -> list[Found]:
-        """Return an answer of every kind that costs at most ``bounds``."""
+    def all_kinds(self, extra_facts: str, bounds: Sequence[int]) -> list[ClingoAnswer]:
+        """Return one answer of every kind (numbers of equal units) whose costs are at most ``bounds``."""
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
-        options = (mode, f"--models={MOST_KINDS + 1}", "--project=project")
-        result, is_all, answers = self._run(more, options, True)
-        if len(answers) > MOST_KINDS:
+        options = (mode, f"--models={MAX_KINDS + 1}", "--project=project")
+        result, exhausted, answers = self._run(extra_facts, options, True)
+        if len(answers) > MAX_KINDS:
             raise NotCheckedError(
-                f"more than {MOST_KINDS} kinds of trees are too close to the best by rounded costs"
+                f"more than {MAX_KINDS} kinds of trees are too close to the best by rounded costs"
             )
-        if not is_all:
+        if not exhausted:
             raise NotCheckedError(f"clingo ended with {result!r}")
         return answers
 
     def _run(
-        self, more: str, options: Iterable[str], with_second_opinion: bool
-    ) -> tuple[str, bool, list[Found]]:
-        """Return the result, whether there are no more answers, and the answers."""
-        program, late = self._program, f"clingo did not finish within {self._seconds:g} s"
-        added = (question_encoding("second_opinion.lp"),) if with_second_opinion else ()
-        # absolute, since a name may begin with -; not resolved, since files include others beside them
-        files = [str(file.absolute()) for file in (*program.files, *added)]
+        self, extra_facts: str, options: Iterable[str], with_second_opinion: bool
+    ) -> tuple[str, bool, list[ClingoAnswer]]:
+        """Return clingo's result, whether the search was exhausted, and the answers.
+
+        Raises :class:`NotCheckedError` at the end of the time or the memory, and where clingo fails.
+        """
+        program, timeout_message = self._program, f"clingo did not finish within {self._seconds:g} s"
+        second_opinion = (question_encoding("second_opinion.lp"),) if with_second_opinion else ()
+        # absolute, since a name may begin with -; not resolved, since files include others in their folder
+        files = [str(file.absolute()) for file in (*program.files, *second_opinion)]
         command = [sys.executable, "-P", "-m", "clingo", *files, "-", *program.constants, "--outf=2"]
-        left = self._end - time.monotonic()
-        if left <= 0:
-            raise NotCheckedError(late)
+        remaining = self._end - time.monotonic()
+        if remaining <= 0:
+            raise NotCheckedError(timeout_message)
         with subprocess.Popen(
             [*command, *OPTIONS, *options],
             stdin=subprocess.PIPE,
@@ -119,41 +122,46 @@ class Clingo:
             start_new_session=True,  # ctrl-C is for us, who then stop the process
         ) as process:
             try:
-                _limit(process.pid, left, self._memory)
-                text = (program.text + more).encode("utf-8", "surrogatepass")
-                out, err = process.communicate(text, left)
+                _limit(process.pid, remaining, self._memory)
+                text = (program.text + extra_facts).encode("utf-8", "surrogatepass")
+                out, err = process.communicate(text, remaining)
             except subprocess.TimeoutExpired:
-                raise NotCheckedError(late) from None
+                raise NotCheckedError(timeout_message) from None
             finally:
                 process.kill()
-        found: dict[str, Any] = {}
+        output: dict[str, Any] = {}
         with contextlib.suppress(ValueError):
-            found = json.loads(out.decode("utf-8", "replace"), strict=False)
+            output = json.loads(out.decode("utf-8", "replace"), strict=False)
         if process.returncode == 33 or any(words in err for words in _OUT_OF_MEMORY):
             raise NotCheckedError("clingo ran out of memory")
-        if process.returncode not in _ENDED or found.get("Result", "UNKNOWN") == "UNKNOWN":
+        if process.returncode not in _EXIT_CODES or output.get("Result", "UNKNOWN") == "UNKNOWN":
             lines = err.decode("utf-8", "replace").strip().split("\n")
             error = next((line for line in lines if ": error: " in line), lines[-1])
             raise NotCheckedError(f"clingo ended with the code {process.returncode}: {error}")
-        witnesses = [each for call in found["Call"] for each in call.get("Witnesses", ()) if "Value" in each]
-        return found["Result"], found["Models"]["More"] == "no", list(map(_found, witnesses))
+        witnesses = [
+            witness for call in output["Call"] for witness in call.get("Witnesses", ()) if "Value" in witness
+        ]
+        return output["Result"], output["Models"]["More"] == "no", list(map(_read_witness, witnesses))
 
 
-def _found(witness: dict[str, Any]) -> Found:
-    """Read an answer; what else the user's files show is passed over."""
+def _read_witness(witness: dict[str, Any]) -> ClingoAnswer:
+    """Return the answer in a witness of clingo's JSON; other atoms that a user's files show are ignored."""
     times: dict[int, int] = {}
     for used in filter(None, map(_USED.fullmatch, witness["Value"])):
         if used[2] or int(used[1]) not in times:  # plans show times(U,N) and use(U)
             times[int(used[1])] = int(used[2] or 1)
-    return Found(times, tuple(witness.get("Costs", ())))
+    return ClingoAnswer(times, tuple(witness.get("Costs", ())))
 
 
 class _Check:
-    """One answer, compared with clingo's."""
+    """The comparison of our answer with clingo's.
 
-    def __init__(self, asked: Asked, program: BareProgram, clingo: Clingo) -> None:
-        self.asked, self.clingo = asked, clingo
-        self.outcome, self.problem = asked.outcome, asked.outcome.problem
+    ``weights`` are the rounded costs in the facts: for each objective with fractions, by number of the unit.
+    """
+
+    def __init__(self, claim: Asked, program: BareProgram, clingo: Clingo) -> None:
+        self.claim, self.clingo = claim, clingo
+        self.outcome, self.problem = claim.outcome, claim.outcome.problem
         self.levels = levels(self.outcome.objectives)
         self.weights: dict[Objective, dict[int, int]] = {
             objective: {} for objective in self.levels if not objective.row.whole
@@ -164,62 +172,65 @@ class _Check:
                 by_term[name].setdefault(int(number), int(weight))
 
     def check(self) -> None:
+        """Compare the answers; raise :class:`DisagreementError` or :class:`NotCheckedError`."""
         theirs = self.clingo.best()
         costs = self.outcome.costs
         if theirs is None or costs is None:
             if theirs is not None or costs is not None:
-                ours, other = ("a", "no") if theirs is None else ("no", "a")
+                we_say, clingo_says = ("a", "no") if theirs is None else ("no", "a")
                 raise self._disagreement(
-                    f"we say {ours} tree exists, clingo says {other} tree exists", theirs
+                    f"we say {we_say} tree exists, clingo says {clingo_says} tree exists", theirs
                 )
             return
-        given = self._given(theirs)
+        ours = self._our_answer(theirs)
         rounded = [objective for objective in self.weights if not self._is_to_scale(objective)]
-        if not (self._is_usual(theirs) and self._is_usual(given)):
-            self._compare_as_added_up(given, theirs)
+        if not (self._has_standard_costs(theirs) and self._has_standard_costs(ours)):
+            self._compare_as_added_up(ours, theirs)
         elif len(rounded) > 1:
             raise NotCheckedError(f"{' and '.join(rounded)} are both rounded in the facts")
         elif rounded:
-            self._compare_exactly(theirs, given, costs, rounded[0])
+            self._compare_exactly(theirs, ours, costs, rounded[0])
         else:
             self._compare(theirs, self.levels)
 
-    def _given(self, theirs: Found) -> Found:
-        """Return our tree with the costs that clingo adds up; raise where it is none under the rules.
+    def _our_answer(self, theirs: ClingoAnswer) -> ClingoAnswer:
+        """Return our tree with the costs that clingo adds up.
 
-        ``theirs`` is shown beside it then.
+        Raises :class:`DisagreementError`, which shows ``theirs``, where our tree breaks clingo's rules or its
+        costs are wrong.
         """
         units = check_tree(self.problem, EngineAnswer("foon-asp", self.levels, self.outcome.units, True))
         if self.problem.costs(units) != self.outcome.costs:
             raise self._disagreement("the costs of our tree are not those of its units", theirs)
-        given = self.clingo.best(write_given(list(map(self.problem.network.unit_number, units))))
-        if given is None:
+        ours = self.clingo.best(write_given(list(map(self.problem.network.unit_number, units))))
+        if ours is None:
             raise self._disagreement("clingo says that our tree breaks the rules", theirs)
-        penalty = given.costs[0] if self.asked.soft else None
-        if penalty != self.asked.penalty:
+        penalty = ours.costs[0] if self.claim.soft else None
+        if penalty != self.claim.penalty:
             raise self._disagreement(
-                f"we say our tree has the penalty {self.asked.penalty}, clingo says {penalty}", given
+                f"we say our tree has the penalty {self.claim.penalty}, clingo says {penalty}", ours
             )
-        return given
+        return ours
 
-    def _is_usual(self, found: Found) -> bool:
-        """Whether the costs that clingo adds up are those of the units, which replaced encodings may change.
+    def _has_standard_costs(self, answer: ClingoAnswer) -> bool:
+        """Return whether clingo adds up the costs of the units; replaced encodings may count others.
 
-        The penalty is for clingo alone to know.
+        The penalty of soft constraints is not compared.
         """
-        costs = self.problem.costs(self._executable(found))
+        costs = self.problem.costs(self._executable(answer))
         figures = [
-            sum(self.weights[objective].get(number, 0) for number in found.times)
+            sum(self.weights[objective].get(number, 0) for number in answer.times)
             if objective in self.weights
             else costs.measure(objective)
             for objective in self.levels
         ]
-        added_up = list(found.costs[bool(self.asked.soft) :])
-        if added_up != figures and self.asked.settings.replaced is None:
-            raise self._disagreement(f"clingo adds up the costs {added_up}, its units cost {figures}", found)
+        added_up = list(answer.costs[bool(self.claim.soft) :])
+        if added_up != figures and self.claim.settings.replaced is None:
+            raise self._disagreement(f"clingo adds up the costs {added_up}, its units cost {figures}", answer)
         return added_up == figures
 
-    def _compare_as_added_up(self, ours: Found, theirs: Found) -> None:
+    def _compare_as_added_up(self, ours: ClingoAnswer, theirs: ClingoAnswer) -> None:
+        """Raise where the costs of two trees differ under replaced encodings, as clingo adds them up."""
         if self.weights:
             names = " and ".join(self.weights)
             raise NotCheckedError(f"the replaced encodings do not measure {names} as it is measured here")
@@ -230,20 +241,20 @@ class _Check:
                 theirs,
             )
 
-    def _compare(self, found: Found, objectives: Iterable[Objective]) -> None:
-        """Hold the penalty and some objectives against ours; raise where one is not the same."""
-        answer = self._answer(found)
-        if self.asked.soft and self.asked.penalty != found.costs[0]:
-            raise differing("penalty", self.asked.penalty or 0, found.costs[0], answer)
+    def _compare(self, answer: ClingoAnswer, objectives: Iterable[Objective]) -> None:
+        """Raise :class:`DisagreementError` where the penalty or an objective differs from our tree's."""
+        compared = self._answer(answer)
+        if self.claim.soft and self.claim.penalty != answer.costs[0]:
+            raise differing("penalty", self.claim.penalty or 0, answer.costs[0], compared)
         assert self.outcome.costs is not None
-        costs = self.problem.costs(answer.units or ())
-        for by in objectives:
-            ours, theirs = self.outcome.costs.measure(by), costs.measure(by)
+        costs = self.problem.costs(compared.units or ())
+        for objective in objectives:
+            ours, theirs = self.outcome.costs.measure(objective), costs.measure(objective)
             if ours != theirs:
-                raise differing(str(by), ours, theirs, answer, multiplies(by))
+                raise differing(str(objective), ours, theirs, compared, multiplies(objective))
 
     def _is_to_scale(self, objective: Objective) -> bool:
-        """Whether weights compare as what units cost: none is rounded."""
+        """Return whether the weights are the costs of units times one factor, and none is rounded."""
         weights = self.weights[objective]
         pairs = set(zip(self._figures(weights, objective), weights.values(), strict=True))
         if multiplies(objective):
@@ -252,63 +263,69 @@ class _Check:
         return len(ratios) <= 1 and all(figure or not weight for figure, weight in pairs)
 
     def _figures(self, numbers: Iterable[int], objective: Objective) -> list[Fraction]:
-        """Return what each of the units costs by an objective."""
+        """Return the cost of each unit by an objective, or its rate."""
         return [Fraction(self.problem.figure(objective, unit)) for unit in map(self._unit, numbers)]
 
-    def _compare_exactly(self, theirs: Found, given: Found, costs: Costs, by: Objective) -> None:
-        """Compare an objective exactly, with what counts more before it and what counts less after it."""
-        place = self.levels.index(by)
-        before, after, weights = self.levels[:place], self.levels[place:], self.weights[by]
+    def _compare_exactly(
+        self, theirs: ClingoAnswer, ours: ClingoAnswer, costs: Costs, rounded: Objective
+    ) -> None:
+        """Compare lexicographically where one objective is ``rounded`` in the facts.
+
+        All kinds of trees within the bound on its weight are enumerated, and measured in fractions; among the
+        kinds as good as our tree, clingo minimizes the less important objectives.
+        """
+        index = self.levels.index(rounded)
+        before, after, weights = self.levels[:index], self.levels[index:], self.weights[rounded]
         self._compare(theirs, before)
         if self._key(theirs, self.levels) < costs.key(self.levels):
-            self._compare(theirs, self.levels)  # best by weights, and better than ours in truth
-        own = self._figures(given.times, by)
+            self._compare(theirs, self.levels)  # best by weights, and better than ours in exact numbers
+        our_figures = self._figures(ours.times, rounded)
         classes: dict[Fraction, list[int]] = {}
-        for number, figure in zip(weights, self._figures(weights, by), strict=True):
+        for number, figure in zip(weights, self._figures(weights, rounded), strict=True):
             classes.setdefault(figure, []).append(number)
         pairs = {(figure, weights[number]) for figure, numbers in classes.items() for number in numbers}
-        most = greatest_weight(pairs, own, multiplies(by))
-        classes.pop(Fraction(int(multiplies(by))), None)  # of which as many as there are change nothing
+        max_weight = greatest_weight(pairs, our_figures, multiplies(rounded))
+        classes.pop(Fraction(int(multiplies(rounded))), None)  # units without a cost do not change the sum
         lightest = [min(map(weights.__getitem__, numbers)) for numbers in classes.values()]
-        alike = [
-            min(len(numbers), most // light) if light else len(numbers)
+        max_counts = [
+            min(len(numbers), max_weight // light) if light else len(numbers)
             for numbers, light in zip(classes.values(), lightest, strict=True)
         ]
-        same = write_same_rates(list(classes.values()))
-        bounds = [*given.costs[: place + bool(self.asked.soft)], most]
+        class_facts = write_same_rates(list(classes.values()))
+        bounds = [*ours.costs[: index + bool(self.claim.soft)], max_weight]
         equal: list[list[int]] = []
-        for found in self.clingo.all_kinds(same + write_most_alike(alike), bounds):
-            if not self._is_usual(found):
+        for answer in self.clingo.all_kinds(class_facts + write_most_alike(max_counts), bounds):
+            if not self._has_standard_costs(answer):
                 raise NotCheckedError("the replaced encodings measure some trees in another way")
-            self._compare(found, before)
-            if self._key(found, (by,)) < costs.key([by]):
-                self._compare(found, [by])
-            elif self._key(found, (by,)) == costs.key([by]):
-                equal.append(_counts(classes, self._figures(found.times, by)))
-        if _counts(classes, own) not in equal:  # it is within the bound itself
+            self._compare(answer, before)
+            if self._key(answer, (rounded,)) < costs.key([rounded]):
+                self._compare(answer, [rounded])
+            elif self._key(answer, (rounded,)) == costs.key([rounded]):
+                equal.append(_counts(classes, self._figures(answer.times, rounded)))
+        if _counts(classes, our_figures) not in equal:  # our tree is within the bound itself
             raise self._disagreement("our tree is not among those that clingo finds within the bound", theirs)
         if len(after) == 1:
             return
-        best: list[Found] = []
-        for numbers in equal:
-            found_best = self.clingo.best(same + write_exactly_alike(numbers))
-            if found_best is None:
+        candidates: list[ClingoAnswer] = []
+        for counts in equal:
+            candidate = self.clingo.best(class_facts + write_exactly_alike(counts))
+            if candidate is None:
                 raise NotCheckedError("clingo loses a kind of tree that it found")
-            self._executable(found_best)
-            best.append(found_best)
-        self._compare(min(best, key=lambda found: self._key(found, after)), self.levels)
+            self._executable(candidate)
+            candidates.append(candidate)
+        self._compare(min(candidates, key=lambda answer: self._key(answer, after)), self.levels)
 
-    def _executable(self, found: Found) -> tuple[int, ...]:
-        """Return the units of an answer in an order that executes."""
+    def _executable(self, answer: ClingoAnswer) -> tuple[int, ...]:
+        """Return the units of an answer in an executable order; raises where none exists."""
         try:
-            return check_tree(self.problem, self._answer(found))
+            return check_tree(self.problem, self._answer(answer))
         except DisagreementError as error:
-            if self.asked.settings.replaced is None:
+            if self.claim.settings.replaced is None:
                 raise
             raise NotCheckedError(f"{error}, as the replaced encodings allow") from None
 
-    def _key(self, found: Found, objectives: tuple[Objective, ...]) -> tuple[int | Fraction, ...]:
-        return self.problem.costs(map(self._unit, found.times)).key(objectives)
+    def _key(self, answer: ClingoAnswer, objectives: tuple[Objective, ...]) -> tuple[int | Fraction, ...]:
+        return self.problem.costs(map(self._unit, answer.times)).key(objectives)
 
     def _unit(self, number: int) -> int:
         unit = self.problem.network.unit_of_number(number)
@@ -316,35 +333,36 @@ class _Check:
             raise self._disagreement(f"clingo uses a unit number {number}, which there is not", None)
         return unit
 
-    def _answer(self, found: Found | None) -> EngineAnswer:
-        units = None if found is None else tuple(map(self._unit, sorted(found.times)))
+    def _answer(self, answer: ClingoAnswer | None) -> EngineAnswer:
+        units = None if answer is None else tuple(map(self._unit, sorted(answer.times)))
         return EngineAnswer(NAME, self.levels, units, True)
 
-    def _disagreement(self, message: str, found: Found | None) -> DisagreementError:
-        return DisagreementError(message, self._answer(found))
+    def _disagreement(self, message: str, answer: ClingoAnswer | None) -> DisagreementError:
+        return DisagreementError(message, self._answer(answer))
 
 
-def _counts(different: Iterable[Fraction], figures: Iterable[Fraction]) -> list[int]:
-    """Count how many of the figures are each of the ``different`` ones."""
+def _counts(classes: Iterable[Fraction], figures: Iterable[Fraction]) -> list[int]:
+    """Return for each class how many of the figures are equal to it."""
     counted = Counter(figures)
-    return [counted[figure] for figure in different]
+    return [counted[figure] for figure in classes]
 
 
 def greatest_weight(
     weights: Collection[tuple[Fraction, int]], own: Collection[Fraction], multiplies: bool = True
 ) -> int:
-    """Return the greatest sum of weights that a tree at least as good as ours can have.
+    """Return an upper bound on the sum of weights of a tree that is at least as good as ours.
 
-    ``weights`` are the different pairs of what a unit costs and its weight; ``own`` are the costs of our
-    units. Costs are rates where it ``multiplies``. Nothing is taken for granted of how the weights were
-    rounded. Write L(c) for a cost, -ln p for a rate p, and let S be the greatest w / L(c) over all units that
-    cost anything. Then w <= S * L(c) for every unit, so the sum of the weights of any tree T is at most
-    S * L(T), where L(T) is the sum of its costs; and L(T) is no greater than that of our tree. Raises
-    :class:`NotCheckedError` for a unit that costs nothing and has a weight, where there is no such S, and for
-    rates that have no logarithm.
+    ``weights`` are the distinct pairs of a unit's cost and its weight; ``own`` are the costs of our units.
+    Costs are rates where the objective ``multiplies``. Nothing is assumed of how the weights were rounded.
+    Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units with a
+    cost. Then w <= S * L(c) for every unit, so the weights of any tree T add up to at most S * L(T), where
+    L(T) is the sum of its costs; and L(T) is at most that of our tree.
+
+    Raises :class:`NotCheckedError` for a unit without a cost that has a weight, since no such S exists then,
+    and for rates without a logarithm.
     """
-    known = {*own, *(cost for cost, _ in weights)}
-    bounds = {cost: _minus_log(cost) if multiplies else (cost, cost) for cost in known}
+    all_costs = {*own, *(cost for cost, _ in weights)}
+    bounds = {cost: _minus_log(cost) if multiplies else (cost, cost) for cost in all_costs}
     if any(weight and bounds[cost][0] <= 0 for cost, weight in weights):
         raise NotCheckedError("a unit that costs nothing has a weight")
     ratios = (weight / bounds[cost][0] for cost, weight in weights if bounds[cost][0])
@@ -352,16 +370,16 @@ def greatest_weight(
 
 
 def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
-    """Enclose -ln of a rate between two fractions, both above 0 where the rate is below 1."""
+    """Return an interval that contains -ln of a rate; both ends are above 0 where the rate is below 1."""
     if rate <= 0:
         raise NotCheckedError("a success rate of 0 has no logarithm")
-    lost = 1 - rate
-    if lost < Fraction(1, 10**40):  # lost <= -ln(1 - lost) <= lost / (1 - lost), next to 1 all but the same
-        return lost, lost / rate
-    context = Context(prec=100)  # of which no more than 50 are lost in the difference of two logarithms
+    failure = 1 - rate
+    if failure < Fraction(1, 10**40):  # x <= -ln(1 - x) <= x / (1 - x), which are almost equal for small x
+        return failure, failure / rate
+    context = Context(prec=100)  # digits, of which at most 50 cancel in the difference of two logarithms
 
     def enclosed(number: int) -> tuple[Fraction, Fraction]:
-        logarithm = context.ln(Decimal(number))  # correctly rounded: the true one is between its neighbours
+        logarithm = context.ln(Decimal(number))  # correctly rounded: the exact one is between its neighbours
         if not logarithm:
             return Fraction(0), Fraction(0)
         return Fraction(context.next_minus(logarithm)), Fraction(context.next_plus(logarithm))
@@ -371,10 +389,10 @@ def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def _limit(process: int, seconds: float, memory: int) -> None:
-    """Keep endless grounding from taking all memory, and from outliving us, where the system can."""
+    """Limit the memory, in bytes, and the time of a process, where the system can: grounding may not end."""
     with contextlib.suppress(ImportError, AttributeError, OSError, ValueError):
         import resource  # noqa: PLC0415 (not everywhere)
 
         resource.prlimit(process, resource.RLIMIT_AS, (memory, memory))
-        most = math.ceil(seconds) + 1
-        resource.prlimit(process, resource.RLIMIT_CPU, (most, most))
+        cpu_seconds = math.ceil(seconds) + 1
+        resource.prlimit(process, resource.RLIMIT_CPU, (cpu_seconds, cpu_seconds))

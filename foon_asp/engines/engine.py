@@ -1,4 +1,4 @@
-"""What every second engine is asked and answers."""
+"""The interface of second engines, and functions that the built-in engines share."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping
@@ -10,14 +10,14 @@ from foon_asp.problem import Objective, Problem, backwards, executable_order, mu
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.rules.constraint import Constraint
 
-_GREATEST = 10**9  # of what a unit costs: beside more, floats lose costs that count
+_MAX_UNIT_COST = 10**9  # in sums with a larger cost, floats of 53 bits lose small ones
 
 
 class Asked(NamedTuple):
-    """An answer to be checked, and all that it was asked under.
+    """An answer to be checked: the outcome, and the settings under which it was found.
 
-    ``soft`` are the weights of constraints that may be broken, and ``penalty`` is what the tree of the
-    outcome is said to pay for those it breaks.
+    ``soft`` are the weights of soft constraints, and ``penalty`` is the claimed sum of the weights that the
+    tree of the outcome violates; ``None`` without soft constraints.
     """
 
     outcome: Outcome
@@ -27,10 +27,11 @@ class Asked(NamedTuple):
 
 
 class EngineAnswer(NamedTuple):
-    """What an engine says.
+    """The answer of an engine.
 
-    ``units`` is a tree that it calls best by ``objectives``, of which it looks at the first or at all, or
-    ``None`` where it says that there is no tree. ``finished`` is false where it stopped before an answer.
+    ``units`` is a tree that the engine claims to be optimal by ``objectives`` (the first objectives of the
+    question, at least one), or ``None`` where it claims that no tree exists. ``finished`` is false where the
+    engine stopped before an answer.
     """
 
     engine: str
@@ -50,17 +51,19 @@ class Solve(Protocol):
         seconds: float,
         /,
     ) -> EngineAnswer:
-        """Find a best tree by objectives, of which the first counts most, without the forbidden units.
+        """Search for a lexicographically optimal tree without the forbidden units.
 
-        It may look only at the first of the objectives, and then says so. It gives up after ``seconds``.
-        Raises :class:`NotCheckedError` for what it cannot be asked.
+        An engine may optimize only the first objectives, and then returns these. It stops after ``seconds``.
+
+        Raises :class:`NotCheckedError` for a problem or objective that the engine does not support.
         """
 
 
 class Engine(NamedTuple):
-    """A second engine that knows no constraints but units ruled out, whether it is there, how it is asked.
+    """A second engine, which supports no constraints except forbidden units.
 
-    ``package`` is the one that it is of if it is not ours.
+    ``installed`` tells whether it can run, and ``solve`` runs it. ``package`` is the distribution that offers
+    it; ``None`` for a built-in engine.
     """
 
     name: str
@@ -70,9 +73,10 @@ class Engine(NamedTuple):
 
 
 class DisagreementError(Exception):
-    """Two engines give answers that cannot both be right: a bug, here or there.
+    """Two engines give answers that cannot both be right: one of them has a bug.
 
-    ``ours`` says that it is here: the tree of the other is one, and better than what we call the best.
+    ``answer`` is the other engine's. ``ours`` says that the bug is in foon-asp: the tree of the other engine
+    is valid, and better than the one that we call optimal.
     """
 
     def __init__(self, message: str, answer: EngineAnswer, ours: bool = False) -> None:
@@ -83,19 +87,22 @@ class DisagreementError(Exception):
 def differing(
     by: str, ours: int | Fraction, theirs: int | Fraction, answer: EngineAnswer, more_is_better: bool = False
 ) -> DisagreementError:
-    """Return the error that two trees called best cost something else by an objective."""
+    """Return the error that two trees claimed to be optimal have different costs by an objective."""
     better = theirs > ours if more_is_better else theirs < ours
     which = "ours is not the best" if better else f"{answer.engine} calls a worse one the best"
-    words = f"by {by} our tree has {ours}, the one of {answer.engine} {theirs}; {which}"
-    return DisagreementError(words, answer, ours=better)
+    message = f"by {by} our tree has {ours}, the one of {answer.engine} {theirs}; {which}"
+    return DisagreementError(message, answer, ours=better)
 
 
 class NotCheckedError(Exception):
-    """An engine says nothing of an answer, neither for it nor against it; the message says why."""
+    """An engine neither confirms nor refutes an answer; the message says why."""
 
 
 def check_tree(problem: Problem, answer: EngineAnswer) -> tuple[int, ...]:
-    """Return the units of an engine's tree in an order that executes; raises :class:`DisagreementError`."""
+    """Return the units of an engine's tree in an executable order.
+
+    Raises :class:`DisagreementError` where no order makes the tree executable.
+    """
     order = executable_order(problem, answer.units or ())
     if order is None or simulate_for(problem, problem.tree(order)).verdict is not Verdict.AS_LISTED:
         raise DisagreementError(f"the tree of {answer.engine} does not execute", answer)
@@ -103,7 +110,7 @@ def check_tree(problem: Problem, answer: EngineAnswer) -> tuple[int, ...]:
 
 
 class Scope(NamedTuple):
-    """The units that the goals can need, and the nodes that would have to be made."""
+    """The relevant part of a problem: units that the goals can need, object nodes and goals to be made."""
 
     units: list[int]
     objects: list[int]
@@ -111,23 +118,26 @@ class Scope(NamedTuple):
 
 
 def scope_of(problem: Problem, forbidden: frozenset[int]) -> Scope:
-    """Go back from the goals to the kitchen through all units that are not forbidden, can they run or not."""
+    """Return what backward reachability from the goals visits, through all units that are not forbidden."""
     allowed = frozenset(range(len(problem.network))) - forbidden
     units, objects = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen, allowed)
     return Scope(sorted(units), sorted(objects), [goal for goal in problem.goals if goal in objects])
 
 
 def cost(problem: Problem, objective: Objective, unit: int) -> float:
-    """Return what a unit alone costs: a whole number, but for ``success``; ``kitchen`` is no such cost."""
+    """Return the cost of a unit by an objective other than ``kitchen``; of ``success``, -ln of its rate.
+
+    Raises :class:`NotCheckedError` for a cost that floats cannot add up with others.
+    """
     if multiplies(objective):
         rate = problem.rate(unit)
         return math.log(rate.denominator) - math.log(rate.numerator)
     figure = problem.figure(objective, unit)
-    if figure > _GREATEST:
+    if figure > _MAX_UNIT_COST:
         raise NotCheckedError("a unit costs more than its floats hold beside others")
     return float(figure)
 
 
-def taken(problem: Problem, units: Iterable[int]) -> list[int]:
-    """Return the kitchen items that some units need."""
+def kitchen_items(problem: Problem, units: Iterable[int]) -> list[int]:
+    """Return the kitchen items that are preconditions of units, by id, in order."""
     return sorted({o for unit in units for o in problem.needs[unit] if o in problem.kitchen})

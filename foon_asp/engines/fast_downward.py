@@ -1,8 +1,8 @@
-"""The same question as a planning task, solved by Fast Downward: A* with the landmark-cut heuristic.
+"""Fast Downward as a second engine: A* with the landmark-cut heuristic (Helmert & Domshlak 2009).
 
 It comes with the extra ``cross-check`` (GPL, so it is never installed otherwise) and runs as a program of
-its own. The task is written in the form that its search reads: a yes-no variable for each node that would
-have to be made, an operator for each unit, and one for taking each kitchen item where items are what costs.
+its own. The task is written in its translator's format: a binary variable for each node that would have to be
+made, an operator for each unit, and one for taking each kitchen item where items have the costs.
 """
 
 import importlib.util
@@ -12,53 +12,56 @@ import tempfile
 from pathlib import Path
 from typing import Final
 
-from foon_asp.engines.engine import EngineAnswer, NotCheckedError, cost, scope_of, taken
+from foon_asp.engines.engine import EngineAnswer, NotCheckedError, cost, kitchen_items, scope_of
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
 
 NAME = "Fast Downward"
-_SCALE = 10**6  # of logarithms of rates, which it adds as whole numbers
-_LARGEST = 2**31 - 1  # of its whole numbers
-_MEMORY = "4G"
-_NONE = ("Completely explored state space", "Initial state is a dead end", "unsolvable")
+_FRACTION_SCALE = 10**6  # of fractions and logarithms, which it adds as integers: a finer one overflows
+_MAX_INT = 2**31 - 1  # of its integers
+_MEMORY_LIMIT = "4G"
+_UNSOLVABLE = ("Completely explored state space", "Initial state is a dead end", "unsolvable")
 
 
 def driver() -> Path | None:
-    """Give the program that starts Fast Downward, or ``None`` where it is not installed."""
-    found = importlib.util.find_spec("up_fast_downward")
-    if found is None or found.origin is None:
+    """Return the program that starts Fast Downward, or ``None`` where it is not installed."""
+    spec = importlib.util.find_spec("up_fast_downward")
+    if spec is None or spec.origin is None:
         return None
-    file = Path(found.origin).parent / "downward" / "fast-downward.py"
+    file = Path(spec.origin).parent / "downward" / "fast-downward.py"
     return file if file.is_file() else None
 
 
 def installed() -> bool:
-    """Whether the engine can be asked."""
+    """Return whether Fast Downward is installed."""
     return driver() is not None
 
 
 def solve_with_fast_downward(
     problem: Problem, objectives: tuple[Objective, ...], forbidden: frozenset[int], seconds: float
 ) -> EngineAnswer:
-    """Find a best tree by the first objective alone; ``success`` to a millionth of each logarithm."""
+    """Search for an optimal tree by the first objective alone, as :class:`Solve` does.
+
+    Fractions and logarithms of rates are rounded to millionths.
+    """
     program = driver()
     if program is None:
         raise BugError("Fast Downward is asked for where it is not installed")
-    if not scope_of(problem, forbidden).goals:  # which it refuses, and it takes nothing to make none
+    if not scope_of(problem, forbidden).goals:  # it refuses tasks without goals; the empty tree is optimal
         return EngineAnswer(NAME, objectives[:1], (), True)
     with tempfile.TemporaryDirectory() as name:
         task, plan = Path(name, "task.sas"), Path(name, "plan")
         task.write_text(_task(problem, objectives[0], forbidden), encoding="ascii")
-        limits = f"--overall-time-limit={max(1, round(seconds))}", f"--overall-memory-limit={_MEMORY}"
-        asked = "--plan-file", str(plan), str(task), "--search", "astar(lmcut())"
-        command = [sys.executable, str(program), *limits, *asked]
+        limits = f"--overall-time-limit={max(1, round(seconds))}", f"--overall-memory-limit={_MEMORY_LIMIT}"
+        arguments = "--plan-file", str(plan), str(task), "--search", "astar(lmcut())"
+        command = [sys.executable, str(program), *limits, *arguments]
         ended = subprocess.run(command, cwd=name, capture_output=True, text=True, check=False)
         units: tuple[int, ...] | None = None
         finished = ended.returncode == 0
         if finished:
             steps = (line.strip("() ") for line in plan.read_text(encoding="ascii").split("\n"))
             units = tuple(sorted(int(step.split()[1]) for step in steps if step.startswith("use ")))
-        elif ended.returncode in {10, 11, 12} and any(text in ended.stdout for text in _NONE):
+        elif ended.returncode in {10, 11, 12} and any(text in ended.stdout for text in _UNSOLVABLE):
             finished = True
         elif ended.returncode not in {20, 21, 22, 23, 24}:  # out of memory or of time
             raise BugError(
@@ -68,29 +71,33 @@ def solve_with_fast_downward(
 
 
 def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> str:
-    """Write the planning task; a variable is 0 once its node is available."""
+    """Return the text of the planning task; a variable is 0 once its node is available.
+
+    Raises :class:`NotCheckedError` where costs are too large for Fast Downward.
+    """
     scope = scope_of(problem, forbidden)
-    items = taken(problem, scope.units) if objective.row.item else []
-    places = {o: place for place, o in enumerate([*scope.objects, *items])}
-    scale = 1 if objective.row.whole else _SCALE
-    operators = [_operator(f"take {o}", [], [places[o]], 1) for o in items]
+    items = kitchen_items(problem, scope.units) if objective.row.item else []
+    variables = {o: variable for variable, o in enumerate([*scope.objects, *items])}
+    scale = 1 if objective.row.whole else _FRACTION_SCALE
+    operators = [_operator(f"take {o}", [], [variables[o]], 1) for o in items]
     total = len(items)
     for unit in scope.units:
-        needs = [o for o in problem.needs[unit] if o in places]
-        gives = [o for o in problem.gives[unit] if o in places and o not in items and o not in needs]
-        if gives:  # an operator has to have an effect
+        preconditions = [o for o in problem.needs[unit] if o in variables]
+        outputs = [o for o in problem.gives[unit] if o in variables]
+        added = [o for o in outputs if o not in items and o not in preconditions]
+        if added:  # an operator has to have an effect
             weight = round(scale * cost(problem, objective, unit))
             total += weight
-            rows = [places[o] for o in needs], [places[o] for o in gives]
-            operators.append(_operator(f"use {unit}", *rows, weight))
-    if total > _LARGEST:
+            facts = [variables[o] for o in preconditions], [variables[o] for o in added]
+            operators.append(_operator(f"use {unit}", *facts, weight))
+    if total > _MAX_INT:
         raise NotCheckedError("the costs add up to more than its whole numbers hold")
     return _TASK.format(
-        number=len(places),
-        variables="".join(map(_VARIABLE.format, range(len(places)))),
-        state="1\n" * len(places),
+        number=len(variables),
+        variables="".join(map(_VARIABLE.format, range(len(variables)))),
+        state="1\n" * len(variables),
         goals=len(scope.goals),
-        goal="".join(f"{places[goal]} 0\n" for goal in scope.goals),
+        goal="".join(f"{variables[goal]} 0\n" for goal in scope.goals),
         operators=len(operators),
         operator="".join(operators),
     )
@@ -124,9 +131,10 @@ begin_goal
 """
 
 
-def _operator(name: str, needs: list[int], gives: list[int], weight: int) -> str:
-    conditions = "".join(f"{place} 0\n" for place in needs)
-    effects = "".join(f"0 {place} -1 0\n" for place in gives)
+def _operator(name: str, preconditions: list[int], add_effects: list[int], weight: int) -> str:
+    conditions = "".join(f"{variable} 0\n" for variable in preconditions)
+    effects = "".join(f"0 {variable} -1 0\n" for variable in add_effects)
     return (
-        f"begin_operator\n{name}\n{len(needs)}\n{conditions}{len(gives)}\n{effects}{weight}\nend_operator\n"
+        f"begin_operator\n{name}\n{len(preconditions)}\n{conditions}{len(add_effects)}\n{effects}{weight}\n"
+        "end_operator\n"
     )

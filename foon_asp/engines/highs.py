@@ -1,20 +1,21 @@
-"""The same question as a mixed integer program, solved by HiGHS.
+"""HiGHS as a second engine: the question as a mixed integer program.
 
-For every unit a 0-1 variable says that it is used; for every unit and node that it makes another one that
-it is the maker of that node, and a level for every node that has to be made. A used unit has a maker for
-each node it needs, and a made node stands above the nodes that its maker needs, so nothing supports itself.
+A binary variable for every unit says that it is used; another one for every unit and node says that the unit
+is the achiever of that node, and an integer one is the level of every node that has to be made. A used unit
+has an achiever of each of its preconditions, and an achieved node is on a higher level than the preconditions
+of its achiever, so that no node supports itself.
 """
 
 import time
 from typing import Any, Final
 
 from foon_asp.bounds.highs_run import libraries, silent_highs
-from foon_asp.engines.engine import EngineAnswer, cost, scope_of, taken
+from foon_asp.engines.engine import EngineAnswer, cost, kitchen_items, scope_of
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
 
 NAME: Final = "HiGHS"
-_CLOSE: Final = 1e-6  # within which HiGHS keeps to a sum of logarithms
+_ROW_TOLERANCE: Final = 1e-6  # of a sum of fractions or logarithms: HiGHS keeps a row within it
 _OPTIONS: Final = {
     "threads": 1,
     "mip_rel_gap": 0.0,
@@ -26,8 +27,11 @@ _OPTIONS: Final = {
 def solve_with_highs(
     problem: Problem, objectives: tuple[Objective, ...], forbidden: frozenset[int], seconds: float
 ) -> EngineAnswer:
-    """Find a best tree by all objectives, one after the other, each held where the ones before are best."""
-    if not scope_of(problem, forbidden).goals:  # it has no variables then, and nothing to hold
+    """Search for a lexicographically optimal tree, as :class:`Solve` does.
+
+    Objectives are minimized one after the other, each with the more important ones fixed at their optimum.
+    """
+    if not scope_of(problem, forbidden).goals:  # a program without variables; the empty tree is optimal
         return EngineAnswer(NAME, objectives, (), True)
     end = time.monotonic() + seconds
     program = _Program(problem, forbidden)
@@ -37,7 +41,7 @@ def solve_with_highs(
         if status != "optimal":
             return EngineAnswer(NAME, objectives, None, status == "infeasible" and units is None)
         units = program.units()
-        program.hold(objective)
+        program.fix(objective)
     return EngineAnswer(NAME, objectives, units, True)
 
 
@@ -52,26 +56,26 @@ class _Program:
         binary, require, total = self._highs.addBinary, self._highs.addConstr, self._highs.qsum
         scope = scope_of(problem, forbidden)
         self._use = {unit: binary() for unit in scope.units}
-        self._take = {o: binary() for o in taken(problem, scope.units)}
+        self._take = {o: binary() for o in kitchen_items(problem, scope.units)}
         highest = len(scope.objects) + 1
         level = {o: self._highs.addVariable(0, highest) for o in scope.objects}
-        makers: dict[int, list[Any]] = {o: [] for o in scope.objects}
+        achievers: dict[int, list[Any]] = {o: [] for o in scope.objects}
         for unit, used in self._use.items():
-            needs = problem.needs[unit]
-            for o in set(problem.gives[unit]) & level.keys() - set(needs):
-                maker = binary()
-                makers[o].append(maker)
-                require(maker <= used)
-                for need in level.keys() & set(needs):
-                    require(level[o] - level[need] - (highest + 1) * maker >= -highest)
+            preconditions = problem.needs[unit]
+            for o in set(problem.gives[unit]) & level.keys() - set(preconditions):
+                achieves = binary()
+                achievers[o].append(achieves)
+                require(achieves <= used)
+                for node in level.keys() & set(preconditions):
+                    require(level[o] - level[node] - (highest + 1) * achieves >= -highest)
         for unit, used in self._use.items():
-            for need in problem.needs[unit]:
-                if need in level:
-                    require(total(makers[need]) - used >= 0)
-                elif need in self._take:
-                    require(self._take[need] >= used)
+            for node in problem.needs[unit]:
+                if node in level:
+                    require(total(achievers[node]) - used >= 0)
+                elif node in self._take:
+                    require(self._take[node] >= used)
         for goal in scope.goals:
-            require(total(makers[goal]) >= 1)
+            require(total(achievers[goal]) >= 1)
 
     def minimize(self, objective: Objective, seconds: float) -> str:
         """Minimize one objective; return ``optimal``, ``infeasible`` or ``stopped``."""
@@ -87,22 +91,23 @@ class _Program:
             return "stopped"
         raise BugError(f"HiGHS ends with {status}")
 
-    def hold(self, objective: Objective) -> None:
-        """Keep an objective where it is now from here on."""
+    def fix(self, objective: Objective) -> None:
+        """Add the row that no solution is worse by an objective than the current one."""
         values, costs = self._highs.getSolution().col_value, self._costs(objective)
-        most = sum(weight * round(values[variable.index]) for variable, weight in costs)
-        most += 0.5 if objective.row.whole else _CLOSE
+        max_cost = sum(weight * round(values[variable.index]) for variable, weight in costs)
+        max_cost += 0.5 if objective.row.whole else _ROW_TOLERANCE
         columns = self._numpy.array([variable.index for variable, _ in costs], dtype="int32")
         weights = self._numpy.array([weight for _, weight in costs])
-        # not as a constraint of an expression, which refuses weights that are next to nothing
-        self._highs.addRow(-self._library.kHighsInf, most, len(costs), columns, weights)
+        # not as a constraint of an expression, which refuses weights close to 0
+        self._highs.addRow(-self._library.kHighsInf, max_cost, len(costs), columns, weights)
 
     def units(self) -> tuple[int, ...]:
-        """Return the units that are used."""
+        """Return the units that the current solution uses."""
         values = self._highs.getSolution().col_value
         return tuple(unit for unit, used in self._use.items() if values[used.index] > 0.5)
 
     def _costs(self, objective: Objective) -> list[tuple[Any, float]]:
+        """Return the variables that have a cost by an objective, with their costs."""
         if objective.row.item:
             return [(variable, 1.0) for variable in self._take.values()]
         return [(used, cost(self._problem, objective, unit)) for unit, used in self._use.items()]

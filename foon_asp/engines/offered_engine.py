@@ -1,4 +1,4 @@
-"""Engines that other packages offer: run in a process of their own, and what they say is looked over."""
+"""Engines that other packages offer: run in a process of their own, and their answers are validated."""
 
 import functools
 from typing import Any
@@ -16,7 +16,7 @@ _NOT_CHECKED = f"{NotCheckedError.__module__}.{NotCheckedError.__name__}"
 
 
 def offered_engine(offer: Offer) -> Engine:
-    """Make an engine of what a package offers."""
+    """Return the engine that a package offers."""
     return Engine(offer.name, lambda: True, functools.partial(_solve, offer), offer.package)
 
 
@@ -27,31 +27,31 @@ def _solve(
     forbidden: frozenset[int],
     seconds: float,
 ) -> EngineAnswer:
-    """Ask it; at the end of its time it is not finished.
+    """Run an offered engine, as :class:`Solve` does; stopped at the end of its time, it is not finished.
 
-    Raises :class:`NotCheckedError` where it does, and :class:`UserError` where it raises anything else, or
-    gives no answer.
+    Raises :class:`NotCheckedError` where the engine raises it, and :class:`UserError` where the engine raises
+    anything else, or returns no valid answer.
     """
     try:
-        given = ask_offered(offer, Deadline(seconds), problem.plain, objectives, forbidden, seconds)
+        reply = ask_offered(offer, Deadline(seconds), problem.plain, objectives, forbidden, seconds)
     except LimitError:
         return EngineAnswer(offer.name, objectives, None, False)
-    if isinstance(given, Raised):
-        if _NOT_CHECKED in given.classes:
-            raise NotCheckedError(escaped(given.message))
-        raise offer.raised(given)
-    return _looked_over(offer, problem, objectives, given)
+    if isinstance(reply, Raised):
+        if _NOT_CHECKED in reply.classes:
+            raise NotCheckedError(escaped(reply.message))
+        raise offer.raised(reply)
+    return _validated(offer, problem, objectives, reply)
 
 
-def _looked_over(offer: Offer, problem: Problem, asked: tuple[Objective, ...], given: Any) -> EngineAnswer:
-    """Take what was given for an answer, if it is one."""
+def _validated(offer: Offer, problem: Problem, objectives: tuple[Objective, ...], reply: Any) -> EngineAnswer:
+    """Return the answer in a reply; raises :class:`UserError` where it is not a valid one."""
     try:
-        _, objectives, units, finished = msgspec.convert(given, tuple[Any, list[Any], Any, bool])
+        _, optimized, units, finished = msgspec.convert(reply, tuple[Any, list[Any], Any, bool])
     except ValueError:
-        raise offer.fault(f"gave {given!r}, expected an EngineAnswer") from None
-    if not objectives or objectives != list(asked[: len(objectives)]):
+        raise offer.fault(f"gave {reply!r}, expected an EngineAnswer") from None
+    if not optimized or optimized != list(objectives[: len(optimized)]):
         raise offer.fault(
-            f"looked at {objectives!r}, expected the first of {', '.join(asked)}, or more of them"
+            f"looked at {optimized!r}, expected the first of {', '.join(objectives)}, or more of them"
         )
     tree = None if units is None else offer.units(units, len(problem.network))
-    return EngineAnswer(offer.name, asked[: len(objectives)], tree, finished)
+    return EngineAnswer(offer.name, objectives[: len(optimized)], tree, finished)

@@ -1,4 +1,4 @@
-"""What actions cost in a planning task: whole numbers, exact wherever planners can add them up."""
+"""Action costs of a planning task: whole numbers, exact wherever planners can add them up."""
 
 import math
 from collections.abc import Collection, Sequence
@@ -9,15 +9,15 @@ from foon_asp.encoding.exact_success import problem_scale
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, multiplies
 
-LARGEST = 2**31 - 1  # planners add up in 32 bits
-_FINE = 10**6  # steps to 1 of a logarithm
+LARGEST = 2**31 - 1  # planners add up costs in signed integers of 32 bits
+_MAX_FACTOR = 10**6  # of costs that are rounded: more digits of a logarithm, but a smaller range of sums
 
 
 class Scale(NamedTuple):
-    """How an objective became whole numbers: each cost times ``factor``, and ``rounded`` or exact.
+    """The scale on which an objective became whole numbers: each cost times ``factor``, ``rounded`` or exact.
 
-    An objective that multiplies has the logarithms of its factors there, with the sign turned. What counts
-    more than others is multiplied once more, so that no sum of theirs outweighs it; ``factor`` says it all.
+    The costs of an objective that multiplies are the negative logarithms of its factors. ``factor`` includes
+    the weight that makes an objective outweigh all less important ones (lexicographic order).
     """
 
     objective: Objective
@@ -26,7 +26,7 @@ class Scale(NamedTuple):
 
 
 class ActionCosts(NamedTuple):
-    """Costs of units by id, the cost of taking a kitchen item, and the scales of the objectives in order."""
+    """The cost of each unit, by id, of taking an ``item`` from the kitchen, and the scales of objectives."""
 
     units: dict[int, int]
     item: int
@@ -46,27 +46,27 @@ def action_costs(
     tree: Collection[int],
     repeats: int = 1,
 ) -> ActionCosts:
-    """Turn objectives into one cost an action, of which the least sum is the best tree.
+    """Scalarize a lexicographic list of objectives: return one cost for each action.
 
-    A tree has each of the ``units`` once at most, and takes each of the ``items`` once at most: so the
-    objectives of a list can be added up, the more important ones multiplied by more than all others together
-    can make. ``tree`` is one of the trees: no plan that a planner looks at for long costs more than some
-    ``repeats`` of it. Fractions
-    that planners cannot add up exactly are rounded. Raises :class:`UserError` where that does not help, and
-    for a success rate of 0.
+    A tree executes each of the ``units`` at most once, and takes each of the ``items`` at most once: an
+    objective is weighted by more than all less important ones can add up to. ``tree`` is a feasible tree, and
+    plans are assumed to cost at most ``repeats`` times as much. Fractions that planners cannot add up exactly
+    are rounded.
+
+    Raises :class:`UserError` where rounded costs are too large as well, and for a success rate of 0.
     """
     total: dict[int, int] = dict.fromkeys(units, 0)
     item, weight = 0, 1
     scales: list[Scale] = []
     for objective in reversed(objectives):
-        room = LARGEST // (2 * weight * repeats)
-        costs, factor, rounded = _whole(problem, objective, units, tree, room)
+        max_cost = LARGEST // (2 * weight * repeats)
+        costs, factor, rounded = _integer_costs(problem, objective, units, tree, max_cost)
         scales.insert(0, Scale(objective, factor * weight, rounded))
         for unit, cost in costs.items():
             total[unit] += cost * weight
         item += objective.row.item * weight
-        dear = sum(total[unit] for unit in tree) + max(total.values(), default=0)
-        if dear * repeats + items * item > LARGEST:
+        upper_bound = sum(total[unit] for unit in tree) + max(total.values(), default=0)
+        if upper_bound * repeats + items * item > LARGEST:
             raise UserError(
                 f"by {', '.join(objectives)} plans cost more than the {LARGEST:,} that planners add up to: "
                 "name fewer objectives, or costs with fewer digits"
@@ -75,25 +75,26 @@ def action_costs(
     return ActionCosts(total, item, tuple(scales))
 
 
-def _whole(
-    problem: Problem, objective: Objective, units: Sequence[int], tree: Collection[int], room: int
+def _integer_costs(
+    problem: Problem, objective: Objective, units: Sequence[int], tree: Collection[int], max_cost: int
 ) -> tuple[dict[int, int], Fraction, bool]:
-    """Give what units cost by an objective in whole numbers, the factor that makes it so, and if it rounds.
+    """Return the costs of units by an objective as integers, the factor of this scale, and whether it rounds.
 
-    A tree and the dearest unit should cost no more than ``room``.
+    The factor is chosen such that a tree and the most expensive unit together cost at most ``max_cost``.
     """
     if multiplies(objective):
         return _logarithms(problem, units)
     figures = {unit: Fraction(problem.figure(objective, unit)) for unit in units}
-    common = math.lcm(*(figure.denominator for figure in figures.values()))
-    dear = sum(figures[unit] for unit in tree) + max(figures.values(), default=Fraction(0))
-    factor, rounded = Fraction(common), False
-    if common > 1 and dear * common > room:
-        factor, rounded = Fraction(max(1, min(_FINE, int(room / dear)))), True
+    denominator = math.lcm(*(figure.denominator for figure in figures.values()))
+    upper_bound = sum(figures[unit] for unit in tree) + max(figures.values(), default=Fraction(0))
+    factor, rounded = Fraction(denominator), False
+    if denominator > 1 and upper_bound * denominator > max_cost:
+        factor, rounded = Fraction(max(1, min(_MAX_FACTOR, int(max_cost / upper_bound)))), True
     return {unit: round(figure * factor) for unit, figure in figures.items()}, factor, rounded
 
 
 def _logarithms(problem: Problem, units: Sequence[int]) -> tuple[dict[int, int], Fraction, bool]:
+    """Return the negative logarithms of success rates as integers, their factor, and ``True``: rounded."""
     impossible = next((unit for unit in units if not problem.rate(unit)), None)
     if impossible is not None:
         raise UserError(
@@ -102,9 +103,9 @@ def _logarithms(problem: Problem, units: Sequence[int]) -> tuple[dict[int, int],
         )
     scale = problem_scale(problem, units)
     weights = {unit: scale.weights[problem.rate(unit)] for unit in units}
-    factor = min(_FINE, scale.scale)
+    factor = min(_MAX_FACTOR, scale.scale)
     return (
-        {unit: round(Fraction(w * factor, scale.scale)) for unit, w in weights.items()},
+        {unit: round(Fraction(weight * factor, scale.scale)) for unit, weight in weights.items()},
         Fraction(factor),
         True,
     )

@@ -1,6 +1,6 @@
-"""The other process: CP-SAT of OR-Tools, which cannot be in one process with HiGHS, looks for a schedule.
+"""The process of CP-SAT, OR-Tools' constraint solver, which cannot be in one process with HiGHS.
 
-It answers with what it finds on the way, and with how it ended.
+It minimizes the makespan of a plan, and sends each better schedule and bound, and at last its status.
 """
 
 import threading
@@ -12,71 +12,73 @@ from foon_asp.planning.schedule_task import ScheduleTask
 from foon_asp.processes.pipe import receive, requests, send
 from foon_asp.proof.timetable import ToolName
 
-_WORKERS = 1  # more find no schedule sooner for plans of some hundred steps, and not always the same one
+_SEARCH_WORKERS = 1  # more find no schedule sooner for plans of some hundred steps, and are not deterministic
 
 
 def serve() -> None:
-    """Read tasks from standard input, and write what is found to what was standard output."""
-    asked, answers = requests(receive)
+    """Solve tasks from standard input, and write schedules, bounds and a status to the pipe of answers."""
+    tasks, answers = requests(receive)
     try:
         from ortools.sat.python import cp_model  # noqa: PLC0415 (this process alone may have it)
     except ImportError as error:
         send(answers, ("missing", str(error)))
         return
     while True:
-        task, known = asked.get()
-        send(answers, ("end", _Model(cp_model, task, known).shortest(answers)))
+        task, incumbent = tasks.get()
+        send(answers, ("end", _Model(cp_model, task, incumbent).minimize_makespan(answers)))
 
 
 class _Model:
-    """The variables of a task: when each step starts, and how long each tool is in use.
+    """The constraint model of a task: a start variable for each step, an interval for each use of a tool.
 
-    ``known`` is a schedule, by the starts of steps.
+    ``incumbent`` is a feasible schedule, as the start of each step in ticks: a hint, and an upper bound.
     """
 
-    def __init__(self, cp_model: Any, task: ScheduleTask, known: Sequence[int]) -> None:
+    def __init__(self, cp_model: Any, task: ScheduleTask, incumbent: Sequence[int]) -> None:
         self._library, self._task = cp_model, task
         self._model = model = cp_model.CpModel()
-        ends = (start + length for start, length in zip(known, task.lengths, strict=True))
+        ends = (start + length for start, length in zip(incumbent, task.lengths, strict=True))
         self._end = end = max(ends, default=0)
         self._starts = [model.new_int_var(0, end - length, "") for length in task.lengths]
         self._steps = [
             model.new_fixed_size_interval_var(start, length, "")
             for start, length in zip(self._starts, task.lengths, strict=True)
         ]
-        for start, value in zip(self._starts, known, strict=True):
+        for start, value in zip(self._starts, incumbent, strict=True):
             model.add_hint(start, value)
         for step, after in enumerate(task.after):
             for earlier in after:
-                model.add(self._over(earlier) <= self._starts[step])
-        by_hand = [each for each, passive in zip(self._steps, task.passive, strict=True) if not passive]
-        model.add_cumulative(by_hand, [1] * len(by_hand), task.agents)
+                model.add(self._end_of(earlier) <= self._starts[step])
+        occupying_agent = [
+            interval for interval, passive in zip(self._steps, task.passive, strict=True) if not passive
+        ]
+        model.add_cumulative(occupying_agent, [1] * len(occupying_agent), task.agents)
 
-    def shortest(self, answers: FileIO) -> str:
-        """Look for a shortest schedule; say whether one is ``proved``, or how it ended."""
+    def minimize_makespan(self, answers: FileIO) -> str:
+        """Search for a schedule of least makespan; return ``proved`` or CP-SAT's other status."""
         model, library = self._model, self._library
-        self._hold()
+        self._constrain_tools()
         makespan = model.new_int_var(self._task.bound, self._end, "")
         for step in range(len(self._starts)):
-            model.add(self._over(step) <= makespan)
+            model.add(self._end_of(step) <= makespan)
         model.minimize(makespan)
-        starts, writing = self._starts, threading.Lock()
+        starts, send_lock = self._starts, threading.Lock()
 
-        def say(kind: str, value: object) -> None:
-            with writing:
+        def report(kind: str, value: object) -> None:
+            with send_lock:
                 send(answers, (kind, value))
 
         class Listener(library.CpSolverSolutionCallback):  # type: ignore[misc, name-defined]
             def on_solution_callback(self) -> None:
-                say("found", [self.value(start) for start in starts])
+                report("found", [self.value(start) for start in starts])
 
         solver = self._solver()
-        solver.best_bound_callback = lambda bound: say("bound", bound)
+        solver.best_bound_callback = lambda bound: report("bound", bound)
         status = solver.solve(model, Listener())
         return "proved" if status == library.OPTIMAL else str(solver.status_name(status))
 
-    def _hold(self) -> None:
-        """Let no more tools be in use than there are, and each at one step at a time."""
+    def _constrain_tools(self) -> None:
+        """Add cumulative constraints: a use of a tool occupies one copy, and its steps do not overlap."""
         model = self._model
         in_use: dict[ToolName, list[Any]] = {}
         for name, steps in self._task.uses:
@@ -86,7 +88,7 @@ class _Model:
             begin, end = (model.new_int_var(0, self._end, "") for _ in range(2))
             for step in steps:
                 model.add(begin <= self._starts[step])
-                model.add(end >= self._over(step))
+                model.add(end >= self._end_of(step))
             model.add_no_overlap([self._steps[step] for step in steps])
             length = model.new_int_var(0, self._end, "")
             in_use.setdefault(name, []).append(model.new_interval_var(begin, length, end, ""))
@@ -95,11 +97,11 @@ class _Model:
         for name, intervals in in_use.items():
             model.add_cumulative(intervals, [1] * len(intervals), self._task.counts[name])
 
-    def _over(self, step: int) -> Any:
+    def _end_of(self, step: int) -> Any:
         return self._starts[step] + self._task.lengths[step]
 
     def _solver(self) -> Any:
         solver = self._library.CpSolver()
-        solver.parameters.num_workers = _WORKERS
+        solver.parameters.num_workers = _SEARCH_WORKERS
         solver.parameters.random_seed = 1
         return solver

@@ -1,8 +1,8 @@
 """The delete relaxation of a planning task in finite-domain variables.
 
-A value of a variable is a fact, and a fact that was reached is never lost. Effects under conditions and
-axioms stay what they mean: an action gives the effects whose conditions hold when it is executed, and an
-axiom derives its fact at no cost.
+A fact is a value of a variable; a fact that was reached is never deleted. Conditional effects and axioms keep
+their meaning: an action adds the effects whose conditions hold when it is executed, and an axiom derives its
+fact at no cost.
 """
 
 from collections.abc import Iterable, Iterator
@@ -16,19 +16,21 @@ from foon_asp.network import Source
 from foon_asp.planning.sas_reader import SasAxiom, SasOperator, SasTask
 from foon_asp.planning.strips_task import DERIVED, StripsAction, StripsTask
 
-_MAX_VARIANTS = 1000  # of one action, by which of its effects under conditions it has
+_MAX_VARIANTS = 1000  # actions made of one operator, one for each set of its conditional effects
 
 
 def relaxed(task: SasTask) -> StripsTask:
     """Return the delete relaxation of a task.
 
-    Raises :class:`UserError` for an action whose effects under conditions come in more than a thousand
-    combinations, and for a fact derived by recursion whose negation is a condition.
+    Raises :class:`UserError` for an operator whose conditional effects have more than 1000 combinations, and
+    for a fact derived by recursion whose negation is a condition.
     """
     return _Relaxation(task).strips()
 
 
 class _Relaxation:
+    """Compiles conditional effects and negated derived facts of a task away (Nebel 2000)."""
+
     def __init__(self, task: SasTask) -> None:
         self._task = task
         self._facts = list(task.facts)
@@ -45,10 +47,10 @@ class _Relaxation:
         task = self._task
         useful = self._useful()
         actions = [action for operator in task.operators for action in self._variants(operator, useful)]
-        actions += [self._derivation(axiom.body, axiom.head, axiom.place) for axiom in task.axioms]
-        asked = chain(task.goal, *(action.needs for action in actions))
-        actions += self._negations(self._defaults.intersection(asked))
-        needed = {*task.goal, *chain(*(action.needs for action in actions))}
+        actions += [self._derivation(axiom.body, axiom.head, axiom.source) for axiom in task.axioms]
+        conditions = chain(task.goal, *(action.preconditions for action in actions))
+        actions += self._negations(self._defaults.intersection(conditions))
+        needed = {*task.goal, *chain(*(action.preconditions for action in actions))}
         numbers = {fact: number for number, fact in enumerate(sorted(needed))}
 
         def numbered(facts: Iterable[int]) -> list[int]:
@@ -58,25 +60,25 @@ class _Relaxation:
             Path(task.file).name,
             [self._facts[fact] for fact in numbers],
             [
-                action._replace(needs=numbered(action.needs), gives=gives)
+                action._replace(preconditions=numbered(action.preconditions), add_effects=add_effects)
                 for action in actions
-                if (gives := numbered(action.gives))
+                if (add_effects := numbered(action.add_effects))
             ],
             frozenset(numbered(self._start)),
             tuple(numbered(task.goal)),
-            self._loses(needed),
+            self._deletes(needed),
         )
 
     def _useful(self) -> set[int]:
-        """Return all facts that can be of use: for the goal, or as a condition of what can be of use."""
+        """Return the relevant facts: of the goal, and of conditions of operators, axioms and effects."""
         task = self._task
         bodies = [axiom.body for axiom in task.axioms]
         facts = {*task.goal, *chain(*(operator.preconditions for operator in task.operators), *bodies)}
-        facts.update(chain(*(self._values[fact] for body in bodies for fact in body)))  # for negations
+        facts.update(chain(*(self._values[fact] for body in bodies for fact in body)))  # for negated bodies
         return self._with_effect_conditions(facts)
 
     def _with_effect_conditions(self, facts: set[int]) -> set[int]:
-        """Return facts with all that can be of use for them as conditions of effects."""
+        """Return facts, closed under the conditions of the effects that add them."""
         effects = [effect for operator in self._task.operators for effect in operator.effects]
         while True:
             new = set(chain(*(effect.condition for effect in effects if effect.fact in facts))) - facts
@@ -84,19 +86,19 @@ class _Relaxation:
                 return facts
             facts = facts | new
 
-    def _loses(self, needed: set[int]) -> bool:
-        """Return whether an operator takes away one of the facts that are needed."""
+    def _deletes(self, needed: set[int]) -> bool:
+        """Return whether an operator deletes one of the facts ``needed``."""
         needed = self._with_effect_conditions(needed)
         for operator in self._task.operators:
             for effect in operator.effects:
                 values = self._values[effect.fact]
-                known = {*operator.preconditions, *effect.condition}.intersection(values)
-                if not (known or {*values}).difference([effect.fact]).isdisjoint(needed):
+                before = {*operator.preconditions, *effect.condition}.intersection(values) or {*values}
+                if not before.difference([effect.fact]).isdisjoint(needed):
                     return True
         return False
 
     def _variants(self, operator: SasOperator, useful: set[int]) -> Iterator[StripsAction]:
-        """Return an operator as actions without effects under conditions: one for each set that can occur."""
+        """Return an operator as actions without conditional effects: one for each set that can occur."""
         holding = self._start.union(operator.preconditions)
         always: dict[int, None] = {}
         conditional: dict[frozenset[int], list[int]] = {}
@@ -119,11 +121,14 @@ class _Relaxation:
         for trigger in triggers:
             triggered = (facts for condition, facts in conditional.items() if condition <= trigger)
             effects = dict.fromkeys([*always, *chain(*triggered)])
-            needs = [*operator.preconditions, *sorted(trigger)]
-            yield StripsAction(operator.name, needs, list(effects), cost, operator.place)
+            preconditions = [*operator.preconditions, *sorted(trigger)]
+            yield StripsAction(operator.name, preconditions, list(effects), cost, operator.source)
 
     def _negations(self, defaults: set[int]) -> Iterator[StripsAction]:
-        """Return what derives that derived facts do not hold: in every rule for it, a condition fails."""
+        """Return actions that derive default values: of every axiom for the fact, a condition fails (Clark).
+
+        Raises :class:`UserError` where such a derivation is cyclic.
+        """
         graph: dict[int, set[int]] = {}
         pending = sorted(defaults)
         while pending:
@@ -132,21 +137,21 @@ class _Relaxation:
                 continue
             failures = []
             for rule in self._rules[default]:
-                failing = [o for fact in rule.body for o in self._values[fact] if o != fact]
-                failures.append((failing, rule.place))
+                failing = [value for fact in rule.body for value in self._values[fact] if value != fact]
+                failures.append((failing, rule.source))
             graph[default] = self._defaults.intersection(fact for failing, _ in failures for fact in failing)
             pending += sorted(graph[default])
-            needs = []
-            for failing, place in failures:
+            preconditions = []
+            for failing, source in failures:
                 if len(failing) == 1:
-                    needs += failing
+                    preconditions += failing
                     continue
                 fails = len(self._facts)
                 self._facts.append(f"axiom {fails} fails")
-                needs.append(fails)
-                yield from (self._derivation((fact,), fails, place) for fact in failing)
-            place = Source(self._task.file, 1)
-            yield self._derivation(tuple(dict.fromkeys(needs)), default, place)
+                preconditions.append(fails)
+                yield from (self._derivation((fact,), fails, source) for fact in failing)
+            source = Source(self._task.file, 1)
+            yield self._derivation(tuple(dict.fromkeys(preconditions)), default, source)
         try:
             TopologicalSorter(graph).prepare()
         except CycleError as error:
@@ -155,5 +160,5 @@ class _Relaxation:
                 "derived by recursion: its negation is beyond a delete relaxation here"
             ) from None
 
-    def _derivation(self, body: tuple[int, ...], head: int, place: Source) -> StripsAction:
-        return StripsAction(DERIVED, body, (head,), Fraction(0), place)
+    def _derivation(self, body: tuple[int, ...], head: int, source: Source) -> StripsAction:
+        return StripsAction(DERIVED, body, (head,), Fraction(0), source)

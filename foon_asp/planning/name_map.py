@@ -1,4 +1,4 @@
-"""What the names of a planning task stand for, as JSON, so that plans can be read back."""
+"""The map from the names of a planning task to units and nodes, as JSON, by which plans are read back."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,10 +18,11 @@ KIND = "pddl-map"
 
 
 class NameMap(NamedTuple):
-    """What the actions of a planning task stand for, and what the task is about.
+    """The meaning of the actions of a planning task, and the question that the task poses.
 
-    ``units`` has the unit of every action that executes one. ``taking`` are the names of the actions that
-    take a kitchen item. ``goals``, ``containers``, ``level`` and ``items`` are those of the question.
+    ``units`` maps an action's name to the unit that it executes. ``taking`` are the names of the actions that
+    take a kitchen item. ``goals``, ``containers``, ``level`` and ``items`` are those of the question;
+    ``items`` is ``None`` where items last.
     """
 
     units: Mapping[str, FunctionalUnit]
@@ -33,7 +34,7 @@ class NameMap(NamedTuple):
 
 
 def map_of(task: PlanningTask) -> NameMap:
-    """Give what the names of a task stand for, whether its actions take kitchen items or these are there."""
+    """Return the name map of a task."""
     problem, network = task.problem, task.problem.network
     return NameMap(
         {action.name: network.unit(action.unit) for action in task.actions if action.unit is not None},
@@ -46,16 +47,16 @@ def map_of(task: PlanningTask) -> NameMap:
 
 
 def map_json(task: PlanningTask) -> Json:
-    """Give the same as a document; nodes that units have in common stand there once, by name."""
+    """Return the name map of a task as a JSON document, in which units refer to nodes by name."""
     problem, network = task.problem, task.problem.network
     objects = dict(task.names)
-    for action in task.actions:  # what a unit may skip is no part of the task, and of the unit
+    for action in task.actions:  # a unit may have nodes that the task leaves out, such as bought items
         if action.unit is not None:
             for o in (*network.inputs[action.unit], *network.outputs[action.unit]):
                 objects.setdefault(o, f"unused-{network.object_number(o)}")
     actions = []
     for action in task.actions:
-        unit, inputs, outputs = action.unit, action.needs, action.gives
+        unit, inputs, outputs = action.unit, action.preconditions, action.add_effects
         if unit is not None:
             inputs, outputs = network.inputs[unit], network.outputs[unit]
         actions.append(
@@ -73,8 +74,12 @@ def map_json(task: PlanningTask) -> Json:
         problem,
         task.objectives,
         scales=[
-            {"objective": str(each.objective), "factor": fraction_text(each.factor), "rounded": each.rounded}
-            for each in task.costs.scales
+            {
+                "objective": str(scale.objective),
+                "factor": fraction_text(scale.factor),
+                "rounded": scale.rounded,
+            }
+            for scale in task.costs.scales
         ],
         objects=[{"name": name, "object": node} for name, node in named],
         actions=actions,
@@ -83,8 +88,8 @@ def map_json(task: PlanningTask) -> Json:
 
 
 def _items_json(network: Network, items: UsedUp) -> Json:
-    """Give what is in stock, and what somebody said of labels and nodes."""
-    said = [
+    """Return the stock, and the labels and nodes that the user declared to last or to be used up."""
+    declared = [
         {"label": name, "object": None}
         if isinstance(name, str)
         else {"label": None, "object": named_json(network, name)}
@@ -92,47 +97,53 @@ def _items_json(network: Network, items: UsedUp) -> Json:
     ]
     return {
         "stock": [{"object": named_json(network, o), "copies": n} for o, n in items.stock.items()],
-        "stays": [{**name, "stays": stays} for name, stays in zip(said, items.told.values(), strict=True)],
+        "stays": [
+            {**name, "stays": stays} for name, stays in zip(declared, items.told.values(), strict=True)
+        ],
     }
 
 
 def read_name_map(file: Path) -> NameMap:
     """Read a map from a file.
 
-    Raises :class:`UserError` for a file that cannot be read, or is not what :func:`map_json` gives, with the
-    place where it is not JSON.
+    Raises :class:`UserError` for a file that cannot be read, and for one that :func:`map_json` cannot have
+    made, with line and column where it is not JSON.
     """
     text = read_plain_text(file)
     check_json(text, str(file))
     try:
-        found = read_json(text)
-        if not isinstance(found, dict) or found.get("schema") != schema_name(KIND):
+        tree = read_json(text)
+        if not isinstance(tree, dict) or tree.get("schema") != schema_name(KIND):
             raise ValueError(f"its schema is not {schema_name(KIND)!r}")
-        return _read(found)
+        return _read(tree)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
+        reason = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise UserError(
-            f"{file}: expected the map of names that foon-asp export wrote (map.json), but {what}"
+            f"{file}: expected the map of names that foon-asp export wrote (map.json), but {reason}"
         ) from None
 
 
-def _read(found: Mapping[str, Any]) -> NameMap:
-    nodes = {each["name"]: read_node_json(each["object"]) for each in found["objects"]}
+def _read(tree: Mapping[str, Any]) -> NameMap:
+    """Return the name map of a JSON tree; a part that lacks or has another type is an error of Python."""
+    nodes = {entry["name"]: read_node_json(entry["object"]) for entry in tree["objects"]}
     units = {
         action["name"]: FunctionalUnit.of(
             action["unit"]["motion"],
-            [nodes[each] for each in action["inputs"]],
-            [nodes[each] for each in action["outputs"]],
+            [nodes[name] for name in action["inputs"]],
+            [nodes[name] for name in action["outputs"]],
         )
-        for action in found["actions"]
+        for action in tree["actions"]
         if action["unit"] is not None
     }
-    taking = frozenset(action["name"] for action in found["actions"] if action["unit"] is None)
-    goals = tuple(map(read_node_json, found["goals"]))
+    taking = frozenset(action["name"] for action in tree["actions"] if action["unit"] is None)
+    goals = tuple(map(read_node_json, tree["goals"]))
     items = None
-    if found["items"] == ITEMS[1]:
+    if tree["items"] == ITEMS[1]:
         items = UsedUp(
-            {each["label"] or read_node_json(each["object"]): bool(each["stays"]) for each in found["stays"]},
-            {read_node_json(each["object"]): int(each["copies"]) for each in found["stock"]},
+            {
+                entry["label"] or read_node_json(entry["object"]): bool(entry["stays"])
+                for entry in tree["stays"]
+            },
+            {read_node_json(entry["object"]): int(entry["copies"]) for entry in tree["stock"]},
         )
-    return NameMap(units, taking, goals, str(found["containers"]), int(found["level"]), items)
+    return NameMap(units, taking, goals, str(tree["containers"]), int(tree["level"]), items)

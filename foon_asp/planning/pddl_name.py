@@ -1,17 +1,17 @@
-"""Names that PDDL takes: what a thing is, its number, and a readable rest."""
+"""Identifiers of PDDL: a letter for the kind, a number, and readable words."""
 
 import re
 import unicodedata
 
-_LONGEST = 60  # letters of the readable rest
-_OTHER = re.compile("[^a-z0-9]+")
+_MAX_WORDS_LENGTH = 60  # letters of the readable words
+_SEPARATOR = re.compile("[^a-z0-9]+")
 
 
 def pddl_name(kind: str, number: int, words: str) -> str:
-    """Give a name such as ``u580-pour``, which no other thing of the kind has, whatever the words are.
+    """Return an identifier such as ``u580-pour``; kind and number make it unique, whatever the words are.
 
-    PDDL does not tell capital letters from small ones, and takes letters of ASCII, digits and dashes alone.
+    PDDL ignores the case of letters, and allows only ASCII letters, digits and dashes.
     """
     plain = unicodedata.normalize("NFKD", words).encode("ascii", "ignore").decode().lower()
-    rest = _OTHER.sub("-", plain).strip("-")[:_LONGEST].rstrip("-")
-    return f"{kind}{number}-{rest}" if rest else f"{kind}{number}"
+    suffix = _SEPARATOR.sub("-", plain).strip("-")[:_MAX_WORDS_LENGTH].rstrip("-")
+    return f"{kind}{number}-{suffix}" if suffix else f"{kind}{number}"

@@ -1,7 +1,7 @@
-"""The words of a PDDL file with their places: what it defines, and slips that its reader passes over.
+"""The tokens of a PDDL file with their positions: for the errors that the translator does not report.
 
-The translator of Fast Downward reads PDDL. For it, an action with a parameter of an undeclared type or with
-an undeclared cost is one that never runs, so that a slip would prove that there is no plan.
+For the translator of Fast Downward, an action with a parameter of an undeclared type or with an undeclared
+cost is never applicable, so that a misspelt name would prove that there is no plan.
 """
 
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ _BUILT_IN_TYPES = {"object", "number"}
 
 
 class Token(NamedTuple):
-    """A parenthesis, or a word in small letters, and its place in the text: lines and columns from 1."""
+    """A parenthesis, or a word in lower case, and its position in the text: line and column from 1."""
 
     text: str
     line: int
@@ -26,7 +26,7 @@ class Token(NamedTuple):
 
 @dataclass(frozen=True)
 class PddlOutline:
-    """A PDDL file as a sequence of words and parentheses."""
+    """A PDDL file as a sequence of tokens."""
 
     file: str
     text: str
@@ -38,7 +38,7 @@ class PddlOutline:
 
     @property
     def kind(self) -> str:
-        """What the file defines: ``domain``, ``problem``, or empty where it is no PDDL."""
+        """The kind of definition: ``domain`` or ``problem``; empty where the file is no PDDL."""
         words = [token.text for token in self.tokens[:4]]
         return words[3] if words[:3] == ["(", "define", "("] and len(words) == 4 else ""
 
@@ -52,57 +52,59 @@ class PddlOutline:
         return split_lines(self.text)
 
     def section(self, name: str) -> set[str]:
-        """Return the words of the sections of a name, such as ``:types``."""
+        """Return the words in all sections of a name, such as ``:types``."""
         words: set[str] = set()
-        depth = inside = 0
-        for before, token in zip(self.tokens, self.tokens[1:], strict=False):
-            depth += (before.text == "(") - (before.text == ")")
-            if depth < inside:
-                inside = 0
-            if token.text == name and before.text == "(":
-                inside = depth
-            elif inside:
+        depth = section_depth = 0
+        for previous, token in zip(self.tokens, self.tokens[1:], strict=False):
+            depth += (previous.text == "(") - (previous.text == ")")
+            if depth < section_depth:
+                section_depth = 0
+            if token.text == name and previous.text == "(":
+                section_depth = depth
+            elif section_depth:
                 words.add(token.text)
         return words
 
     def require_types(self, types: set[str]) -> None:
         """Raise :class:`InputError` for a type that is not among the declared ones."""
         tokens = self.tokens
-        for place, token in enumerate(tokens[:-2]):
+        for index, token in enumerate(tokens[:-2]):
             if token.text != "-":
                 continue
-            kinds = [tokens[place + 1]]
-            if kinds[0].text == "(":  # (either TYPE TYPE)
-                kinds = tokens[place + 3 : _closing(tokens, place + 1)]
-            for kind in kinds:
-                if kind.text not in types:
-                    self.fault(kind, f"found the type {kind.text}, which the domain does not declare")
+            type_tokens = [tokens[index + 1]]
+            if type_tokens[0].text == "(":  # (either TYPE TYPE)
+                type_tokens = tokens[index + 3 : _closing(tokens, index + 1)]
+            for type_token in type_tokens:
+                if type_token.text not in types:
+                    self.fault(
+                        type_token, f"found the type {type_token.text}, which the domain does not declare"
+                    )
 
     def require_costs(self, functions: set[str]) -> None:
         """Raise :class:`InputError` for a cost that is not declared, or the second one of an action.
 
-        The translator would count the last cost of an action alone.
+        The translator would count only the last cost of an action.
         """
         costs = 0
-        for place, token in enumerate(self.tokens[:-5]):
+        for index, token in enumerate(self.tokens[:-5]):
             if token.text == ":action":
                 costs = 0
             elif token.text == "increase":
                 costs += 1
                 if costs > 1:
                     self.fault(token, "found a second cost of an action, expected one (increase ...)")
-                opening, function = self.tokens[place + 4 : place + 6]  # after (total-cost)
+                opening, function = self.tokens[index + 4 : index + 6]  # after (total-cost)
                 if opening.text == "(" and function.text not in functions:
                     self.fault(function, f"found the cost {function.text}, which the domain does not declare")
 
     def fault(self, token: Token, message: str) -> NoReturn:
-        """Raise :class:`InputError` about a place."""
+        """Raise :class:`InputError` with a message and the position of a token."""
         source = Source(self.file, token.line, token.column)
         raise InputError([Diagnostic(Severity.ERROR, "pddl", message, source, self._lines[token.line - 1])])
 
 
 def require_task(domain: PddlOutline, problem: PddlOutline) -> None:
-    """Raise :class:`InputError` where a problem is not of a domain, or a name in them is not declared."""
+    """Raise :class:`InputError` where a problem is of another domain, or a type or cost is not declared."""
     for token, word in zip(problem.tokens, problem.tokens[1:], strict=False):
         if token.text == ":domain" and word.text != domain.name:
             problem.fault(
@@ -116,19 +118,19 @@ def require_task(domain: PddlOutline, problem: PddlOutline) -> None:
     domain.require_costs(domain.section(":functions"))
 
 
-def _closing(tokens: list[Token], place: int) -> int:
-    """Return the place of the parenthesis that closes the one at a place."""
-    return next((n for n in range(place, len(tokens)) if tokens[n].text == ")"), len(tokens))
+def _closing(tokens: list[Token], opening: int) -> int:
+    """Return the index of the first closing parenthesis after the one at ``opening``."""
+    return next((index for index in range(opening, len(tokens)) if tokens[index].text == ")"), len(tokens))
 
 
 def _tokens(lines: list[str]) -> Iterator[Token]:
     for number, line in enumerate(lines, 1):
         content = line.split(";", 1)[0].lower()
         begin = 0
-        for place, letter in enumerate(content + " "):
+        for index, letter in enumerate(content + " "):
             if letter in "()?" or letter.isspace():
-                if place > begin:
-                    yield Token(content[begin:place], number, begin + 1)
+                if index > begin:
+                    yield Token(content[begin:index], number, begin + 1)
                 if letter in "()":
-                    yield Token(letter, number, place + 1)
-                begin = place + (letter != "?")  # a ? begins a word
+                    yield Token(letter, number, index + 1)
+                begin = index + (letter != "?")  # a ? begins a word

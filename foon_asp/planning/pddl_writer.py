@@ -1,4 +1,4 @@
-"""A planning task as PDDL: STRIPS with action costs, and numbers of copies where these are counted."""
+"""A planning task as PDDL: STRIPS with action costs, and numeric fluents where copies are counted."""
 
 from collections.abc import Iterable, Iterator
 
@@ -12,17 +12,17 @@ COPIES = "copies"
 
 
 def domain_text(task: PlanningTask) -> str:
-    """Give the domain: a constant for each object node, and an action for each unit."""
+    """Return the text of the domain: a constant for each object node, and an action for each unit."""
     return "\n".join(_domain(task)) + "\n"
 
 
 def problem_text(task: PlanningTask) -> str:
-    """Give the problem: what is at hand, and the goals."""
+    """Return the text of the problem: the initial state and the goals."""
     return "\n".join(_problem(task)) + "\n"
 
 
 def scale_words(scale: Scale) -> str:
-    """Say how an objective became whole numbers."""
+    """Return a comment on the scale of an objective."""
     if multiplies(scale.objective):
         return f"{scale.objective}: -ln of the rates, times {scale.factor}, rounded to whole numbers"
     exact = "rounded to whole numbers" if scale.rounded else "exact"
@@ -30,7 +30,7 @@ def scale_words(scale: Scale) -> str:
 
 
 def items_words(task: PlanningTask) -> str:
-    """Say what becomes of copies."""
+    """Return a comment on how copies of items are modelled."""
     if task.problem.items is None:
         return "items last, so that no action deletes anything"
     if not task.merged:
@@ -39,6 +39,7 @@ def items_words(task: PlanningTask) -> str:
 
 
 def _domain(task: PlanningTask) -> Iterator[str]:
+    """Return the lines of the domain."""
     network, costed = task.problem.network, not task.costs.unit_cost
     yield f"; A FOON, {task.problem.conditions}: {items_words(task)}."
     yield "; Costs of actions, the most important first:"
@@ -57,12 +58,13 @@ def _domain(task: PlanningTask) -> Iterator[str]:
     for action in task.actions:
         yield f"  (:action {action.name}"
         yield "    :parameters ()"
-        yield f"    :precondition {_at_hand(task, action.needs)}"
+        yield f"    :precondition {_at_hand(task, action.preconditions)}"
         yield f"    :effect {_effect(task, action, costed)})"
     yield ")"
 
 
 def _problem(task: PlanningTask) -> Iterator[str]:
+    """Return the lines of the problem."""
     yield f"(define (problem {DOMAIN}-goal)"
     yield f"  (:domain {DOMAIN})"
     yield "  (:init"
@@ -78,29 +80,31 @@ def _problem(task: PlanningTask) -> Iterator[str]:
 
 
 def _at_hand(task: PlanningTask, nodes: Iterable[int]) -> str:
-    parts = [
+    """Return the condition that a copy of each node is available."""
+    atoms = [
         f"(>= ({COPIES} {task.names[o]}) 1)" if o in task.counted else f"({AT_HAND} {task.names[o]})"
         for o in nodes
     ]
-    return " ".join(["(and", *parts]) + ")"
+    return " ".join(["(and", *atoms]) + ")"
 
 
 def _effect(task: PlanningTask, action: Action, costed: bool) -> str:
+    """Return the effect of an action: what it adds, what it consumes, and its cost."""
     counted = task.counted
-    parts = [
+    effects = [
         f"(increase ({COPIES} {task.names[o]}) 1)" if o in counted else f"({AT_HAND} {task.names[o]})"
-        for o in action.gives
+        for o in action.add_effects
     ]
-    parts += [
+    effects += [
         f"(decrease ({COPIES} {task.names[o]}) 1)" if o in counted else f"(not ({AT_HAND} {task.names[o]}))"
-        for o in action.uses
+        for o in action.consumption
     ]
     if costed:
-        parts.append(f"(increase (total-cost) {action.cost})")
-    return " ".join(["(and", *parts]) + ")"
+        effects.append(f"(increase (total-cost) {action.cost})")
+    return " ".join(["(and", *effects]) + ")"
 
 
 def _comment(text: str) -> str:
-    """Write a text in letters that every reader of PDDL takes, on one line."""
+    """Return a text in printable ASCII, on one line, which every PDDL reader accepts."""
     plain = text.encode("ascii", "backslashreplace").decode()
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in plain)

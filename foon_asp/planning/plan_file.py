@@ -1,6 +1,6 @@
-"""Plans as planners write them: Fast Downward, Metric-FF, pyperplan, those of the IPC, unified-planning.
+"""Reader of plan files: of Fast Downward, Metric-FF, pyperplan, planners of the IPC and unified-planning.
 
-Of Fast Downward and Metric-FF, the plan may also stand in all that they print: their log.
+The log that Fast Downward or Metric-FF prints is read as well, for the plan in it.
 """
 
 import difflib
@@ -26,7 +26,9 @@ _STEP = re.compile(
 )
 
 _STAMP = r"(?:\[t=[^\]]*\]\s*)?"  # of Fast Downward: [t=0.002s, 9948 KB]
-_LOG = re.compile(r"\[t=|INFO\s|ff: |problem proven unsolvable", re.IGNORECASE)  # a line of a log begins so
+_LOG = re.compile(
+    r"\[t=|INFO\s|ff: |problem proven unsolvable", re.IGNORECASE
+)  # the beginning of a log's line
 _PLAN_FOLLOWS = re.compile(rf"{_STAMP}solution found!|ff: found (?:a )?(?:legal )?plan", re.IGNORECASE)
 _PLAN_ENDS = re.compile(rf"{_STAMP}plan (?:length|cost):|plan cost:|time spent:", re.IGNORECASE)
 _BETWEEN = re.compile(rf"{_STAMP}actual search time:", re.IGNORECASE)
@@ -36,14 +38,14 @@ _COST = re.compile(r"\s\(\d+\)\s*\Z")  # of a step of Fast Downward: u26-twist (
 
 
 class PlanStep(NamedTuple):
-    """A step of a plan: the unit that it executes, and its place in the file."""
+    """A step of a plan: the unit that it executes, and its line and column in the file."""
 
     unit: FunctionalUnit
-    place: Source
+    source: Source
 
 
 def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
-    """Read the units that a plan executes, in its order; taking an item from the kitchen is no step.
+    """Return the units that a plan executes, in its order; actions that take a kitchen item are left out.
 
     Raises :class:`InputError` for lines that are no steps of a plan, for names that the map does not have,
     and for a log without a plan.
@@ -75,8 +77,8 @@ def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
             steps.append(PlanStep(names.units[name], Source(file, number, column)))
         elif name not in names.taking:
             column = step.start("listed" if step["listed"] else "bare")
-            near = difflib.get_close_matches(name, names.units, 3)
-            advice = f", such as {' or '.join(near)}" if near else ""
+            similar = difflib.get_close_matches(name, names.units, 3)
+            advice = f", such as {' or '.join(similar)}" if similar else ""
             faults.append(
                 _fault(
                     file, number, line, column, f"found {written!r}, expected an action of the map{advice}"
@@ -88,10 +90,13 @@ def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
 
 
 def _plan_lines(lines: Sequence[str], file: str) -> Sequence[tuple[int, str]]:
-    """Return the lines of a plan with their numbers: all lines, or those of the last plan in a log."""
-    follows = [place for place, line in enumerate(lines) if _PLAN_FOLLOWS.match(line.strip())]
+    """Return the lines of a plan with their numbers: all lines, or those of the last plan in a log.
+
+    Raises :class:`InputError` for a log without a plan, or whose plan is cut off.
+    """
+    follows = [index for index, line in enumerate(lines) if _PLAN_FOLLOWS.match(line.strip())]
     if not follows:
-        log = next((place for place, line in enumerate(lines) if _LOG.match(line.strip())), None)
+        log = next((index for index, line in enumerate(lines) if _LOG.match(line.strip())), None)
         if log is not None:
             message = "found the log of a planner without a plan in it, expected one that found a plan"
             raise InputError([_fault(file, log + 1, lines[log], 0, message)])
@@ -114,11 +119,12 @@ def _plan_lines(lines: Sequence[str], file: str) -> Sequence[tuple[int, str]]:
 
 
 def _bare(line: str) -> str:
-    """Return a line of a log with blanks in the place of its time stamp, and without its cost."""
+    """Return a line of a log with blanks instead of its time stamp, and without the cost of its step."""
     stamp = _STAMPED.match(line)
     blanks = " " * (stamp.end() if stamp else 0)
     return _COST.sub("", blanks + line[len(blanks) :])
 
 
 def _fault(file: str, number: int, line: str, column: int, message: str) -> Diagnostic:
+    """Return an error at a line, by number from 1, and a column, from 0."""
     return Diagnostic(Severity.ERROR, "plan", message, Source(file, number, column + 1), line)

@@ -1,4 +1,4 @@
-"""The planning task that the translator of Fast Downward writes (output.sas)."""
+"""Reader of Fast Downward's translator format, a planning task in finite-domain variables (output.sas)."""
 
 import re
 from collections import Counter
@@ -10,41 +10,42 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.plain_file import split_lines
 
 BEGINNING = "begin_version"
-_VERSION = 3
+_FORMAT_VERSION = 3
 _ATOM = re.compile(r"(?P<negated>Negated)?Atom (?P<predicate>[^\s()]+)\((?P<terms>[^()]*)\)")
 
 
 class SasEffect(NamedTuple):
-    """A fact that an operator makes true where all facts of a condition hold."""
+    """A conditional effect: an operator adds ``fact`` where all facts of ``condition`` hold."""
 
     condition: tuple[int, ...]
     fact: int
 
 
 class SasOperator(NamedTuple):
-    """An operator by name: its preconditions, its effects, its cost, and its place."""
+    """An operator by name: its preconditions, effects and cost, and its line in the file."""
 
     name: str
     preconditions: tuple[int, ...]
     effects: list[SasEffect]
     cost: int
-    place: Source
+    source: Source
 
 
 class SasAxiom(NamedTuple):
-    """A rule that derives the fact ``head`` wherever all facts of ``body`` hold."""
+    """An axiom: it derives the fact ``head`` where all facts of ``body`` hold."""
 
     body: tuple[int, ...]
     head: int
-    place: Source
+    source: Source
 
 
 @dataclass(frozen=True)
 class SasTask:
-    """A planning task in finite-domain variables; a fact is a value of a variable, by number.
+    """A planning task in finite-domain variables (Helmert 2009); a fact is a value of a variable, by number.
 
-    ``variables`` has the facts of each variable, ``derived`` the variables that axioms set, and ``start``
-    the fact of each variable in the initial state: of a derived one, the value that it has by default.
+    ``variables`` are the facts of each variable, ``derived`` the variables that axioms set, and ``start``
+    the initial state, as the fact of each variable: of a derived variable, its default value. ``costed``
+    says whether the metric counts the costs of operators; otherwise each costs 1.
     """
 
     file: str
@@ -59,11 +60,16 @@ class SasTask:
 
 
 def parse_sas(text: str, file: str) -> SasTask:
-    """Parse a file of the translator; raises :class:`InputError` for what is not of its form."""
+    """Return the task in the text of a file of the translator.
+
+    Raises :class:`InputError` for lines that are not of the format.
+    """
     return _Reader(text, file).read()
 
 
 class _Reader:
+    """A recursive-descent parser over lines."""
+
     def __init__(self, text: str, file: str) -> None:
         self._lines, self._file, self._line = split_lines(text), file, 0
         self._variables: list[range] = []
@@ -71,8 +77,8 @@ class _Reader:
 
     def read(self) -> SasTask:
         self._expect("begin_version")
-        if self._number() != _VERSION:
-            self._fault(f"found another version, expected {_VERSION}")
+        if self._number() != _FORMAT_VERSION:
+            self._fault(f"found another version, expected {_FORMAT_VERSION}")
         self._expect("end_version", "begin_metric")
         costed = bool(self._number())
         self._expect("end_metric")
@@ -106,7 +112,7 @@ class _Reader:
 
     def _operator(self) -> SasOperator:
         self._expect("begin_operator")
-        name, place = self._next().rstrip(), Source(self._file, self._line)
+        name, source = self._next().rstrip(), Source(self._file, self._line)
         preconditions, effects = [*self._values()], list[SasEffect]()
         for _ in range(self._number()):
             count, *numbers = self._numbers(None)
@@ -119,17 +125,17 @@ class _Reader:
             effects.append(SasEffect(condition, self._value(variable, after)))
         cost = self._number()
         self._expect("end_operator")
-        return SasOperator(f"({name})", tuple(dict.fromkeys(preconditions)), effects, cost, place)
+        return SasOperator(f"({name})", tuple(dict.fromkeys(preconditions)), effects, cost, source)
 
     def _axiom(self) -> SasAxiom:
         self._expect("begin_rule")
-        place = Source(self._file, self._line)
+        source = Source(self._file, self._line)
         body = self._values()
         variable, _, after = self._numbers(3)
         if variable not in self._derived:
             self._fault(f"found an axiom that sets the variable {variable}, which no axiom may set")
         self._expect("end_rule")
-        return SasAxiom(body, self._value(variable, after), place)
+        return SasAxiom(body, self._value(variable, after), source)
 
     def _values(self) -> tuple[int, ...]:
         return tuple(self._value(*self._numbers(2)) for _ in range(self._number()))
@@ -151,11 +157,11 @@ class _Reader:
         (number,) = self._numbers(1)
         return number
 
-    def _expect(self, *words: str) -> None:
-        for word in words:
-            found = self._next()
-            if found.strip() != word:
-                self._fault(f"found {found[:80]!r}, expected {word}")
+    def _expect(self, *keywords: str) -> None:
+        for keyword in keywords:
+            line = self._next()
+            if line.strip() != keyword:
+                self._fault(f"found {line[:80]!r}, expected {keyword}")
 
     def _next(self) -> str:
         if self._line == len(self._lines):
@@ -170,7 +176,7 @@ class _Reader:
 
 
 def _fact(name: str, variable: str) -> str:
-    """Name a value as PDDL has its atom; one that is no atom is named with its variable."""
+    """Return the PDDL atom of a value, or where it has none, the name of its variable and its own."""
     atom = _ATOM.fullmatch(name)
     if atom is None:
         return f"({variable} {name})"
@@ -180,7 +186,7 @@ def _fact(name: str, variable: str) -> str:
 
 
 def _unique(names: list[list[str]]) -> list[str]:
-    """Give all facts in order, each by a name of its own."""
+    """Return the names of all facts in order, made unique by the number of their variable."""
     counts = Counter(name for values in names for name in values)
     return [
         f"{name} [var{variable}]" if counts[name] > 1 else name

@@ -1,4 +1,4 @@
-"""A plan as a scheduling task: how long its steps take, what they wait for, and which tools they hold."""
+"""A plan as a scheduling task: durations of steps, precedences, and the tools that steps occupy."""
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
@@ -11,14 +11,14 @@ from foon_asp.problem import Problem
 from foon_asp.proof.replay import Copy, Replay, readers, waits
 from foon_asp.proof.timetable import Means, ToolName, tools_asked
 
-_LONGEST = 10**12  # ticks of a whole plan: CP-SAT's numbers are not without end
+_MAX_TICKS = 10**12  # of all steps together: CP-SAT's integers have 64 bits
 
 
 class Use(NamedTuple):
-    """A tool that is fetched from the kitchen and then in use: ``steps`` take it, one at a time.
+    """One use of a tool from the kitchen by ``steps``, which do not overlap.
 
-    It is not there for others from the start of the first of them to the end of the last, for it is in a
-    state that a later one needs.
+    The tool is occupied from the start of the first step to the end of the last one, as it is in a state
+    that a later step needs.
     """
 
     name: ToolName
@@ -26,11 +26,12 @@ class Use(NamedTuple):
 
 
 class ScheduleTask(NamedTuple):
-    """Steps by position: ``lengths`` in ticks of ``tick`` seconds, and which are ``passive``.
+    """A resource-constrained scheduling problem over the steps of a plan, by position.
 
-    ``after`` are the steps that each waits for. ``uses`` are all uses of tools, and ``counts`` says how many
-    there are of each. ``at_step`` are the uses that each step is part of. ``sharing`` are sets of steps that
-    need one copy of something, and have it one after the other.
+    ``lengths`` are durations in ticks of ``tick`` seconds; a ``passive`` step occupies no agent. ``after``
+    are the steps that each step waits for. ``uses`` are all uses of tools, and ``counts`` the number of
+    copies of each tool. ``sharing`` are sets of steps that need the same copy of an item, and so must not
+    overlap.
     """
 
     tick: Fraction
@@ -45,15 +46,15 @@ class ScheduleTask(NamedTuple):
     @property
     def at_step(self) -> list[list[int]]:
         """The uses that each step is part of, in order."""
-        found: list[list[int]] = [[] for _ in self.lengths]
+        uses_of: list[list[int]] = [[] for _ in self.lengths]
         for use, (_, steps) in enumerate(self.uses):
             for step in steps:
-                found[step].append(use)
-        return found
+                uses_of[step].append(use)
+        return uses_of
 
     @property
     def bound(self) -> int:
-        """A time, in ticks, that no schedule stays below: that of the longest chain, and of all work."""
+        """A lower bound on the makespan, in ticks: the critical path, and the work divided among agents."""
         ready: list[int] = []
         for length, after in zip(self.lengths, self.after, strict=True):
             ready.append(length + max((ready[step] for step in after), default=0))
@@ -64,18 +65,18 @@ class ScheduleTask(NamedTuple):
 def schedule_task(
     problem: Problem, plan: Sequence[FunctionalUnit], replay: Replay, means: Means
 ) -> ScheduleTask:
-    """Make the task of a plan that runs, as it was replayed: which step takes which copy stays as it is.
+    """Return the scheduling task of an executable plan; each step takes the copies that ``replay`` gave it.
 
-    Raises :class:`UserError` for durations that are too fine for their sum.
+    Raises :class:`UserError` where the durations have too many digits to be added up in ticks.
     """
     seconds = [Fraction(means.durations[unit.motion].seconds) for unit in plan]
-    parts = lcm(*(each.denominator for each in seconds))
-    lengths = tuple(int(each * parts) for each in seconds)
-    if sum(lengths) > _LONGEST:
+    ticks_per_second = lcm(*(duration.denominator for duration in seconds))
+    lengths = tuple(int(duration * ticks_per_second) for duration in seconds)
+    if sum(lengths) > _MAX_TICKS:
         raise UserError("the durations are too fine for so long a plan: round them")
     uses = _uses(problem, replay, means)
     return ScheduleTask(
-        Fraction(1, parts),
+        Fraction(1, ticks_per_second),
         lengths,
         tuple(means.durations[unit.motion].passive for unit in plan),
         tuple(map(frozenset, waits(replay))),
@@ -87,14 +88,14 @@ def schedule_task(
 
 
 def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
-    """Follow each tool from step to step by the copies that are made of it, and of what is in it."""
+    """Return the uses of tools, each followed from step to step by the copies of a tool and its contents."""
     names: list[ToolName] = []
     steps: list[list[int]] = []
-    known: dict[tuple[Copy, str], int] = {}  # the use of a label that a made copy belongs to
+    use_of: dict[tuple[Copy, str], int] = {}  # the use of a tool with this label that a made copy belongs to
 
     def take(number: int, label: str, node: ObjectNode | None, copy: Copy | None) -> int:
-        """Let a step take a tool: one that is in use, or another from the kitchen."""
-        use = None if copy is None else known.get((copy, label))
+        """Return the use of a tool by a step: one that continues, or a new one, fetched from the kitchen."""
+        use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:
             names.append(label if node is None or not problem.at_hand(node) else means.name(node, label))
             steps.append([])
@@ -104,27 +105,30 @@ def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
 
     for number, step in enumerate(replay.steps):
         copies = {copy.node: copy for copy in (*step.gone, *step.stayed)}
-        for label, asked in tools_asked(problem, means, step.unit).items():
-            here = {node: take(number, label, node, copies.get(node)) for node in asked.kept}
-            left = {
+        for label, demand in tools_asked(problem, means, step.unit).items():
+            after = {node: take(number, label, node, copies.get(node)) for node in demand.kept}
+            changed = {
                 node: take(number, label, node, None if node is None else copies.get(node))
-                for node in (*asked.changed, *asked.others)
+                for node in (*demand.changed, *demand.others)
             }
-            last = next(iter((left or here).values()), None)
-            for made in asked.made:
-                here[made] = left.pop(_most_alike(left, made)) if left else take(number, label, None, None)
-                known[Copy(made, number), label] = here[made]
+            fallback = next(iter((changed or after).values()), None)
+            for made in demand.made:
+                if changed:
+                    after[made] = changed.pop(_most_similar(changed, made))
+                else:
+                    after[made] = take(number, label, None, None)
+                use_of[Copy(made, number), label] = after[made]
             for copy in step.came:
                 if copy.node.label != label and copy.node.is_in(label):
-                    vessels = (use for node, use in here.items() if copy.node.label in node.ingredients)
-                    use = next(vessels, next(iter(here.values()), last))
+                    vessels = (use for node, use in after.items() if copy.node.label in node.ingredients)
+                    use = next(vessels, next(iter(after.values()), fallback))
                     if use is not None:
-                        known[copy, label] = use
-    return tuple(Use(name, tuple(which)) for name, which in zip(names, steps, strict=True))
+                        use_of[copy, label] = use
+    return tuple(Use(name, tuple(positions)) for name, positions in zip(names, steps, strict=True))
 
 
-def _most_alike(before: Iterable[ObjectNode | None], after: ObjectNode) -> ObjectNode | None:
-    """Give what has most in common with what is in a vessel afterwards, the first of several."""
+def _most_similar(before: Iterable[ObjectNode | None], after: ObjectNode) -> ObjectNode | None:
+    """Return the node with the most ingredients in common with ``after``; ties go to the first."""
     return max(
         before, key=lambda node: 0 if node is None else len({*node.ingredients} & {*after.ingredients})
     )

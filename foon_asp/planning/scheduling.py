@@ -1,4 +1,4 @@
-"""The shortest schedule of a task: asked of another process, and put in order."""
+"""Schedules of least makespan: from CP-SAT in another process, with agents and tools assigned."""
 
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
@@ -16,14 +16,14 @@ from foon_asp.proof.timetable import TimedStep, Tool, ToolName
 
 _MISSING = "a schedule needs OR-Tools: pip install 'foon-asp[schedule]'"
 _KEY = "foon_asp.planning.cp_sat"
-_EXACT = 1e-6  # a bound arrives as a float: one so little above a whole number is that number
+_TICK_TOLERANCE = 1e-6  # of a bound in ticks, which is a float: so little above a whole number is that number
 
 
-class Found(NamedTuple):
-    """What was found: ``starts`` in ticks, ``None`` without a schedule, and a ``bound`` that none is below.
+class BestSchedule(NamedTuple):
+    """The best schedule: ``starts`` of steps in ticks, or ``None``, and a lower ``bound`` on the makespan.
 
-    ``proved`` says that there is nothing shorter; without a schedule, that there is none. ``lacking`` says
-    then how many tools are enough: the fewest more, unless a limit came before that was known.
+    ``proved`` says that no schedule is shorter; without ``starts``, that none exists. ``lacking`` then maps
+    tools to numbers of copies that suffice: the fewest additional ones, unless a limit stopped this search.
     """
 
     starts: tuple[int, ...] | None
@@ -32,8 +32,8 @@ class Found(NamedTuple):
     lacking: dict[ToolName, int]
 
 
-def shortest(task: ScheduleTask, deadline: Deadline) -> Found:
-    """Look for a shortest schedule until the limits, or ctrl-C.
+def shortest(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
+    """Minimize the makespan until it is proved optimal, or until a limit or ctrl-C; return the best schedule.
 
     Raises :class:`UserError` where OR-Tools is not installed.
     """
@@ -43,46 +43,49 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> Found:
         order = tool_order(task, deadline)
     except KeyboardInterrupt:  # at a limit, too
         deadline.interrupt()
-        starts, lacking = _one_by_one(task)
-        return Found(starts, task.bound, False, lacking)
+        starts, lacking = _sequential(task)
+        return BestSchedule(starts, task.bound, False, lacking)
     if order.steps is None:
-        return Found(None, task.bound, True, order.lacking or _one_by_one(task)[1])
+        return BestSchedule(None, task.bound, True, order.lacking or _sequential(task)[1])
     deadline.doing = "scheduling"
-    best = first_schedule(task, order.steps)
+    incumbent = first_schedule(task, order.steps)
     bound = task.bound
 
-    def found(starts: list[int]) -> None:
-        nonlocal best
-        best = tuple(starts)
+    def improve(starts: Sequence[int]) -> None:
+        nonlocal incumbent
+        incumbent = tuple(starts)
 
-    def bounded(value: float) -> None:
+    def raise_bound(value: float) -> None:
         nonlocal bound
-        bound = max(bound, ceil(value - _EXACT))
+        bound = max(bound, ceil(value - _TICK_TOLERANCE))
 
     worker = take(_KEY, lambda: Worker(_KEY, "schedules are found"))
     try:
-        kind, ended = worker.ask(packed((task, best)), deadline, {"found": found, "bound": bounded})
+        kind, status = worker.ask(
+            packed((task, incumbent)), deadline, {"found": improve, "bound": raise_bound}
+        )
     except LimitError:
-        kind, ended = "end", "limit"
+        kind, status = "end", "limit"
     except DiedError as died:
         raise BugError(f"CP-SAT {died}") from None
     if kind == "missing":
         worker.end()
-        raise UserError(f"{_MISSING} ({ended})")
+        raise UserError(f"{_MISSING} ({status})")
     give_back(_KEY, worker)
-    if ended not in {"proved", "limit"}:
-        raise BugError(f"CP-SAT ends with {ended}")
-    if ended == "proved":
-        bound = _length(task, best)
-    return Found(best, bound, _length(task, best) == bound, {})
+    if status not in {"proved", "limit"}:
+        raise BugError(f"CP-SAT ends with {status}")
+    makespan = _makespan(task, incumbent)
+    if status == "proved":
+        bound = makespan
+    return BestSchedule(incumbent, bound, makespan == bound, {})
 
 
-def _one_by_one(task: ScheduleTask) -> tuple[tuple[int, ...] | None, dict[ToolName, int]]:
-    """Do the steps as listed, one after the other; without enough tools, say how many that takes."""
+def _sequential(task: ScheduleTask) -> tuple[tuple[int, ...] | None, dict[ToolName, int]]:
+    """Return the schedule of the steps as listed, without overlap, or ``None`` and the lacking tools."""
     spans = [(use.name, min(use.steps), max(use.steps)) for use in task.uses]
     needed = {
         name: max(
-            sum(each == name and first <= step <= last for each, first, last in spans)
+            sum(tool == name and first <= step <= last for tool, first, last in spans)
             for step in range(len(task.lengths))
         )
         for name in task.counts
@@ -92,30 +95,30 @@ def _one_by_one(task: ScheduleTask) -> tuple[tuple[int, ...] | None, dict[ToolNa
     return (None, lacking) if lacking else (starts, {})
 
 
-def _length(task: ScheduleTask, starts: Sequence[int]) -> int:
+def _makespan(task: ScheduleTask, starts: Sequence[int]) -> int:
     return max((start + n for start, n in zip(starts, task.lengths, strict=True)), default=0)
 
 
 def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
-    """Say who does each step with what, and let each start as early as that allows."""
+    """Return the steps of a schedule with agents and tools, each as early as these assignments allow."""
     ends = [start + length for start, length in zip(starts, task.lengths, strict=True)]
     active = [step for step, passive in enumerate(task.passive) if not passive]
-    agents = _numbers({step: (starts[step], ends[step]) for step in active})
+    agents = _color({step: (starts[step], ends[step]) for step in active})
     spans = [(min(starts[s] for s in use.steps), max(ends[s] for s in use.steps)) for use in task.uses]
     tools: dict[int, Tool] = {}
     for name in task.counts:
-        own = {use: spans[use] for use, (named, _) in enumerate(task.uses) if named == name}
-        tools |= {use: Tool(name, number) for use, number in _numbers(own).items()}
-    after = [set(each) for each in task.after]
+        spans_of_tool = {use: spans[use] for use, (tool, _) in enumerate(task.uses) if tool == name}
+        tools |= {use: Tool(name, number) for use, number in _color(spans_of_tool).items()}
+    after = [set(earlier) for earlier in task.after]
     for earlier, later in _followers(task, starts, spans, agents, tools):
         after[later].add(earlier)
-    early: dict[int, int] = {}
+    earliest: dict[int, int] = {}
     for step in sorted(range(len(starts)), key=lambda step: starts[step]):
-        early[step] = max((early[before] + task.lengths[before] for before in after[step]), default=0)
+        earliest[step] = max((earliest[before] + task.lengths[before] for before in after[step]), default=0)
     return [
         TimedStep(
-            early[step] * task.tick,
-            (early[step] + task.lengths[step]) * task.tick,
+            earliest[step] * task.tick,
+            (earliest[step] + task.lengths[step]) * task.tick,
             agents.get(step),
             tuple(tools[use] for use in uses),
         )
@@ -123,17 +126,20 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
     ]
 
 
-def _numbers(spans: dict[int, tuple[int, int]]) -> dict[int, int]:
-    """Give each span a number from 1 that no other has at the time: the one that is free the longest."""
+def _color(spans: dict[int, tuple[int, int]]) -> dict[int, int]:
+    """Color an interval graph: return a number from 1 for each span, distinct among spans that overlap.
+
+    Of the free numbers, a span gets the one that is free the longest.
+    """
     free_at: list[int] = []
     numbers: dict[int, int] = {}
-    for each, (start, end) in sorted(spans.items(), key=lambda item: (item[1], item[0])):
+    for key, (start, end) in sorted(spans.items(), key=lambda item: (item[1], item[0])):
         free = [number for number, time in enumerate(free_at) if time <= start]
         number = min(free, key=lambda number: (free_at[number], number), default=len(free_at))
         if number == len(free_at):
             free_at.append(end)
         free_at[number] = end
-        numbers[each] = number + 1
+        numbers[key] = number + 1
     return numbers
 
 
@@ -144,18 +150,18 @@ def _followers(
     agents: dict[int, int],
     tools: dict[int, Tool],
 ) -> Iterator[tuple[int, int]]:
-    """Return pairs of steps of which the second follows the first: they share a hand, a tool or a copy."""
+    """Return pairs of steps of which the second follows the first: they share an agent, a tool or a copy."""
     uses = task.uses
-    hands: dict[int, list[int]] = {}
+    steps_of_agent: dict[int, list[int]] = {}
     for step, agent in agents.items():
-        hands.setdefault(agent, []).append(step)
-    for steps in (*hands.values(), *(use.steps for use in uses), *task.sharing):
+        steps_of_agent.setdefault(agent, []).append(step)
+    for steps in (*steps_of_agent.values(), *(use.steps for use in uses), *task.sharing):
         in_order = sorted(steps, key=lambda step: starts[step])
         yield from pairwise(in_order)
-    turns: dict[Tool, list[int]] = {}
+    uses_of_tool: dict[Tool, list[int]] = {}
     for use, tool in tools.items():
-        turns.setdefault(tool, []).append(use)
-    for turn in turns.values():
-        in_order = sorted(turn, key=lambda use: spans[use])
+        uses_of_tool.setdefault(tool, []).append(use)
+    for tool_uses in uses_of_tool.values():
+        in_order = sorted(tool_uses, key=lambda use: spans[use])
         for first, second in pairwise(in_order):
             yield from ((before, later) for before in uses[first].steps for later in uses[second].steps)

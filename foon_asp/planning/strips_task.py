@@ -1,4 +1,4 @@
-"""A planning task without deletes: facts, and actions that need some and give others."""
+"""STRIPS tasks without delete effects: facts, and actions with preconditions, add effects and costs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,21 +13,21 @@ DERIVED = "axiom"
 
 
 class StripsAction(NamedTuple):
-    """An action by name, the facts that it needs and gives, by number, its cost, and its place."""
+    """An action by name: its preconditions and add effects, as numbers of facts, its cost and its source."""
 
     name: str
-    needs: Sequence[int]
-    gives: Sequence[int]
+    preconditions: Sequence[int]
+    add_effects: Sequence[int]
     cost: Fraction
-    place: Source
+    source: Source
 
 
 @dataclass(frozen=True)
 class StripsTask:
-    """Facts by name, the actions, what holds at the start, and what has to hold in the end.
+    """A STRIPS task without delete effects: names of facts, actions, initial state and goals.
 
-    ``name`` says what the task is called, and ``loses`` whether actions of the planning task that this is the
-    delete relaxation of take away what is needed.
+    ``name`` is the task's name, and ``has_deletes`` says whether actions of the original planning task, of
+    which this is the delete relaxation, delete relevant facts.
     """
 
     name: str
@@ -35,13 +35,13 @@ class StripsTask:
     actions: Sequence[StripsAction]
     start: frozenset[int]
     goals: tuple[int, ...]
-    loses: bool = False
+    has_deletes: bool = False
 
     @property
     def objective(self) -> Objective:
-        """The objective by which the cheapest plan is the best tree."""
-        same = all(action.cost == 1 for action in self.actions)
-        return Objective.UNITS if same else Objective.PRICE
+        """The objective of :meth:`problem` that is the cost of plans."""
+        unit_cost = all(action.cost == 1 for action in self.actions)
+        return Objective.UNITS if unit_cost else Objective.PRICE
 
     @property
     def action_count(self) -> int:
@@ -54,9 +54,9 @@ class StripsTask:
         return all(action.cost == 1 for action in self.actions if action.name != DERIVED)
 
     def problem(self) -> Problem:
-        """Give the task as a problem: facts are object nodes, actions are units, the start is the kitchen.
+        """Return the task as a problem: facts are object nodes, actions units, the initial state the kitchen.
 
-        An action that gives nothing is no unit, and two of one name that are the same are one.
+        An action without add effects is left out, and equal actions of the same name become one unit.
         """
         nodes = [ObjectNode(fact) for fact in self.facts]
         builder = NetworkBuilder()
@@ -64,20 +64,20 @@ class StripsTask:
         marked = builder.add("", [nodes[o] for o in sorted(self.start)], [nodes[o] for o in self.goals])
         prices: dict[str, Fraction] = {"": Fraction(0)}
         for action in self.actions:
-            if action.gives:
+            if action.add_effects:
                 builder.add(
                     action.name,
-                    [nodes[o] for o in action.needs],
-                    [nodes[o] for o in action.gives],
-                    action.place,
+                    [nodes[o] for o in action.preconditions],
+                    [nodes[o] for o in action.add_effects],
+                    action.source,
                 )
                 prices[action.name] = action.cost
         network = replace(builder.build().without([marked]), unit_numbers=())  # it is the whole of the task
         ids = {o: network.object_id(nodes[o]) for o in (*self.start, *self.goals)}
         return Problem(
             network,
-            frozenset(found for o in self.start if (found := ids[o]) is not None),
-            tuple(found for o in self.goals if (found := ids[o]) is not None),
+            frozenset(node for o in self.start if (node := ids[o]) is not None),
+            tuple(node for o in self.goals if (node := ids[o]) is not None),
             None,
             frozenset(),
             unit_prices=UnitPrices(prices, {}) if self.objective is Objective.PRICE else None,

@@ -1,4 +1,4 @@
-"""Planning tasks in files, whose delete relaxation is asked for."""
+"""Reader of planning tasks in files, PDDL or the translator's format, as their delete relaxation."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,10 +16,11 @@ _EXPECTED = "DOMAIN.pddl PROBLEM.pddl, or TASK.sas"
 
 
 def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
-    """Read a task: a problem in PDDL with its domain, or what Fast Downward's translator writes.
+    """Return the delete relaxation of a task: of a problem and its domain in PDDL, or of a translator's file.
 
-    The domain may be left out where it stands beside the problem. Raises :class:`UserError` for other files,
-    and what is not understood in them; :class:`LimitError` at the deadline.
+    The domain may be left out where it is in the folder of the problem.
+
+    Raises :class:`UserError` for other files, and for errors in them; :class:`LimitError` at the deadline.
     """
     if not 1 <= len(files) <= 2:
         raise UserError(f"found {len(files)} files, expected {_EXPECTED}")
@@ -32,7 +33,7 @@ def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
 
 
 def read_pddl(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> StripsTask:
-    """Read a task in PDDL; raises as :func:`read_task`."""
+    """Return the delete relaxation of a task in PDDL; raises as :func:`read_task`."""
     require_translator(f"{problem.file}: reading PDDL")
     with deadline.watched("reading the task"):
         require_task(domain, problem)
@@ -42,7 +43,10 @@ def read_pddl(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> 
 
 
 def _domain_and_problem(outlines: list[PddlOutline]) -> tuple[PddlOutline, PddlOutline]:
-    """Return the two files of a task, whatever their order; a single problem has its domain beside it."""
+    """Return the domain and the problem, whatever the order of files; a missing domain is looked up.
+
+    Raises :class:`UserError` where the files are not one problem and at most one domain.
+    """
     for outline in outlines:
         if outline.kind not in {"domain", "problem"}:
             raise UserError(
@@ -61,7 +65,10 @@ def _domain_and_problem(outlines: list[PddlOutline]) -> tuple[PddlOutline, PddlO
 
 
 def _domain_beside(problem: Path) -> PddlOutline:
-    """Read the domain that stands beside a problem, by the names that are usual in planning competitions."""
+    """Return the domain in the folder of a problem, under a file name usual in planning competitions.
+
+    Raises :class:`UserError` where no such file is a domain.
+    """
     number = "".join(filter(str.isdigit, problem.stem))
     names = [
         f"{problem.stem}-domain{problem.suffix}",

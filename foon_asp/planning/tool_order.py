@@ -1,7 +1,7 @@
-"""Which use of a tool is first, so that steps can be done one after the other with the tools there are.
+"""Order of the uses of tools, such that the steps can be done one after the other with the available tools.
 
-There is a schedule if and only if there is such an order: steps in order of their starts are one, since what
-is in use between two of them is in use when the second starts.
+A schedule exists if and only if such an order does: the steps in order of their starts are one, since a tool
+that is in use between the starts of two steps is in use when the second one starts.
 """
 
 from graphlib import TopologicalSorter
@@ -20,9 +20,10 @@ _OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
 
 
 class ToolOrder(NamedTuple):
-    """The ``steps`` in an order, ``None`` where there is none, and whether that is ``proved``.
+    """The ``steps`` in a feasible order, or ``None`` where it is ``proved`` that none exists.
 
-    ``lacking`` says then how many tools there have to be, the fewest more, if that is known.
+    ``lacking`` then maps tools to the numbers of copies that make one feasible, with the fewest additional
+    copies in all; it is empty where that is not known.
     """
 
     steps: tuple[int, ...] | None
@@ -31,27 +32,28 @@ class ToolOrder(NamedTuple):
 
 
 def tool_order(task: ScheduleTask, deadline: Deadline) -> ToolOrder:
-    """Look for an order of the steps, and where there is none, for the fewest tools that are lacking.
+    """Search for a feasible order of the steps, and where none exists, for the fewest lacking tools.
 
-    Raises ``KeyboardInterrupt`` at a limit while nothing is known, and at ctrl-C.
+    Raises ``KeyboardInterrupt`` at ctrl-C, and at a limit before it is known whether an order exists.
     """
-    found = _run(task, deadline, may_lack=False)
-    if found.units is not None:
-        return ToolOrder(_steps(task, found), False, {})
-    if not found.exhausted:
+    feasible = _run(task, deadline, may_lack=False)
+    if feasible.units is not None:
+        return ToolOrder(_steps(task, feasible), False, {})
+    if not feasible.exhausted:
         deadline.check()
         raise KeyboardInterrupt
-    more = _run(task, deadline, may_lack=True)
-    if not more.exhausted or more.units is None:
+    extended = _run(task, deadline, may_lack=True)
+    if not extended.exhausted or extended.units is None:
         return ToolOrder(None, True, {})
     names = list(task.counts)
     lacking: dict[ToolName, int] = {}
-    for kind, number in more.rows["_lacking"]:
+    for kind, number in extended.rows["_lacking"]:
         lacking[names[kind]] = max(number, lacking.get(names[kind], 0))
     return ToolOrder(None, True, lacking)
 
 
 def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
+    """Run clingo on the order of uses; with ``may_lack``, it minimizes the additional copies of tools."""
     kinds = {name: kind for kind, name in enumerate(task.counts)}
     uses = ((kinds[use.name], use.steps) for use in task.uses)
     return run(
@@ -64,16 +66,16 @@ def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
     )
 
 
-def _steps(task: ScheduleTask, found: Run) -> tuple[int, ...]:
-    """Put the steps in an order, the first of those listed where there is a choice."""
+def _steps(task: ScheduleTask, answer: Run) -> tuple[int, ...]:
+    """Return the steps in topological order, the first in the plan where there is a choice."""
     sorter = TopologicalSorter[tuple[str, int]]()
     for step, after in enumerate(task.after):
-        sorter.add(("step", step), *(("step", each) for each in after))
+        sorter.add(("step", step), *(("step", earlier) for earlier in after))
     for use, (_, steps) in enumerate(task.uses):
         for step in steps:
             sorter.add(("step", step), ("begin", use))
             sorter.add(("end", use), ("step", step))
-    for first, second in found.rows["_used_before"]:
+    for first, second in answer.rows["_used_before"]:
         sorter.add(("begin", second), ("end", first))
     sorter.prepare()
     order: list[int] = []
@@ -89,31 +91,34 @@ def _steps(task: ScheduleTask, found: Run) -> tuple[int, ...]:
 
 
 def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...]:
-    """Start steps, in an order that tools allow, as early as agents, tools and what they wait for allow."""
+    """Return the starts of steps, in ticks, by list scheduling.
+
+    The steps start in this order, each as early as agents, tools and the steps that it waits for allow.
+    """
     starts, ends = [0] * len(order), [0] * len(order)
     agents = [0] * task.agents
     free: dict[ToolName, list[int]] = {name: [0] * count for name, count in task.counts.items()}
-    over = [0] * len(task.uses)  # when the last step of a use so far ends
-    free_again = [0] * len(task.sharing)  # when the last step so far that shares a copy ends
-    left = [len(use.steps) for use in task.uses]
+    use_ends = [0] * len(task.uses)  # when the last step of a use so far ends
+    copy_free = [0] * len(task.sharing)  # when the last step so far that shares a copy ends
+    unscheduled = [len(use.steps) for use in task.uses]
     at_step = task.at_step
     for step in order:
         uses = at_step[step]
-        begin = max((ends[each] for each in task.after[step]), default=0)
+        begin = max((ends[earlier] for earlier in task.after[step]), default=0)
         for use in uses:
             name, steps = task.uses[use]
-            begin = max(begin, heappop(free[name]) if left[use] == len(steps) else over[use])
-        shared = [place for place, steps in enumerate(task.sharing) if step in steps]
-        begin = max(begin, *(free_again[place] for place in shared), 0)
+            begin = max(begin, heappop(free[name]) if unscheduled[use] == len(steps) else use_ends[use])
+        shared = [copy for copy, steps in enumerate(task.sharing) if step in steps]
+        begin = max(begin, *(copy_free[copy] for copy in shared), 0)
         if not task.passive[step]:
             begin = max(begin, agents[0])
             heapreplace(agents, begin + task.lengths[step])
         starts[step], ends[step] = begin, begin + task.lengths[step]
-        for place in shared:
-            free_again[place] = ends[step]
+        for copy in shared:
+            copy_free[copy] = ends[step]
         for use in uses:
-            over[use] = ends[step]
-            left[use] -= 1
-            if not left[use]:
-                heappush(free[task.uses[use].name], over[use])
+            use_ends[use] = ends[step]
+            unscheduled[use] -= 1
+            if not unscheduled[use]:
+                heappush(free[task.uses[use].name], use_ends[use])
     return tuple(starts)

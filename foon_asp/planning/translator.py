@@ -17,8 +17,8 @@ from foon_asp.planning.pddl_outline import PddlOutline
 _MODULE = "fast_downward.translate"
 _ADVICE = "pip install 'foon-asp[pddl]' brings it along"
 _INPUT_ERROR, _OUT_OF_MEMORY = 31, 20  # exit codes of the translator
-# Without invariants each atom is a variable with two values, so that facts are atoms and their negations, and
-# no action is left out that runs only in the delete relaxation.
+# Without invariants each atom is a variable with two values: facts are atoms and their negations, and no
+# action is pruned that is applicable in the delete relaxation alone.
 _OPTIONS = ("--invariant-generation-max-candidates", "0")
 
 
@@ -31,15 +31,15 @@ def installed() -> bool:
 
 
 def require_translator(what: str) -> None:
-    """Raise :class:`UserError` where the translator is not installed, which ``what`` takes."""
+    """Raise :class:`UserError` where the translator, which ``what`` needs, is not installed."""
     if not installed():
         raise UserError(f"{what} takes Fast Downward's translator, which is not installed: {_ADVICE}")
 
 
 def translated(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> str:
-    """Return a planning task as the translator writes it.
+    """Return the text of the translator's file for a planning task.
 
-    Raises :class:`UserError` for what the translator refuses, or where it fails; :class:`LimitError` at the
+    Raises :class:`UserError` where the translator refuses the task or fails; :class:`LimitError` at the
     deadline.
     """
     require_translator(f"{problem.file}: reading PDDL")
@@ -86,7 +86,7 @@ def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
 
 
 def _failure(domain: PddlOutline, problem: PddlOutline, code: int, output: str) -> UserError:
-    """Return an error with the translator's words on its input, or on its own failure."""
+    """Return an error with the translator's message on its input, or on its own failure."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     if code == _INPUT_ERROR:
         return UserError(_input_error(domain, problem, lines))
@@ -103,25 +103,25 @@ def _failure(domain: PddlOutline, problem: PddlOutline, code: int, output: str) 
 
 
 def _input_error(domain: PddlOutline, problem: PddlOutline, lines: list[str]) -> str:
-    """Return what the translator refuses, in one line, with the file that it is in.
+    """Return the translator's error in one line, with the file that has it.
 
-    The translator says where it is ("Parsing problem", "->Parsing goal"), its message, and then mostly what
-    it expects ("Syntax: ...") and what it found ("Got: ...").
+    The translator prints its context ("Parsing problem", "->Parsing goal"), a message, and mostly what it
+    expects ("Syntax: ...") and what it found ("Got: ...").
     """
-    where, words, tail = list[str](), list[str](), ""
+    context, messages, expectation = list[str](), list[str](), ""
     for line in lines:
-        label, _, said = line.removeprefix("->").partition(": ")
+        label, _, content = line.removeprefix("->").partition(": ")
         if label.startswith("Parsing"):
-            where.append(label.removeprefix("Parsing "))
+            context.append(label.removeprefix("Parsing "))
         elif label == "Got":
-            tail = f": found {said[:120]}" + tail
+            expectation = f": found {content[:120]}" + expectation
         elif label == "Syntax":
-            tail = f", expected {said}"
+            expectation = f", expected {content}"
         elif label == "Error":
-            where.append("domain" if "domain file" in said else "problem")
-        elif line not in words and label != "Warning":
-            words.append(line.removeprefix("Reason: ").removesuffix("."))
-    message = "; ".join(words)[:500]
-    file = (domain if where[:2] == ["Parsing...", "domain"] else problem).file
-    place = f" (in {', '.join(dict.fromkeys(where[2:]))})" if where[2:] else ""
-    return f"{file}: error: {message}{tail}{place}: so says Fast Downward's translator"
+            context.append("domain" if "domain file" in content else "problem")
+        elif line not in messages and label != "Warning":
+            messages.append(line.removeprefix("Reason: ").removesuffix("."))
+    message = "; ".join(messages)[:500]
+    file = (domain if context[:2] == ["Parsing...", "domain"] else problem).file
+    section = f" (in {', '.join(dict.fromkeys(context[2:]))})" if context[2:] else ""
+    return f"{file}: error: {message}{expectation}{section}: so says Fast Downward's translator"

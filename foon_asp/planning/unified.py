@@ -13,7 +13,7 @@ ENGINE = "foon-asp"
 
 
 def require_unified_planning() -> Any:
-    """Give what unified-planning offers; raises :class:`UserError` where it is not installed."""
+    """Return the module ``unified_planning.shortcuts``; raises :class:`UserError` where it is missing."""
     try:
         import unified_planning.shortcuts as up  # noqa: PLC0415 (optional)
     except ImportError:
@@ -26,7 +26,7 @@ def require_unified_planning() -> Any:
 def unified_problem(
     problem: Problem, objectives: Sequence[Objective], whole: bool = False, merged: bool = False
 ) -> Any:
-    """Give a problem of unified-planning: the same task as in PDDL, with the same names.
+    """Return a problem of unified-planning: the same task as in PDDL, with the same names.
 
     Raises :class:`UserError` as :func:`foon_asp.planning.planning_task.planning_task`, and where
     unified-planning is not installed.
@@ -45,34 +45,35 @@ def unified_problem(
     unified.add_objects(objects.values())
     costs: dict[Any, Any] = {}
 
-    def there(o: int) -> Any:
+    def available(o: int) -> Any:
         return up.GE(copies(objects[o]), 1) if o in counted else at_hand(objects[o])
 
     for action in task.actions:
-        made = up.InstantaneousAction(action.name)
-        for o in action.needs:
-            made.add_precondition(there(o))
-        for o, given in (*((o, True) for o in action.gives), *((o, False) for o in action.uses)):
+        up_action = up.InstantaneousAction(action.name)
+        for o in action.preconditions:
+            up_action.add_precondition(available(o))
+        effects = (*((o, True) for o in action.add_effects), *((o, False) for o in action.consumption))
+        for o, added in effects:
             if o not in counted:
-                made.add_effect(at_hand(objects[o]), given)
-            elif given:
-                made.add_increase_effect(copies(objects[o]), 1)
+                up_action.add_effect(at_hand(objects[o]), added)
+            elif added:
+                up_action.add_increase_effect(copies(objects[o]), 1)
             else:
-                made.add_decrease_effect(copies(objects[o]), 1)
-        unified.add_action(made)
-        costs[made] = up.Int(action.cost)
+                up_action.add_decrease_effect(copies(objects[o]), 1)
+        unified.add_action(up_action)
+        costs[up_action] = up.Int(action.cost)
     for o in {*task.start}.difference(counted):
         unified.set_initial_value(at_hand(objects[o]), True)
     for o, count in counted.items():
         unified.set_initial_value(copies(objects[o]), count)
     for o in task.goals:
-        unified.add_goal(there(o))
+        unified.add_goal(available(o))
     unified.add_quality_metric(up.MinimizeActionCosts(costs))
     return unified
 
 
 def register_engine() -> str:
-    """Offer the engine to unified-planning for this process.
+    """Register the engine in unified-planning, for this process.
 
     Returns:
         The name of the engine there: ``foon-asp``.

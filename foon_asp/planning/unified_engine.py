@@ -1,6 +1,6 @@
-"""An engine for unified-planning: cheapest plans of delete relaxations, where they are plans of the problem.
+"""An engine of unified-planning: cheapest plans of delete relaxations, where they are plans of the problem.
 
-Only whoever uses unified-planning imports this; ``foon_asp.register_engine`` offers it there.
+unified-planning imports this module once ``foon_asp.register_engine`` has registered it.
 """
 
 from collections.abc import Iterator
@@ -34,17 +34,17 @@ from foon_asp.planning.unified import ENGINE
 
 _KIND = (
     ("set_problem_class", "ACTION_BASED"),
-    *(("set_typing", each) for each in ("FLAT_TYPING", "HIERARCHICAL_TYPING")),
+    *(("set_typing", feature) for feature in ("FLAT_TYPING", "HIERARCHICAL_TYPING")),
     *(
-        ("set_conditions_kind", f"{each}_CONDITIONS")
-        for each in ("NEGATIVE", "DISJUNCTIVE", "EXISTENTIAL", "UNIVERSAL")
+        ("set_conditions_kind", f"{feature}_CONDITIONS")
+        for feature in ("NEGATIVE", "DISJUNCTIVE", "EXISTENTIAL", "UNIVERSAL")
     ),
     ("set_conditions_kind", "EQUALITIES"),
-    *(("set_effects_kind", each) for each in ("CONDITIONAL_EFFECTS", "FORALL_EFFECTS")),
-    *(("set_quality_metrics", each) for each in ("ACTIONS_COST", "PLAN_LENGTH")),
+    *(("set_effects_kind", feature) for feature in ("CONDITIONAL_EFFECTS", "FORALL_EFFECTS")),
+    *(("set_quality_metrics", feature) for feature in ("ACTIONS_COST", "PLAN_LENGTH")),
     *(
-        ("set_actions_cost_kind", each)
-        for each in ("STATIC_FLUENTS_IN_ACTIONS_COST", "INT_NUMBERS_IN_ACTIONS_COST")
+        ("set_actions_cost_kind", feature)
+        for feature in ("STATIC_FLUENTS_IN_ACTIONS_COST", "INT_NUMBERS_IN_ACTIONS_COST")
     ),
 )
 
@@ -63,7 +63,7 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
 
     @staticmethod
     def supported_kind() -> Any:
-        """Give the kind of problems that may be asked; deletes are looked at in the problem itself."""
+        """Return the kind of problems that the engine accepts; plans are checked for delete effects later."""
         kind = ProblemKind(version=2)
         for setter, feature in _KIND:
             getattr(kind, setter)(feature)
@@ -71,17 +71,17 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
 
     @staticmethod
     def supports(problem_kind: Any) -> bool:
-        """Say whether problems of a kind may be asked."""
+        """Return whether the engine accepts problems of a kind."""
         return bool(problem_kind <= FoonAspPlanner.supported_kind())
 
     @staticmethod
     def satisfies(optimality_guarantee: Any) -> bool:
-        """Say that plans are the cheapest."""
+        """Return whether the engine gives this guarantee: yes, its plans are optimal."""
         return optimality_guarantee in set(OptimalityGuarantee)
 
     @staticmethod
     def get_credits(**_: object) -> Any:
-        """Give who made the engine, and what it is."""
+        """Return the authors, licence and description of the engine."""
         words = "Cheapest plans of problems without deletes, proved by answer set programming and cuts."
         return Credits(ENGINE, "The foon-asp developers", "", "", "MIT", words, words)
 
@@ -92,7 +92,7 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
         timeout: float | None = None,
         output_stream: IO[str] | None = None,
     ) -> Any:
-        """Find a cheapest plan: one of the delete relaxation, if the problem has it as a plan, too."""
+        """Return a cheapest plan of the delete relaxation, if it is a plan of the problem as well."""
         if not self.supports(problem.kind):
             return self._ended(Ended.UNSUPPORTED_PROBLEM, "features beyond the kind of problems supported")
         deadline = Deadline(timeout)
@@ -109,14 +109,14 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
         except (UserError, UPException, NotImplementedError) as error:
             return self._ended(Ended.UNSUPPORTED_PROBLEM, str(error) or "what PDDL does not say")
         if outcome.units is None:
-            none = Ended.UNSOLVABLE_PROVEN if outcome.status is Status.INFEASIBLE else Ended.TIMEOUT
-            return self._ended(none, "no plan, even where nothing is deleted")
+            status = Ended.UNSOLVABLE_PROVEN if outcome.status is Status.INFEASIBLE else Ended.TIMEOUT
+            return self._ended(status, "no plan, even where nothing is deleted")
         plan = SequentialPlan(list(_instances(problem, writer, outcome)), problem.environment)
-        if ground.loses:
+        if ground.has_deletes:
             checked = SequentialPlanValidator().validate(problem, plan)
             if checked.status is not ValidationResultStatus.VALID:
                 return self._ended(Ended.UNSUPPORTED_PROBLEM, "the cheapest plan without deletes is no plan")
-        status = Ended.SOLVED_OPTIMALLY if _best(outcome, ground) else Ended.SOLVED_SATISFICING
+        status = Ended.SOLVED_OPTIMALLY if _is_optimal(outcome, ground) else Ended.SOLVED_SATISFICING
         return PlanGenerationResult(status, plan, self.name)
 
     def _ended(self, status: Any, reason: str) -> Any:
@@ -124,17 +124,18 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
         return PlanGenerationResult(status, None, self.name, log_messages=[LogMessage(LogLevel.INFO, reason)])
 
 
-def _best(outcome: Outcome, task: StripsTask) -> bool:
-    by = task.objective
+def _is_optimal(outcome: Outcome, task: StripsTask) -> bool:
+    """Return whether a plan is proved optimal, by its status or by a lower bound that equals its cost."""
+    objective = task.objective
     if outcome.status is Status.OPTIMAL or outcome.costs is None:
         return outcome.status is Status.OPTIMAL
-    return outcome.bounds.get(by) == outcome.costs.measure(by)
+    return outcome.bounds.get(objective) == outcome.costs.measure(objective)
 
 
 def _instances(problem: Any, writer: Any, outcome: Outcome) -> Iterator[Any]:
-    """Give the actions of a plan as unified-planning has them, whatever they are called in PDDL."""
+    """Return the actions of a plan as instances of unified-planning, by the names of its PDDL writer."""
     actions = {writer.get_pddl_name(action).lower(): action for action in problem.actions}
-    objects = {writer.get_pddl_name(each).lower(): each for each in problem.all_objects}
+    objects = {writer.get_pddl_name(instance).lower(): instance for instance in problem.all_objects}
     expressions = problem.environment.expression_manager
     for unit in outcome.units or ():
         name = outcome.problem.network.motions[unit]

@@ -14,7 +14,7 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.network import FunctionalUnit, counted
 from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
-from foon_asp.planning.scheduling import Found, shortest, timed_steps
+from foon_asp.planning.scheduling import BestSchedule, shortest, timed_steps
 from foon_asp.problem import Number, Problem, exact
 from foon_asp.proof.replay import Shortage, replay_for, replayable, waits
 from foon_asp.proof.simulation import Verdict, simulate_for
@@ -358,7 +358,7 @@ def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, 
         )
 
 
-def _status(found: Found) -> Status:
+def _status(found: BestSchedule) -> Status:
     if found.proved:
         return Status.INFEASIBLE if found.starts is None else Status.OPTIMAL
     return Status.UNKNOWN if found.starts is None else Status.FEASIBLE

@@ -224,7 +224,7 @@ def test_wrong_facts_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_too_many_trees_within_the_bound_are_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:
     outcome = solve(gap_problem(2, 4), (Objective.SUCCESS,))
     agrees(outcome)
-    monkeypatch.setattr(bare_clingo, "MOST_KINDS", 0)
+    monkeypatch.setattr(bare_clingo, "MAX_KINDS", 0)
     (check, *_) = cross_check(Asked(outcome), PATIENCE, ())
     assert check == Check("clingo", (), check.reason, check.seconds)
     assert check.reason
