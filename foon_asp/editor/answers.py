@@ -1,4 +1,4 @@
-"""Answers to what an editor asks about a FOON text, as plain values of the protocol."""
+"""Answers to the requests of an editor about a FOON text, as JSON of the language server protocol."""
 
 import contextlib
 import re
@@ -23,13 +23,13 @@ from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import split_lines
 from foon_asp.text.renaming import NameKind, Renaming, is_name, line_names
 
-_OFFERED = 100  # names: what is typed next leaves fewer
-_SHOWN = 8  # units in what is shown of a node
-_LEVELS = {Severity.ERROR: 1, Severity.WARNING: 2, Severity.NOTE: 3}
-_FUNCTION, _KEYWORD = 12, 14  # kinds of symbols and of completion items
-_COMPLETED = {NameKind.OBJECT: 6, NameKind.STATE: 10, NameKind.WORD: _KEYWORD, NameKind.MOTION: 3}
-_Place = tuple[int, str]  # of a unit: its first line, and its motion
-_HEADS = {
+_MAX_ITEMS = 100  # names or fixes in an answer: more are slower, and the next letter typed selects among them
+_MAX_UNITS_SHOWN = 8  # of a node, in its hover
+_SEVERITIES = {Severity.ERROR: 1, Severity.WARNING: 2, Severity.NOTE: 3}
+_SYMBOL_FUNCTION, _ITEM_KEYWORD = 12, 14  # numbers that the protocol gives to kinds of symbols and of items
+_ITEM_KINDS = {NameKind.OBJECT: 6, NameKind.STATE: 10, NameKind.WORD: _ITEM_KEYWORD, NameKind.MOTION: 3}
+_UnitLine = tuple[int, str]  # the first line of a unit, from 0, and its motion
+_LINE_HEADS = {
     "O\t": "an object",
     "S\t": "a state, a relation or contents",
     "M\t": "a motion",
@@ -38,47 +38,47 @@ _HEADS = {
 
 
 def diagnostics(checked: CheckedText) -> list[Json]:
-    """Return all findings."""
-    found = []
+    """Return all findings of lint as diagnostics of the protocol."""
+    reported = []
     for line, finding in checked.findings:
         start = max(0, finding.source.column - 1)
-        rest = re.split(r"[\t\[\]{},]", checked.text.lines[line][start + 1 :])[0]
-        found.append(
+        field_end = re.split(r"[\t\[\]{},]", checked.text.lines[line][start + 1 :])[0]
+        reported.append(
             {
-                "range": checked.text.range(line, start, start + 1 + len(rest)),
-                "severity": _LEVELS[finding.severity],
+                "range": checked.text.range(line, start, start + 1 + len(field_end)),
+                "severity": _SEVERITIES[finding.severity],
                 "code": finding.code,
                 "source": "foon-asp",
                 "message": finding.message,
             }
         )
-    return found
+    return reported
 
 
 def completion(text: EditedText, names: Names, parameters: object) -> Json:
-    """Offer names of the kind that may stand at a place, the most frequent first, with their ids."""
-    line, at = text.place(parameters)
-    written = text.lines[line]
-    field = field_at(written, at)
+    """Return completions at a position: names of the kinds that may be there, the most frequent first."""
+    line, letter = text.position_of(parameters)
+    content = text.lines[line]
+    field = field_at(content, letter)
     if field is None:
-        return {"isIncomplete": False, "items": _heads(text, line, at, names)}
-    typed = written[field.start : at]
-    wanted = typed.casefold()
-    found = [
-        (not name.casefold().startswith(wanted), -count, kind, name)
+        return {"isIncomplete": False, "items": _line_heads(text, line, letter, names)}
+    typed = content[field.start : letter]
+    folded = typed.casefold()
+    matches = [
+        (not name.casefold().startswith(folded), -count, kind, name)
         for kind in field.kinds
         for name, count in names.counts[kind].items()
-        if wanted in name.casefold() and (name != typed or count > 1)  # once, that is what is being typed
+        if folded in name.casefold() and (name != typed or count > 1)  # one mention is the one being typed
     ]
     items = [
         _item(text, line, field, names, kind, name) | {"sortText": f"{number:03}"}
-        for number, (_, _, kind, name) in enumerate(sorted(found)[:_OFFERED])
+        for number, (_, _, kind, name) in enumerate(sorted(matches)[:_MAX_ITEMS])
     ]
-    return {"isIncomplete": len(found) > _OFFERED, "items": items}
+    return {"isIncomplete": len(matches) > _MAX_ITEMS, "items": items}
 
 
 def _item(text: EditedText, line: int, field: Field, names: Names, kind: NameKind, name: str) -> Json:
-    """Offer a name, with its id where the line has none."""
+    """Return the completion item of a name, which adds its id where the line has none."""
     count, mentions = names.counts[kind][name], names.mentions[kind][name]
     ids = _ids(names, kind, name)
     id_ = "" if field.id is None else max(ids, key=ids.__getitem__, default="")
@@ -88,7 +88,7 @@ def _item(text: EditedText, line: int, field: Field, names: Names, kind: NameKin
         bracket = "\t{" if 2 * holding > count else "\t["
     item: Json = {
         "label": name,
-        "kind": _COMPLETED[kind],
+        "kind": _ITEM_KINDS[kind],
         "detail": f"{kind}, {f'{field.letter}{id_}, ' if id_ else ''}{counted(count, 'time')}",
         "textEdit": text.edit(name + bracket, line, field.start, field.end),
     }
@@ -102,7 +102,7 @@ def _holds(line: Line) -> bool:
 
 
 def _ids(names: Names, kind: NameKind, name: str) -> Counter[str]:
-    """Count the ids of a name."""
+    """Return how often a name has each of its ids."""
     ids: Counter[str] = Counter()
     for mention in names.mentions[kind].get(name, ()):
         if mention.line.id and next(line_names(mention.line))[:2] == (kind, name):
@@ -110,67 +110,68 @@ def _ids(names: Names, kind: NameKind, name: str) -> Counter[str]:
     return ids
 
 
-def _heads(text: EditedText, line: int, at: int, names: Names) -> list[Json]:
-    """Offer how a line may begin; behind a letter and digits, the names that have such an id."""
-    written = text.lines[line]
-    if text.is_json or written[at:].strip():
+def _line_heads(text: EditedText, line: int, letter: int, names: Names) -> list[Json]:
+    """Return completions of the beginning of a line; after O, S or M and digits, names with such an id."""
+    content = text.lines[line]
+    if text.is_json or content[letter:].strip():
         return []
-    if match := re.fullmatch(r"([OSM])(\d+)", written):
-        letter, digits = match.groups()
-        found = sorted(
+    if match := re.fullmatch(r"([OSM])(\d+)", content):
+        head, digits = match.groups()
+        matches = sorted(
             (id_, name, kind)
-            for kind in KINDS[letter]
+            for kind in KINDS[head]
             for name in names.counts[kind]
             for id_ in _ids(names, kind, name)
             if id_.startswith(digits)
         )
-        offered = [
-            (f"{letter}{id_} {name}", f"{letter}{id_}\t{name}", _COMPLETED[kind], str(kind))
-            for id_, name, kind in found[:_OFFERED]
+        heads = [
+            (f"{head}{id_} {name}", f"{head}{id_}\t{name}", _ITEM_KINDS[kind], str(kind))
+            for id_, name, kind in matches[:_MAX_ITEMS]
         ]
     else:
-        offered = [
-            (head.rstrip(), head, _KEYWORD, meaning)
-            for head, meaning in _HEADS.items()
-            if head.startswith(written)
+        heads = [
+            (head.rstrip(), head, _ITEM_KEYWORD, meaning)
+            for head, meaning in _LINE_HEADS.items()
+            if head.startswith(content)
         ]
     return [
         {
             "label": label,
-            "filterText": written or label,
+            "filterText": content or label,
             "kind": kind_number,
             "detail": detail,
             "textEdit": text.edit(new, line),
         }
-        for label, new, kind_number, detail in offered
+        for label, new, kind_number, detail in heads
     ]
 
 
 def _hover(checked: CheckedText, parameters: object) -> Json | None:
-    """Say which units make and need the node of a line, and whether it is available.
+    """Return a hover on the node of a line: its achievers and consumers, and whether it is available.
 
-    Without a kitchen beside the file, a node that no unit makes is available.
+    ``None`` outside of nodes. Without a kitchen in the file's folder, a node that no unit makes is available.
     """
     text = checked.text
-    line, at = text.place(parameters)
+    line, letter = text.position_of(parameters)
     node = _node_at(checked, line)
     if node is None:
         return None
-    makers, needers = _makers_and_needers(checked, node)
-    at_hand = "not at hand: a unit has to make it" if makers else "at hand: no unit makes it"
+    achievers, consumers = _achievers_and_consumers(checked, node)
+    availability = "not at hand: a unit has to make it" if achievers else "at hand: no unit makes it"
     with contextlib.suppress(OSError, UserError):
         if file := kitchen_file(text.file.parent):
-            is_there = any(entry.pattern.matches(node) for entry in read_object_list(file))
-            at_hand = "at hand: the kitchen has it" if is_there else "not in the kitchen"
-    said = [f"**{_plain(str(node))}**", f"made by {_units(makers)}", f"needed by {_units(needers)}", at_hand]
-    field = field_at(text.lines[line], at)
+            in_kitchen = any(entry.pattern.matches(node) for entry in read_object_list(file))
+            availability = "at hand: the kitchen has it" if in_kitchen else "not in the kitchen"
+    paragraphs = [f"**{_plain(str(node))}**", f"made by {_units(achievers)}"]
+    paragraphs += [f"needed by {_units(consumers)}", availability]
+    field = field_at(text.lines[line], letter)
     if field and (count := checked.names.counts[field.kinds[0]].get(field.name)):
-        said.append(f"{field.kinds[0]} '{_plain(field.name)}': {counted(count, 'time')}")
-    return {"contents": {"kind": "markdown", "value": "\n\n".join(said)}}
+        paragraphs.append(f"{field.kinds[0]} '{_plain(field.name)}': {counted(count, 'time')}")
+    return {"contents": {"kind": "markdown", "value": "\n\n".join(paragraphs)}}
 
 
 def _node_at(checked: CheckedText, line: int) -> ObjectNode | None:
-    """Return the object node that a line belongs to."""
+    """Return the object node that a line is part of, or ``None``."""
     lines = checked.text.lines
     while line > 0 and lines[line][:1] in {"S", "#", ""}:
         line -= 1
@@ -178,101 +179,109 @@ def _node_at(checked: CheckedText, line: int) -> ObjectNode | None:
     return next((node for start, node in blocks if start == line), None)
 
 
-def _makers_and_needers(checked: CheckedText, node: ObjectNode) -> tuple[list[_Place], list[_Place]]:
-    """Return the units that make a node and do not need it, and those that need it."""
+def _achievers_and_consumers(
+    checked: CheckedText, node: ObjectNode
+) -> tuple[list[_UnitLine], list[_UnitLine]]:
+    """Return the units that make a node and do not need it, and the units that need it."""
     network, copies = checked.names.network, checked.names.files.copies
 
-    def places(units: Iterable[int]) -> list[_Place]:
+    def lines_of(units: Iterable[int]) -> list[_UnitLine]:
         return sorted((copy.at, network.motions[unit]) for unit in units for copy in copies[unit])
 
     id_ = network.object_id(node)
     if id_ is None:
         return [], []
-    makers = (unit for unit in network.producers[id_] if id_ not in network.inputs[unit])
-    return places(makers), places(network.consumers[id_])
+    achievers = (unit for unit in network.producers[id_] if id_ not in network.inputs[unit])
+    return lines_of(achievers), lines_of(network.consumers[id_])
 
 
-def _units(places: list[_Place]) -> str:
-    """Name units by their motions and lines."""
-    shown = [f"{_plain(motion)} (line {line + 1})" for line, motion in places[:_SHOWN]]
-    return ", ".join([*shown, *[f"{len(places) - _SHOWN} more"] * (len(places) > _SHOWN)]) or "no unit"
+def _units(units: list[_UnitLine]) -> str:
+    """Return units in words, by their motions and lines."""
+    shown = [f"{_plain(motion)} (line {line + 1})" for line, motion in units[:_MAX_UNITS_SHOWN]]
+    if len(units) > _MAX_UNITS_SHOWN:
+        shown.append(f"{len(units) - _MAX_UNITS_SHOWN} more")
+    return ", ".join(shown) or "no unit"
 
 
 def _plain(text: str) -> str:
-    """Write a name so that Markdown shows it as it is."""
+    """Return a name with its special characters escaped, as Markdown."""
     return re.sub(r"([\\`*_{}\[\]<>#+\-!|&])", r"\\\1", text)
 
 
-def _makers(checked: CheckedText, parameters: object) -> list[Json]:
-    """Return the places where the units that make the node of a line state it."""
+def _definitions(checked: CheckedText, parameters: object) -> list[Json]:
+    """Return where the achievers of the node of a line state it as their output."""
     text = checked.text
-    node = _node_at(checked, text.place(parameters)[0])
+    node = _node_at(checked, text.position_of(parameters)[0])
     if node is None:
         return []
     sheet = Sheet("", text.lines, checked.names.files.reader)
-    lines = (sheet.line_of(node, first) for first, _ in _makers_and_needers(checked, node)[0])
+    lines = (sheet.line_of(node, first) for first, _ in _achievers_and_consumers(checked, node)[0])
     return [{"uri": text.uri, "range": text.range(line)} for line in lines]
 
 
 def _extents(checked: CheckedText) -> Iterator[tuple[int, int, int, int]]:
-    """Return the first line of each unit, that of its motion, that of its end, and its number, in order."""
+    """Return the lines of each unit, in order: its first line, its motion, its end; and its number."""
     lines, files = checked.text.lines, checked.names.files
-    copies = sorted((copy.at, unit) for unit, listed in enumerate(files.copies) for copy in listed)
-    for first, unit in copies if not checked.text.is_json else ():
-        behind = range(first, len(lines))
-        end = next((number for number in behind if lines[number][:2] == "//"), behind[-1])
-        motion = next((number for number in behind if lines[number][:1] == "M"), first)
+    starts = sorted((copy.at, unit) for unit, copies in enumerate(files.copies) for copy in copies)
+    for first, unit in starts if not checked.text.is_json else ():
+        following = range(first, len(lines))
+        end = next((number for number in following if lines[number][:2] == "//"), following[-1])
+        motion = next((number for number in following if lines[number][:1] == "M"), first)
         yield first, motion, end, unit
 
 
 def _symbols(checked: CheckedText, _: object) -> list[Json]:
-    """Return the outline: each unit by its motion and what it makes."""
+    """Return the outline of the text: each unit by its motion and the labels that it makes."""
     network, position = checked.names.network, checked.text.position
-    found = []
+    symbols = []
     for first, motion, end, unit in _extents(checked):
         made = (node for node in network.outputs[unit] if node not in network.inputs[unit])
         labels = " + ".join(dict.fromkeys(network.objects[node].label for node in made))
-        found.append(
+        symbols.append(
             {
                 "name": network.motions[unit],
                 "detail": f"→ {labels}",
-                "kind": _FUNCTION,
+                "kind": _SYMBOL_FUNCTION,
                 "range": {"start": position(first), "end": position(end)},
                 "selectionRange": checked.text.range(motion, 0, 1),
             }
         )
-    return found
+    return symbols
 
 
 def _folds(checked: CheckedText, _: object) -> list[Json]:
-    """Return what can be folded: each unit, up to its separator."""
+    """Return the ranges that can be folded: each unit, up to its separator."""
     return [{"startLine": first, "endLine": end - 1} for first, _, end, _ in _extents(checked)]
 
 
 def _renameable(checked: CheckedText, parameters: object) -> Json | None:
-    """Return the range of the name at a place, if there is one."""
-    line, at = checked.text.place(parameters)
-    field = field_at(checked.text.lines[line], at)
+    """Return the range of the name at a position, or ``None``."""
+    line, letter = checked.text.position_of(parameters)
+    field = field_at(checked.text.lines[line], letter)
     return checked.text.range(line, field.start, field.end) if field and field.name else None
 
 
 def _rename(checked: CheckedText, parameters: object) -> Json:
-    """Rename the name at a place everywhere in the text."""
-    line, at = checked.text.place(parameters)
-    field, new = field_at(checked.text.lines[line], at), parameter(parameters, "newName", str)
+    """Return the edits that rename the name at a position everywhere in the text.
+
+    Raises :class:`RequestError` where no name is, and for a new name that FOON text cannot hold.
+    """
+    line, letter = checked.text.position_of(parameters)
+    field, new = field_at(checked.text.lines[line], letter), parameter(parameters, "newName", str)
     if not field or not field.name or not is_name(field.kinds[0], new):
         raise RequestError(INVALID_PARAMETERS, f"found {new!r}, which cannot be a name there")
     return {"changes": {checked.text.uri: _renamed(checked, Rename(field.kinds[0], field.name, new))}}
 
 
 def _renamed(checked: CheckedText, rename: Rename) -> list[Json]:
+    """Return the edits of a renaming."""
     renaming = Renaming(rename, checked.names.files.reader)
     renaming.learn_ids(_ids(checked.names, NameKind(rename.kind), rename.new))
     return checked.text.edits([renaming.line(line) for line in checked.text.lines])
 
 
 def formatted(text: EditedText) -> list[Json]:
-    """Bring the text into canonical form."""
+    """Return the edits that bring the text into canonical form; none for a text with errors."""
     try:
         return text.edits(split_lines(format_text(text.text, "", lenient=True)))
     except InputError:
@@ -280,24 +289,24 @@ def formatted(text: EditedText) -> list[Json]:
 
 
 def _quick_fixes(checked: CheckedText, parameters: object) -> list[Json]:
-    """Offer what mends the findings on some lines, and to silence them."""
+    """Return the actions that fix or silence the findings on a range of lines."""
     text = checked.text
-    first, last = (parameter(parameters, f"range.{side}.line", int) for side in ("start", "end"))
-    mending: list[Json] = []
+    first, last = (parameter(parameters, f"range.{end}.line", int) for end in ("start", "end"))
+    fixes: list[Json] = []
     silenced: dict[tuple[int, str], Json] = {}
-    here = [each for each in checked.findings if first <= each[0] <= last]
-    for line, finding in here[:_OFFERED]:
+    in_range = [(line, finding) for line, finding in checked.findings if first <= line <= last]
+    for line, finding in in_range[:_MAX_ITEMS]:
         code, rename = finding.code, finding.rename
         if rename and (edits := _renamed(checked, rename)):
             title = f"Write {rename.new!r} for the {rename.kind} {rename.old!r} everywhere in this file"
-            mending.append(_action(title, text, edits, False))
+            fixes.append(_action(title, text, edits, False))
         elif finding.fix is not None and text.lines[line] == finding.excerpt:
-            fix = text.edit(text.end.join(split_lines(finding.fix)), line)  # which may add a separator
-            mending.append(_action(f"Mend: {finding.message}", text, [fix], not finding.unsafe))
+            fix = text.edit(text.end.join(split_lines(finding.fix)), line)  # several lines, if it adds one
+            fixes.append(_action(f"Fix: {finding.message}", text, [fix], not finding.unsafe))
         if not text.is_json and code != "noqa":
             comment = text.edit(silencing(code) + text.end, line, 0, 0)
             silenced[line, code] = _action(f"Silence {code} on this line", text, [comment], False)
-    return [*mending, *silenced.values()]
+    return [*fixes, *silenced.values()]
 
 
 def _action(title: str, text: EditedText, edits: list[Json], preferred: bool) -> Json:
@@ -307,11 +316,11 @@ def _action(title: str, text: EditedText, edits: list[Json], preferred: bool) ->
 
 ANSWERS: dict[str, Callable[[CheckedText, object], object]] = {
     "textDocument/hover": _hover,
-    "textDocument/definition": _makers,
+    "textDocument/definition": _definitions,
     "textDocument/prepareRename": _renameable,
     "textDocument/rename": _rename,
     "textDocument/documentSymbol": _symbols,
     "textDocument/foldingRange": _folds,
     "textDocument/codeAction": _quick_fixes,
 }
-"""What is asked of a text that was read, by method."""
+"""The functions that answer requests about a checked text, by method of the protocol."""

@@ -1,4 +1,4 @@
-"""A text that was read and linted whole."""
+"""Checked text: a text of the editor with its names and the findings of lint."""
 
 from typing import NamedTuple
 
@@ -12,27 +12,27 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 class CheckedText(NamedTuple):
-    """A text, the names and units in it, its findings with the lines that have them, and a complaint.
+    """A text, the names and units in it, and its findings, each with its line, from 0.
 
-    The complaint says what is wrong with the settings of linting, which then do not count.
+    ``settings_error`` says what is wrong with the settings of lint, which are then ignored; empty if nothing.
     """
 
     text: EditedText
     names: Names
     findings: list[tuple[int, Diagnostic]]
-    complaint: str
+    settings_error: str
 
 
 def check(text: EditedText) -> CheckedText:
-    """Read and lint a text by itself."""
-    settings, complaint = LintSettings(), ""
+    """Return a text read and linted by itself, under the settings of its folder."""
+    settings, settings_error = LintSettings(), ""
     try:
         settings = find_settings([text.file])
     except UserError as error:
-        complaint = str(error)
+        settings_error = str(error)
     names = Names(LintedFiles([text.file], {text.file: text.text.encode("utf-8", "replace")}))
     findings = [
         (min(max(1, finding.source.line), len(text.lines)) - 1, finding)
         for finding in settings.applied(lint_names(names))
     ]
-    return CheckedText(text, names, findings, complaint)
+    return CheckedText(text, names, findings, settings_error)

@@ -1,4 +1,4 @@
-"""A text that is open in an editor, as the protocol speaks of it."""
+"""Text that is open in an editor, and the protocol's positions, ranges and edits in it."""
 
 import re
 import sys
@@ -11,7 +11,7 @@ from foon_asp.text.plain_file import is_json, split_lines
 
 
 class EditedText:
-    """A text with its lines; their letters are counted as Python does, columns in UTF-16 units."""
+    """A text with its lines. Letters of a line are code points, columns of the protocol UTF-16 code units."""
 
     def __init__(self, uri: str, text: str) -> None:
         self.uri = uri
@@ -26,29 +26,29 @@ class EditedText:
         scheme, _, path = unquote(self.uri).partition("://")
         return Path(re.sub("^/(?=[A-Za-z]:)", "", path) if scheme == "file" else "untitled")
 
-    def place(self, parameters: object) -> tuple[int, int]:
-        """Return the line and the letter of a position among the parameters of a request."""
+    def position_of(self, parameters: object) -> tuple[int, int]:
+        """Return the line and the letter, from 0, of the position in the parameters of a request."""
         line = min(parameter(parameters, "position.line", int), len(self.lines) - 1)
         column = parameter(parameters, "position.character", int)
-        units = self.lines[line].encode("utf-16-le", "surrogatepass")[: 2 * column]
-        return line, len(units.decode("utf-16-le", "ignore"))
+        code_units = self.lines[line].encode("utf-16-le", "surrogatepass")[: 2 * column]
+        return line, len(code_units.decode("utf-16-le", "ignore"))
 
     def position(self, line: int, letter: int = 0) -> Json:
-        """Return the position of a letter."""
-        before = self.lines[line][:letter]
-        return {"line": line, "character": len(before.encode("utf-16-le", "surrogatepass")) // 2}
+        """Return the protocol's position of a letter of a line."""
+        prefix = self.lines[line][:letter]
+        return {"line": line, "character": len(prefix.encode("utf-16-le", "surrogatepass")) // 2}
 
     def range(self, line: int, start: int = 0, end: int = sys.maxsize) -> Json:
-        """Return the range of some letters of a line."""
+        """Return the protocol's range of the letters of a line from ``start`` to before ``end``."""
         return {"start": self.position(line, start), "end": self.position(line, end)}
 
     def edit(self, text: str, line: int, start: int = 0, end: int = sys.maxsize) -> Json:
-        """Return the edit that writes a text for some letters of a line."""
+        """Return the edit that replaces letters of a line by a text."""
         return {"range": self.range(line, start, end), "newText": text}
 
     def edits(self, lines: list[str]) -> list[Json]:
-        """Return the edits that bring the text to have these lines."""
-        last = min(len(self.lines), len(lines)) - 1  # takes the lines that are over
+        """Return the edits that turn the text into one with these lines."""
+        last = min(len(self.lines), len(lines)) - 1  # the edit of this line covers all lines after it
         edits = [
             self.edit(lines[number], number) for number in range(last) if lines[number] != self.lines[number]
         ]

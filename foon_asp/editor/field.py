@@ -1,4 +1,4 @@
-"""Fields of a line of FOON text, as they are while it is typed."""
+"""Fields of a line of FOON text, which may be incomplete while it is typed."""
 
 import re
 from typing import NamedTuple
@@ -11,14 +11,14 @@ KINDS: dict[str, tuple[NameKind, ...]] = {
     "S": (NameKind.STATE, NameKind.WORD),
     "M": (NameKind.MOTION,),
 }
-"""The kinds of names that a line may be about, by its letter."""
+"""The kinds of names that a line may have, by its first letter."""
 _FIELD = re.compile(r"[^\t\[\]{},]*")
 
 
 class Field(NamedTuple):
-    """A field with a name, which may be empty, and the first and the end of its letters in the line.
+    """A field of a line: a name, which may be empty, from letter ``start`` to before ``end``.
 
-    ``kinds`` are those that the name may have. ``letter`` and ``id`` are those of the line; ``id`` is
+    ``kinds`` are the kinds that the name may have. ``letter`` and ``id`` are the head of the line; ``id`` is
     ``None`` where it is the id of another name.
     """
 
@@ -30,19 +30,19 @@ class Field(NamedTuple):
     id: str | None
 
 
-def field_at(line: str, at: int) -> Field | None:
-    """Return the field of a line at or before the letter ``at``; ``None`` where no name may be."""
+def field_at(line: str, position: int) -> Field | None:
+    """Return the field of a line that has or ends at the letter ``position``; ``None`` outside of names."""
     head = _HEAD.match(line)
-    if head is None or at < head.end():
+    if head is None or position < head.end():
         return None
     letter, id_ = head.groups()
     kinds = KINDS[letter]
     fields = _FIELD.finditer(line, head.end())
-    field = next(field for field in fields if field.start() <= at <= field.end())
-    before = line[head.end() : field.start()]
-    if letter == "S" and re.search(r"[\[{][^\]}]*$", before):
+    field = next(field for field in fields if field.start() <= position <= field.end())
+    prefix = line[head.end() : field.start()]
+    if letter == "S" and re.search(r"[\[{][^\]}]*$", prefix):
         kinds, id_ = (NameKind.OBJECT,), None
-    elif "\t" in before or re.search(r"[\]}]", before):
+    elif "\t" in prefix or re.search(r"[\]}]", prefix):
         return None
     elif letter == "S" and re.search(r"[\[{]", line):
         kinds = (NameKind.WORD,)
@@ -50,4 +50,4 @@ def field_at(line: str, at: int) -> Field | None:
     if letter == "M":
         name = name.rstrip("* ") or name
     start = field.end() - len(field[0].lstrip(" "))
-    return Field(kinds, name, min(start, at), max(start + len(name), at), letter, id_)
+    return Field(kinds, name, min(start, position), max(start + len(name), position), letter, id_)

@@ -1,4 +1,4 @@
-"""JSON-RPC 2.0 with a length before each message, as language servers speak it."""
+"""JSON-RPC 2.0 with a Content-Length before each message, the transport of language servers."""
 
 import contextlib
 from typing import Any, BinaryIO, TypeVar
@@ -12,7 +12,7 @@ Value = TypeVar("Value")
 
 
 class RequestError(Exception):
-    """A request that is refused, with the code that the protocol has for the reason."""
+    """A request is refused; ``code`` is the error code of the protocol."""
 
     def __init__(self, code: int, message: str) -> None:
         super().__init__(message)
@@ -20,7 +20,7 @@ class RequestError(Exception):
 
 
 def read_message(stream: BinaryIO) -> Json | None:
-    """Return the next message, empty where it is no JSON object; ``None`` at the end of the stream."""
+    """Return the next message; ``{}`` where it is no JSON object, ``None`` at the end of the stream."""
     length = 0
     while (line := stream.readline()).strip():
         name, _, value = line.partition(b":")
@@ -34,7 +34,7 @@ def read_message(stream: BinaryIO) -> Json | None:
 
 
 def write_message(stream: BinaryIO, message: Json) -> None:
-    """Write a message; nothing where nobody reads any more."""
+    """Write a message; a stream that its reader has closed is ignored."""
     body = json_line({"jsonrpc": "2.0", **message}).encode()
     with contextlib.suppress(BrokenPipeError):
         stream.write(b"Content-Length: %d\r\n\r\n%b" % (len(body), body))
@@ -42,9 +42,9 @@ def write_message(stream: BinaryIO, message: Json) -> None:
 
 
 def parameter(parameters: object, path: str, kind: type[Value]) -> Value:
-    """Return a part of parameters, by the keys that lead to it.
+    """Return the value at a path of keys, joined by dots, in the parameters of a request.
 
-    Raises :class:`RequestError` where it is none of that kind, or is a negative number.
+    Raises :class:`RequestError` for a value of another type, and for a negative number.
     """
     value: Any = parameters
     for key in path.split("."):

@@ -1,4 +1,4 @@
-"""The language server: messages of an editor, the texts that are open in it, and the checking of them."""
+"""Language server: it receives the texts that an editor has open, checks them, and answers requests."""
 
 import asyncio
 import sys
@@ -23,7 +23,8 @@ from foon_asp.editor.json_rpc import (
 )
 from foon_asp.text.json_value import Json
 
-_PAUSE = 0.25  # seconds without a change, before a text is checked
+_DEBOUNCE_SECONDS = 0.25  # without a change, before a text is checked: less checks while somebody types
+_SWITCH_SECONDS = 0.0005  # until the thread that checks yields to an answer: less makes checking slower
 _CAPABILITIES = {
     "textDocumentSync": {"openClose": True, "change": 1},  # the whole text
     "completionProvider": {"triggerCharacters": ["\t", "[", "{", ","]},
@@ -38,16 +39,16 @@ _CAPABILITIES = {
 
 
 class LanguageServer:
-    """Answers an editor; when a text rests, a thread checks it whole, and the newest text counts."""
+    """Server for one editor: a thread checks each text once it has not changed for a while."""
 
     def __init__(self, stdin: BinaryIO, stdout: BinaryIO) -> None:
         self._in, self._out = stdin, stdout
         self._texts: dict[str, EditedText] = {}
         self._checks: dict[str, asyncio.Task[CheckedText]] = {}
-        self._checked: dict[str, CheckedText] = {}  # the last that was, maybe of an earlier text
+        self._checked: dict[str, CheckedText] = {}  # the last finished check, maybe of an earlier text
         self._worker = ThreadPoolExecutor(1)
-        self._complaint = ""
-        self._ending: set[str] = set()  # "shutdown" and "exit", once the editor has said so
+        self._settings_error = ""
+        self._ending: set[str] = set()  # "shutdown" and "exit", once the editor has sent them
         self._methods: dict[str, Callable[[object], object]] = {
             "initialize": self._initialize,
             "shutdown": lambda _: self._ending.add("shutdown"),
@@ -59,7 +60,7 @@ class LanguageServer:
         }
 
     async def run(self) -> bool:
-        """Answer until the editor ends this, or is gone; return whether it ended as the protocol has it."""
+        """Answer until the editor exits or closes the stream; return whether it sent shutdown before exit."""
         async with asyncio.TaskGroup() as responses:
             while "exit" not in self._ending:
                 message = await asyncio.to_thread(read_message, self._in)
@@ -70,13 +71,13 @@ class LanguageServer:
         return self._ending != {"exit"}
 
     async def _respond(self, message: Json) -> None:
-        """Do what a message says, and answer it unless it is a notification."""
+        """Process a message, and write a response unless it is a notification."""
         id_ = message["id"] if type(message.get("id")) in {str, int} else None
-        asks = "id" in message or "method" not in message
+        is_request = "id" in message or "method" not in message
         try:
-            if asks and (id_ is None or self._ending or message.get("jsonrpc") != "2.0"):
-                words = "found no request of JSON-RPC 2.0, or one after the editor has ended the server"
-                raise RequestError(INVALID_REQUEST, words)
+            if is_request and (id_ is None or self._ending or message.get("jsonrpc") != "2.0"):
+                reason = "found no request of JSON-RPC 2.0, or one after the editor has ended the server"
+                raise RequestError(INVALID_REQUEST, reason)
             response: Json = {"result": await self._result(str(message.get("method")), message.get("params"))}
         except RequestError as error:
             response = _error(error.code, str(error))
@@ -84,10 +85,11 @@ class LanguageServer:
             response = _error(CONTENT_MODIFIED, "the text has changed")
         except Exception as error:  # the editor waits for an answer
             response = _error(INTERNAL_ERROR, repr(error))
-        if asks:
+        if is_request:
             write_message(self._out, {"id": id_, **response})
 
     async def _result(self, method: str, parameters: object) -> object:
+        """Return the result of a request; raises :class:`RequestError`."""
         if method in self._methods:
             return self._methods[method](parameters)
         if method == "textDocument/completion":
@@ -112,41 +114,42 @@ class LanguageServer:
     def _change(self, parameters: object) -> None:
         text = self._text(parameters)
         for change in parameter(parameters, "contentChanges", list):
-            self._begin(EditedText(text.uri, parameter(change, "text", str)), _PAUSE)
+            self._begin(EditedText(text.uri, parameter(change, "text", str)), _DEBOUNCE_SECONDS)
 
     def _close(self, parameters: object) -> None:
         uri = self._text(parameters).uri
         self._checks.pop(uri).cancel()
         self._checked.pop(uri, None)
         del self._texts[uri]
-        self._tell("textDocument/publishDiagnostics", {"uri": uri, "diagnostics": []})
+        self._notify("textDocument/publishDiagnostics", {"uri": uri, "diagnostics": []})
 
     def _text(self, parameters: object) -> EditedText:
-        """Return the text that a message is about; raise an error where it is not open."""
+        """Return the text that a message is about; raises :class:`RequestError` where it is not open."""
         uri = parameter(parameters, "textDocument.uri", str)
         if uri not in self._texts:
             raise RequestError(INVALID_PARAMETERS, f"found {uri}, expected a text that is open")
         return self._texts[uri]
 
     def _begin(self, text: EditedText, seconds: float) -> None:
-        """Check a text after some time, and no earlier one that has the same name."""
-        if check_before := self._checks.get(text.uri):
-            check_before.cancel()
+        """Begin the check of a text after ``seconds``, and cancel that of an earlier version."""
+        if earlier_check := self._checks.get(text.uri):
+            earlier_check.cancel()
         self._texts[text.uri] = text
         self._checks[text.uri] = asyncio.create_task(self._check(text, seconds))
 
     async def _check(self, text: EditedText, seconds: float) -> CheckedText:
+        """Check a text after ``seconds``, and publish its findings."""
         await asyncio.sleep(seconds)
         checked = await asyncio.get_running_loop().run_in_executor(self._worker, check, text)
         self._checked[text.uri] = checked
-        if checked.complaint not in {"", self._complaint}:
-            self._tell("window/showMessage", {"type": 1, "message": checked.complaint})  # an error
-        self._complaint = checked.complaint
-        found = {"uri": text.uri, "diagnostics": answers.diagnostics(checked)}
-        self._tell("textDocument/publishDiagnostics", found)
+        if checked.settings_error not in {"", self._settings_error}:
+            self._notify("window/showMessage", {"type": 1, "message": checked.settings_error})  # an error
+        self._settings_error = checked.settings_error
+        diagnostics = {"uri": text.uri, "diagnostics": answers.diagnostics(checked)}
+        self._notify("textDocument/publishDiagnostics", diagnostics)
         return checked
 
-    def _tell(self, method: str, parameters: Json) -> None:
+    def _notify(self, method: str, parameters: Json) -> None:
         write_message(self._out, {"method": method, "params": parameters})
 
 
@@ -155,6 +158,6 @@ def _error(code: int, message: str) -> Json:
 
 
 def serve() -> bool:
-    """Answer an editor over standard input and output; return whether it ended as the protocol has it."""
-    sys.setswitchinterval(0.0005)  # seconds until the thread that checks lets an answer go first
+    """Serve an editor over standard input and output; return whether it sent shutdown before exit."""
+    sys.setswitchinterval(_SWITCH_SECONDS)
     return asyncio.run(LanguageServer(sys.stdin.buffer, sys.stdout.buffer).run())

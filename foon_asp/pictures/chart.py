@@ -1,4 +1,4 @@
-"""Charts by matplotlib: their look, and writing them as SVG or PNG."""
+"""Charts drawn by matplotlib: the style that all share, and the files, SVG or PNG."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 # Okabe and Ito's colors, which people with any of the common color deficiencies can tell apart.
 COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
 
-_WIDTH = 7.15  # inches: both columns of a page
+_WIDTH_INCHES = 7.15  # both columns of a printed page
 _SUFFIXES = (".svg", ".png")
 _INK = "#333333"  # of text and axes
 _STYLE: dict[Any, Any] = {  # by the names that matplotlib has for its settings
     "font.family": "sans-serif",
-    # The first comes with matplotlib, so every machine lays out alike; the others are for viewers of an SVG
-    # who do not have it.
+    # The first comes with matplotlib, so that layouts are equal on all machines; the others are for viewers
+    # of an SVG without it.
     "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial"],
     "font.size": 8.0,
     "text.parse_math": False,  # a $ in a name is a $
@@ -41,25 +41,26 @@ _STYLE: dict[Any, Any] = {  # by the names that matplotlib has for its settings
     "legend.frameon": False,
     "savefig.dpi": 300,
     "svg.fonttype": "none",  # text stays text, which can be searched, read aloud and edited
-    "svg.hashsalt": "foon-asp",  # names within the file come from what they name, and not from chance
+    "svg.hashsalt": "foon-asp",  # ids in the file are derived from their contents, and not random
 }
 
 
 def check_suffix(file: Path) -> None:
-    """Raise :class:`UserError` for a file whose name says neither SVG nor PNG."""
+    """Raise :class:`UserError` for a file whose suffix is neither .svg nor .png."""
     if file.suffix.lower() not in _SUFFIXES:
         raise UserError(f"{file}: the name of a chart ends in {' or '.join(_SUFFIXES)}")
 
 
 def write_chart(file: Path, title: str, height: float, draw: "Callable[[Figure, Axes], None]") -> None:
-    """Write what ``draw`` adds to a figure of this height in inches, as SVG or PNG by the file's suffix.
+    """Write a chart as SVG or PNG, by the file's suffix; ``draw`` fills the figure, of a height in inches.
 
-    The file is complete or not written at all. Raises :class:`UserError` for another suffix, and where
-    matplotlib is not installed.
+    The file is written completely or not at all.
+
+    Raises :class:`UserError` for another suffix, and where matplotlib is not installed.
     """
     check_suffix(file)
     picture = BytesIO()
-    with new_figure(_WIDTH, height, layout="constrained") as figure:
+    with new_figure(_WIDTH_INCHES, height, layout="constrained") as figure:
         figure.suptitle(title, wrap=True)
         draw(figure, figure.subplots())
         figure.savefig(picture, format=file.suffix.lower().removeprefix("."), metadata={"Date": None})
@@ -68,9 +69,9 @@ def write_chart(file: Path, title: str, height: float, draw: "Callable[[Figure, 
 
 @contextmanager
 def new_figure(width: float, height: float, **options: Any) -> "Iterator[Figure]":
-    """Yield a figure of this size in inches, which looks the same whatever settings the user has.
+    """Yield a figure of a size in inches, in our style; the user's settings of matplotlib do not change.
 
-    Those stay as they are. Raises :class:`UserError` where matplotlib is not installed.
+    Raises :class:`UserError` where matplotlib is not installed.
     """
     try:
         # Slow to import, and not installed by everyone.
@@ -87,5 +88,5 @@ def new_figure(width: float, height: float, **options: Any) -> "Iterator[Figure]
 
 
 def missing(what: object) -> UserError:
-    """Return an error that says which package a picture needs, and how to install it."""
+    """Return the error that a picture needs a package that is not installed, with how to install it."""
     return UserError(f"a picture needs more packages ({what}): pip install 'foon-asp[pictures]'")

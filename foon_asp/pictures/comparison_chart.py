@@ -1,4 +1,4 @@
-"""Comparisons as a chart: for each search, the sizes of its trees over the proved optima."""
+"""Box plot of a comparison: for each search, the units of its trees divided by the proved optimum."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,17 +16,19 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _BLUE, _ORANGE = COLORS[:2]
-_GOLDEN = 0.6180339887  # multiples of it spread evenly between two whole numbers
-_ROOM = 0.32  # of the points on either side of the middle of their box
+_GOLDEN_RATIO = 0.6180339887  # fractional parts of its multiples spread evenly from 0 to 1
+_SPREAD = 0.32  # of points to either side of the middle of their box, where boxes are 1 apart
+_POINT_AREA = 14  # square points of typography
 # By how a tree executes: the emptier its point looks, the less the tree is worth.
-_POINTS = {Verdict.AS_LISTED: _BLUE, Verdict.REORDERED: "#BFDCEC", Verdict.NEVER: "#FFFFFF"}
+_POINT_COLORS = {Verdict.AS_LISTED: _BLUE, Verdict.REORDERED: "#BFDCEC", Verdict.NEVER: "#FFFFFF"}
 
 
 def write_comparison_chart(comparisons: Sequence[Comparison], conditions: str, file: Path) -> None:
-    """Draw a box for each search into a file, SVG or PNG by its suffix.
+    """Write the chart, with a box for each search, as SVG or PNG by the file's suffix.
 
-    The points of a box are the goals for which the search found a tree and the optimum is proved; all holds
-    under the ``conditions``. Raises :class:`UserError` like :func:`foon_asp.pictures.chart.write_chart`.
+    The points of a box are the goals for which the search found a tree and the optimum is proved.
+    ``conditions`` (container rule and level) are part of the title. Raises :class:`UserError` as
+    :func:`foon_asp.pictures.chart.write_chart`.
     """
     title = (
         f"Functional units of retrieved task trees over the optimum: {counted(len(comparisons), 'goal')} "
@@ -39,41 +41,41 @@ def _draw(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> 
     trees: dict[str, list[tuple[float, Verdict]]] = {}
     for comparison in comparisons:
         for judged in comparison.searches:
-            found = trees.setdefault(judged.search, [])
+            points = trees.setdefault(judged.search, [])
             ratio = judged.ratios.get(Objective.UNITS)
             if ratio is not None and judged.verdict is not None:
-                found.append((float(ratio), judged.verdict))
+                points.append((float(ratio), judged.verdict))
     labels = []
-    for place, (name, found) in enumerate(trees.items()):
-        if not found:
+    for position, (name, points) in enumerate(trees.items()):
+        if not points:
             labels.append(f"{name}\nno tree to compare")
             continue
-        ratios, verdicts = zip(*found, strict=True)
+        ratios, verdicts = zip(*points, strict=True)
         labels.append(
-            f"{name}\n{counted(len(found), 'tree')}\n{len(found) - verdicts.count(Verdict.NEVER)} execute\n"
+            f"{name}\n{counted(len(points), 'tree')}\n{len(points) - verdicts.count(Verdict.NEVER)} execute\n"
             f"mean {fmean(ratios):.3g}\nmedian {median(ratios):.3g}"
         )
         axes.boxplot(
             [ratios],
-            positions=[place],
-            widths=2.4 * _ROOM,
+            positions=[position],
+            widths=2.4 * _SPREAD,
             showfliers=False,
             showmeans=True,
             meanprops={"marker": "D", "markerfacecolor": _ORANGE, "markeredgecolor": "white", "zorder": 4},
             medianprops={"color": _ORANGE, "linewidth": 2, "zorder": 3},
         )
-        spots = [place + _ROOM * (2 * (number * _GOLDEN % 1) - 1) for number in range(len(found))]
-        axes.scatter(
-            spots, ratios, 14, [_POINTS[each] for each in verdicts], edgecolors=_BLUE, linewidths=0.7
-        )
+        offsets = [2 * (number * _GOLDEN_RATIO % 1) - 1 for number in range(len(points))]
+        xs = [position + _SPREAD * offset for offset in offsets]
+        colors = [_POINT_COLORS[verdict] for verdict in verdicts]
+        axes.scatter(xs, ratios, _POINT_AREA, colors, edgecolors=_BLUE, linewidths=0.7)
     figure.set_size_inches(max(figure.get_figwidth(), len(trees)), figure.get_figheight())
     axes.set_xlim(-0.6, len(trees) - 0.4)
     axes.set_xticks(range(len(trees)), labels)
     axes.grid(visible=False, axis="x")
     axes.axhline(1, color="black", linewidth=1, zorder=1)
     axes.set_ylabel("units / units of the optimum")
-    for verdict, color in _POINTS.items():
-        axes.scatter([], [], 14, color, edgecolors=_BLUE, linewidths=0.7, label=str(verdict))
+    for verdict, color in _POINT_COLORS.items():
+        axes.scatter([], [], _POINT_AREA, color, edgecolors=_BLUE, linewidths=0.7, label=str(verdict))
     axes.plot([], [], color="black", linewidth=1, label="optimum")
     axes.plot([], [], color=_ORANGE, linewidth=2, label="median")
     axes.plot([], [], "D", color=_ORANGE, label="mean")

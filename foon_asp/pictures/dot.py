@@ -1,7 +1,7 @@
 r"""A drawing in DOT, Graphviz' language.
 
-Labels are plain and not HTML-like, which not every build of Graphviz understands. The class of a node names
-its role and how many lines of its label are its head, for a style sheet to make them bold.
+Labels are plain text, since HTML-like labels are not in every build of Graphviz. The class of a node is its
+role and the number of head lines in its label, by which a style sheet makes these bold.
 """
 
 from collections import Counter
@@ -10,16 +10,16 @@ from textwrap import wrap
 
 from foon_asp.pictures.drawing import Box, Drawing, Role
 
-# Graphviz knows how wide this font is even where no font is installed, and few are wider: a text that is
-# shown in another one still fits its box.
+# Graphviz knows the widths of this font even where no font is installed, and few fonts are wider: a text in
+# another font still fits its box.
 FONT = "DejaVu Sans"
 
-BOXED_UNITS = 300  # of more, boxes would take minutes to lay out, and nobody would find anything among them
-_CAPTION_LINE = 90  # letters
-_NAMED = 24  # object nodes of a large network whose names are written: those that most arrows meet
+BOXED_UNITS = 300  # the most units in boxes: more take minutes to lay out, and are too many to read
+_MAX_CAPTION_LETTERS = 90  # in a line
+_NAMED_NODES = 24  # of a large network, by degree: names of more would overlap
 
-# Objects are green and motions red, as everywhere in the field. For those who cannot tell the two apart,
-# motions are dark and have corners, and objects are light and rounded.
+# Objects are green and motions red, as in the FOON literature. For readers with a color deficiency, motions
+# are dark and have corners, and objects are light and rounded.
 _LOOKS = {
     Role.MOTION: 'style=filled, fillcolor="#c62828", color="#8e0000", fontcolor="#ffffff", fontsize=11',
     Role.KITCHEN: 'fillcolor="#e3f4e1", color="#7cb97c", fontsize=9',
@@ -49,16 +49,16 @@ def dot_text(drawing: Drawing) -> str:
 
 
 def graph_text(drawing: Drawing) -> str:
-    """Return a network as squares and circles in DOT, where what hangs together is to lie together.
+    """Return a network in DOT as squares and circles, for a force-directed layout.
 
-    The whole text of a node is its tooltip, and the nodes that most arrows meet have their names written.
+    The whole text of a node is its tooltip; the object nodes of the highest degree show their names.
     """
-    met = Counter(name for arrow in drawing.arrows for name in arrow)
+    degrees = Counter(name for arrow in drawing.arrows for name in arrow)
     objects = [box for box in drawing.boxes if box.node is not None]
-    named = {box.name for box in sorted(objects, key=lambda box: -met[box.name])[:_NAMED]}
+    named = {box.name for box in sorted(objects, key=lambda box: -degrees[box.name])[:_NAMED_NODES]}
     motions = [box.name for box in drawing.boxes if box.node is None]
-    lines = [f"  {' -> '.join(motions)} [style=invis]"]  # neighbours in a file lie together
-    for box in sorted(drawing.boxes, key=lambda box: box.name in named):  # names lie above all else
+    lines = [f"  {' -> '.join(motions)} [style=invis]"]  # neighbours in a file are close to each other
+    for box in sorted(drawing.boxes, key=lambda box: box.name in named):  # names are painted last
         label = box.head if box.name in named else ()
         look = f"{_LOOKS[box.role].partition(', penwidth')[0]}, fontsize=24, fontcolor=black, style=filled"
         shape = "circle" if box.node else "square"
@@ -68,13 +68,13 @@ def graph_text(drawing: Drawing) -> str:
 
 
 def _text(drawing: Drawing, defaults: str, nodes: Iterable[str]) -> str:
-    caption = _quoted([line for text in drawing.caption for line in wrap(text, _CAPTION_LINE)])
+    caption = _quoted([line for text in drawing.caption for line in wrap(text, _MAX_CAPTION_LETTERS)])
     arrows = (f"  {tail} -> {head}" for tail, head in drawing.arrows)
     return "\n".join(("digraph foon {", defaults, f"  label={caption}", *nodes, *arrows, "}\n"))
 
 
 def _legend(drawing: Drawing) -> Iterator[str]:
-    """Frame a sample of every role that there is."""
+    """Return the lines of a legend: a framed sample of every role in the drawing."""
     roles = {box.role for box in drawing.boxes}
     yield '  subgraph cluster_legend {\n    label="" color="#bdbdbd"'
     for number, role in enumerate(Role):
@@ -89,6 +89,6 @@ def _node(box: Box, label: Sequence[str], look: str) -> str:
 
 
 def _quoted(lines: Sequence[str]) -> str:
-    r"""Quote lines so that Graphviz shows them as they are: neither ``\N`` nor ``&amp;`` means anything."""
+    r"""Return lines as a quoted string that Graphviz shows literally, without escapes or entities in them."""
     plain = (line.replace("\\", r"\\").replace('"', r"\"").replace("&", "&amp;") for line in lines)
     return '"' + r"\n".join(plain) + '"'

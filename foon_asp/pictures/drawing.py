@@ -1,4 +1,4 @@
-"""What a picture shows: boxes with a role and text, and arrows between them, whatever the format."""
+"""Drawings, independent of the format: boxes with a role and text, and arrows between them."""
 
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -9,14 +9,14 @@ from typing import NamedTuple
 from foon_asp.escapes import UNSAFE
 from foon_asp.network import FunctionalUnit, ObjectNode
 
-_LINE = 22  # letters in a line of a box
-_HEAD_LINE = 20  # letters in a line of bold text, which is wider
+_MAX_LINE_LETTERS = 22  # in a line of a box: more make drawings wider, fewer make them higher
+_MAX_HEAD_LETTERS = 20  # in a line of bold text, which is wider
 
-_NO_LETTERS = re.compile("[\ufffe\uffff]")
+_NONCHARACTERS = re.compile("[\ufffe\uffff]")
 
 
 class Role(StrEnum):
-    """What a box stands for, in the words of a legend."""
+    """The role of a box, in the words of a legend."""
 
     MOTION = "motion"
     KITCHEN = "kitchen item"
@@ -37,7 +37,7 @@ class Box(NamedTuple):
     @property
     def head(self) -> tuple[str, ...]:
         """The lines of the label."""
-        return _lines(self.label, _HEAD_LINE)
+        return _lines(self.label, _MAX_HEAD_LETTERS)
 
     @property
     def details(self) -> tuple[str, ...]:
@@ -47,13 +47,13 @@ class Box(NamedTuple):
             texts = [", ".join(sorted(self.node.states))] if self.node.states else []
             texts += map(str, sorted(self.node.relations))
             texts += (f"{word} {{{', '.join(items)}}}" for word, items in self.node.contents)
-        return tuple(line for text in texts for line in _lines(text, _LINE))
+        return tuple(line for text in texts for line in _lines(text, _MAX_LINE_LETTERS))
 
 
 class Drawing(NamedTuple):
-    """Boxes, and arrows between boxes by their names, under a caption of a line or more.
+    """Boxes, and arrows as pairs of names of boxes, under a caption of one line or more.
 
-    ``graph`` says that it is the graph of a network, in which every object node is one box, and no plan.
+    ``graph`` distinguishes the graph of a network, in which every object node is one box, from a plan.
     """
 
     caption: tuple[str, ...]
@@ -72,55 +72,58 @@ def draw_tree(
     kitchen: Collection[ObjectNode],
     goals: Iterable[ObjectNode],
     caption: Iterable[str],
-    gives: Sequence[Iterable[ObjectNode]] | None = None,
+    add_effects: Sequence[Iterable[ObjectNode]] | None = None,
 ) -> Drawing:
-    """Draw the units of a task tree, numbered in the order given, so that arrows lead from step to step.
+    """Return the drawing of a task tree, in which arrows lead from the achiever of a node to its consumers.
 
-    ``gives`` are the outputs that each of them makes under the container rule: all, if ``None``.
+    Units are numbered in the order of ``units``. ``add_effects`` are the outputs that each unit makes under
+    the container rule; all, if ``None``.
 
-    What comes from the kitchen is a box of its own at every use, and so is every by-product: an output
-    that is no goal, that no unit takes, that the kitchen has, that an earlier step has made, or that the step
-    took as given and did not make. One shared
-    box for the knife, or for the tap that runs all the time, would tie everything to everything.
+    A kitchen item is a box of its own at every use, and so is every by-product: an output that is no goal and
+    no input of a unit, that the kitchen has, that an earlier step has made, or that the container rule does
+    not count as made. One shared box of the knife, or of the tap that runs all the time, would connect
+    everything.
     """
     achievers: dict[ObjectNode, int] = {}
-    for number, outputs in enumerate([unit.outputs for unit in units] if gives is None else gives):
-        for node in outputs:
+    if add_effects is None:
+        add_effects = [unit.outputs for unit in units]
+    for number, added in enumerate(add_effects):
+        for node in added:
             achievers.setdefault(node, number)
 
-    def sources(nodes: Iterable[ObjectNode]) -> dict[ObjectNode, int | None]:
+    def sources_of(nodes: Iterable[ObjectNode]) -> dict[ObjectNode, int | None]:
         return {node: None if node in kitchen else achievers.get(node, -1) for node in nodes}
 
-    return draw_plan(units, [sources(unit.inputs) for unit in units], sources(goals), kitchen, caption)
+    return draw_plan(units, [sources_of(unit.inputs) for unit in units], sources_of(goals), kitchen, caption)
 
 
 def draw_plan(
     units: Sequence[FunctionalUnit],
-    taken: Sequence[Mapping[ObjectNode, int | None]],
-    kept: Mapping[ObjectNode, int | None],
+    sources: Sequence[Mapping[ObjectNode, int | None]],
+    goal_sources: Mapping[ObjectNode, int | None],
     kitchen: Collection[ObjectNode],
     caption: Iterable[str],
 ) -> Drawing:
-    """Draw the steps of a plan in which items are used up: a copy that a later step takes is a box.
+    """Return the drawing of a plan in which items are used up: a copy that a later step takes is one box.
 
-    Copies are known by the step that made them, counted from 0, and ``None`` is the kitchen. ``taken`` says
-    for each step where the copies of its inputs come from, and ``kept`` those of the goals. All others are
-    boxes of their own at every use.
+    A copy is identified by its node and the step that made it, from 0, or ``None`` for the kitchen.
+    ``sources`` are these steps for the inputs of each unit, and ``goal_sources`` for the goals. Other copies
+    are boxes of their own.
     """
-    canvas = _Canvas(kitchen, kept)
-    wanted = {copy for step in (*taken, kept) for copy in step.items()}
-    for number, (unit, copies) in enumerate(zip(units, taken, strict=True)):
+    canvas = _Canvas(kitchen, goal_sources.keys())
+    consumed = {copy for step in (*sources, goal_sources) for copy in step.items()}
+    for number, (unit, copies) in enumerate(zip(units, sources, strict=True)):
         motion = canvas.add(Role.MOTION, f"{number + 1}. {unit.motion}")
         for node in unit.inputs:
             made, role = copies.get(node), Role.KITCHEN if node in kitchen else Role.OBJECT
             copy = canvas.add(role, node.label, node) if made is None else canvas.shared(node, made)
             canvas.arrows.append((copy, motion))
         for node in unit.outputs:
-            if (node, number) in wanted:
+            if (node, number) in consumed:
                 canvas.arrows.append((motion, canvas.shared(node, number)))
             else:
                 canvas.arrows.append((motion, canvas.add(Role.BY_PRODUCT, node.label, node)))
-    for goal, made in kept.items():
+    for goal, made in goal_sources.items():
         canvas.shared(goal, made)
     return canvas.drawing(caption)
 
@@ -131,7 +134,7 @@ def draw_network(
     goals: Collection[ObjectNode],
     caption: Iterable[str],
 ) -> Drawing:
-    """Draw units with their ids as the graph they are: every object node is one box."""
+    """Return the drawing of units, with their ids, as a bipartite graph: every object node is one box."""
     canvas = _Canvas(kitchen, goals)
     for unit_id, unit in units:
         motion = canvas.add(Role.MOTION, unit.motion, unit=unit_id)
@@ -141,7 +144,7 @@ def draw_network(
 
 
 class _Canvas:
-    """Collects boxes and arrows, and names the boxes in the order in which they come."""
+    """A drawing in construction: it collects boxes and arrows, and numbers the boxes."""
 
     def __init__(self, kitchen: Collection[ObjectNode], goals: Collection[ObjectNode]) -> None:
         self._kitchen = kitchen
@@ -157,7 +160,7 @@ class _Canvas:
         return name
 
     def shared(self, node: ObjectNode, made: int | None = None) -> str:
-        """Return the name of the one box of a node, or of the copy of it that a step made."""
+        """Return the name of the one box of a node, or of its copy that the step ``made`` made."""
         if (node, made) not in self._names:
             role = Role.OBJECT
             if node in self._goals:
@@ -168,15 +171,15 @@ class _Canvas:
         return self._names[node, made]
 
     def drawing(self, caption: Iterable[str]) -> Drawing:
-        """Return what was collected."""
+        """Return the finished drawing."""
         return Drawing(tuple(map(printable, caption)), tuple(self._boxes), tuple(self.arrows))
 
 
 def _lines(text: str, width: int) -> tuple[str, ...]:
-    """Wrap a text; an empty text is an empty line."""
+    """Return a text wrapped into lines; an empty text is one empty line."""
     return tuple(wrap(printable(text), width)) or ("",)
 
 
 def printable(text: str) -> str:
-    """Return a text without what XML, and with it SVG, cannot hold, or what is not seen as what it is."""
-    return _NO_LETTERS.sub("\ufffd", UNSAFE.sub("\ufffd", text))
+    """Return a text with replacements for invisible or misleading characters, and those that XML forbids."""
+    return _NONCHARACTERS.sub("\ufffd", UNSAFE.sub("\ufffd", text))

@@ -1,4 +1,4 @@
-"""The Pareto front as a chart: one objective over another, and steps between the points."""
+"""Chart of a Pareto front: one objective over another, as a step function between the points."""
 
 from fractions import Fraction
 from itertools import accumulate
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MARKERS = "osD^vPX"
-_LONG = 50  # the last success is so much greater than the first that only a logarithmic scale shows both
+_LOG_SCALE_RATIO = 50  # of the largest to the smallest success, above which a linear scale hides the smallest
 
 
 class Plotted(NamedTuple):
-    """A front: the labels of the goals, what it holds under, and its points by each objective.
+    """A front: the labels of the goals, its conditions (container rule and level), objectives and points.
 
-    ``complete`` says that there are no other points.
+    A point is its costs by each objective. ``complete`` says that the front has no other points.
     """
 
     goals: str
@@ -31,26 +31,25 @@ class Plotted(NamedTuple):
 
 
 def write_front_chart(front: Plotted, file: Path) -> None:
-    """Draw a front that has a point into a file, SVG or PNG by its suffix.
+    """Write the chart of a front with at least one point, as SVG or PNG by the file's suffix.
 
-    Two objectives are the axes, ``success`` upwards if it is one of them. Of three, the one with the fewest
-    values of those that count makes series: the points of a series have its value, and its line leads along
-    the best of all points that have so much at most. Where the front is not complete there are no lines, for
-    they say that there is no tree beyond them. Raises :class:`UserError` like
-    :func:`foon_asp.pictures.chart.write_chart`.
+    Two objectives are the axes, ``success`` on the vertical one. Of three, the additive objective with the
+    fewest values makes series: the points of a series have this value, and its line is the front of all
+    points with at most this value. An incomplete front has no lines, since they claim that no tree is beyond
+    them. Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart`.
     """
     columns = dict(zip(front.objectives, zip(*front.points, strict=True), strict=True))
-    counts = [objective for objective in front.objectives if not multiplies(objective)]
+    additive = [objective for objective in front.objectives if not multiplies(objective)]
     series = None
     if len(front.objectives) > 2:
-        series = min(counts, key=lambda objective: len(set(columns[objective])))
-        counts.remove(series)
-    x, y = counts[0], Objective.SUCCESS if Objective.SUCCESS in front.objectives else counts[1]
+        series = min(additive, key=lambda objective: len(set(columns[objective])))
+        additive.remove(series)
+    x, y = additive[0], Objective.SUCCESS if Objective.SUCCESS in front.objectives else additive[1]
     upwards = multiplies(y)
     values = columns[series] if series else [0] * len(front.points)
     texts = success_texts(columns[y]) if upwards else list(map(str, columns[y]))
     points = sorted(zip(map(float, columns[x]), map(float, columns[y]), values, texts, strict=True))
-    several = sorted(set(values))
+    series_values = sorted(set(values))
     title = f"{front.goals}\n{y} over {x}{f' by {series}' if series else ''} ({front.conditions})"
     if not front.complete:
         title += "\nstopped at a limit: points may be missing"
@@ -64,15 +63,15 @@ def write_front_chart(front: Plotted, file: Path) -> None:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
         if not upwards:
             axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-        elif 0 < min(columns[y]) * _LONG < max(columns[y]):
+        elif 0 < min(columns[y]) * _LOG_SCALE_RATIO < max(columns[y]):
             axes.set_yscale("log")
-        for number, value in enumerate(several):
-            look: dict[str, Any] = {"color": f"C{number}", "zorder": 2 - number / len(several)}
+        for number, value in enumerate(series_values):
+            look: dict[str, Any] = {"color": f"C{number}", "zorder": 2 - number / len(series_values)}
             if front.complete:
-                # where lines run together, all are seen: the greater the value, the broader, and further back
+                # where lines overlap, all are visible: the greater the value, the wider, and further back
                 xs, ys, *_ = zip(*(point for point in points if point[2] <= value), strict=True)
                 best = list(accumulate(ys, max if upwards else min))
-                width = 1.2 + 1.8 * number / len(several)
+                width = 1.2 + 1.8 * number / len(series_values)
                 axes.step(
                     [*xs, points[-1][0] + 0.7], [*best, best[-1]], where="post", linewidth=width, **look
                 )
@@ -83,9 +82,10 @@ def write_front_chart(front: Plotted, file: Path) -> None:
             name += "\n(lines: at most this value)" if front.complete else ""
             figure.legend(loc="outside right upper", title=name)
             return
-        side = "right" if upwards else "left"
-        for place, height, _, text in points:  # what a point has of x can be read off the axis
-            name, spot = text.removeprefix("≈ "), (place, height)
-            axes.annotate(name, spot, (0, 4), textcoords="offset points", ha=side)
+        alignment = "right" if upwards else "left"
+        for x_value, y_value, _, text in points:  # the value on the x axis can be read off it
+            axes.annotate(
+                text.removeprefix("≈ "), (x_value, y_value), (0, 4), textcoords="offset points", ha=alignment
+            )
 
-    write_chart(file, title, max(3.2, 0.19 * len(several) + 1), draw)
+    write_chart(file, title, max(3.2, 0.19 * len(series_values) + 1), draw)

@@ -1,4 +1,4 @@
-"""A schedule as a chart shows it."""
+"""Gantt: a schedule with a title, and the text of its times."""
 
 from fractions import Fraction
 from typing import NamedTuple
@@ -7,7 +7,7 @@ from foon_asp.results.timed_step import TimedStep
 
 
 class Gantt(NamedTuple):
-    """The steps of a schedule under a title, and how long it takes, in seconds."""
+    """The steps of a schedule under a title, and its makespan in seconds."""
 
     title: str
     rows: tuple[TimedStep, ...]
@@ -15,15 +15,14 @@ class Gantt(NamedTuple):
 
     @property
     def in_order(self) -> list[TimedStep]:
-        """The steps as they start."""
+        """The steps, ordered by their starts."""
         return sorted(self.rows, key=lambda row: (row.start, row.end, row.step))
 
 
 def time_text(seconds: Fraction) -> str:
-    """Write a time as minutes and seconds, or with hours before them; of fractions three places."""
-    thousandths = round(seconds * 1000)
-    whole, part = divmod(thousandths, 1000)
-    minutes, rest = divmod(whole, 60)
-    hours, minutes_left = divmod(minutes, 60)
-    text = f"{hours}:{minutes_left:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
-    return text + (f".{part:03d}".rstrip("0") if part else "")
+    """Return a time as ``M:SS``, or ``H:MM:SS`` from an hour on, with at most three decimals."""
+    whole_seconds, milliseconds = divmod(round(seconds * 1000), 1000)
+    total_minutes, second = divmod(whole_seconds, 60)
+    hour, minute = divmod(total_minutes, 60)
+    text = f"{hour}:{minute:02d}:{second:02d}" if hour else f"{minute}:{second:02d}"
+    return text + (f".{milliseconds:03d}".rstrip("0") if milliseconds else "")

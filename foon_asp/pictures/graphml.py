@@ -6,7 +6,7 @@ from foon_asp.pictures.drawing import Box, Drawing, printable
 
 
 def graphml_text(drawing: Drawing) -> str:
-    """Return a drawing of any size: every node with its label and kind, and with its states or its unit."""
+    """Return a drawing of any size as GraphML: nodes have a label and kind, and their states or unit."""
     root = ElementTree.Element("graphml", xmlns="http://graphml.graphdrawing.org/xmlns")
     for name in ("label", "kind", "unit", "states", "node"):
         type_ = "int" if name == "unit" else "string"
@@ -25,7 +25,7 @@ def graphml_text(drawing: Drawing) -> str:
 
 
 def _attributes(box: Box) -> dict[str, object]:
-    """Return the label and the kind of a box, with the id of its unit, or its object node in one line."""
+    """Return the GraphML attributes of a box: label and kind, and the id of its unit or its object node."""
     attributes: dict[str, object] = {"label": box.label, "kind": box.role}
     if box.unit is not None:
         attributes["unit"] = box.unit

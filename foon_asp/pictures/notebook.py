@@ -1,4 +1,4 @@
-"""How values show themselves in a notebook: as text, and as a picture below it."""
+"""MIME bundles with which values are displayed in a notebook: text, and pictures below it."""
 
 import base64
 import contextlib
@@ -11,7 +11,7 @@ from foon_asp.pictures.graphviz import svg_picture
 
 
 def picture_bundle(value: object, drawing: Drawing) -> dict[str, str]:
-    """Give by media type what shows a value as a picture; as text where no picture can be drawn."""
+    """Return the MIME bundle of a value as a picture, or as text where no picture can be drawn."""
     try:
         return {"text/plain": repr(value), "image/svg+xml": svg_picture(drawing)}
     except UserError:
@@ -19,9 +19,9 @@ def picture_bundle(value: object, drawing: Drawing) -> dict[str, str]:
 
 
 def page_bundle(value: object, drawings: Iterable[Drawing]) -> dict[str, str]:
-    """Give by media type what shows a value as text, with pictures below it as far as they can be drawn.
+    """Return the MIME bundle of a value as text, with pictures below it as far as they can be drawn.
 
-    A cell of a notebook shows the page; lists of values and consoles show the short form.
+    Cells of a notebook show the HTML; lists of values and consoles show ``repr(value)``.
     """
     parts = [f"<pre>{html.escape(str(value))}</pre>"]
     with contextlib.suppress(UserError):
@@ -30,6 +30,6 @@ def page_bundle(value: object, drawings: Iterable[Drawing]) -> dict[str, str]:
 
 
 def _image(svg: str) -> str:
-    # as an image, so that the style and the names in one picture stay its own
+    # as an image, so that styles and ids of one picture do not apply to another
     coded = base64.b64encode(svg.encode()).decode()
     return f'<img alt="task tree" src="data:image/svg+xml;base64,{coded}"/>'

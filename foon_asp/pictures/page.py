@@ -1,7 +1,7 @@
-"""A page of HTML that is whole in itself: data, code and looks in one file, and no request leaves it.
+"""A self-contained page of HTML: data, scripts and styles in one file, which makes no requests.
 
-What it is made of is in the folder ``web``, written for this page. Its policy allows the scripts and styles
-in it by their digests and nothing else, so whatever a name in the data may be, it is shown and never run.
+Its parts are in the folder ``web``. Its content security policy allows only the scripts and styles in it, by
+their digests, so that no name in the data is ever executed as code.
 """
 
 import base64
@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from foon_asp.document.json_document import document, fraction_json, mention_json, nodes_json
 from foon_asp.escapes import UNSAFE
-from foon_asp.pictures.graphviz import spots
+from foon_asp.pictures.graphviz import coordinates
 from foon_asp.pictures.tree_drawing import network_drawing
 from foon_asp.problem import Problem, reach
 from foon_asp.report.whole_file import utf_8, write_whole
@@ -33,7 +33,7 @@ _SCRIPTS = (
     "network",
     "start",
 )
-_OTHERS = (
+_OTHER_ANSWERS = (
     *("lasting", "without_rules", "alternatives", "front"),
     *("proof", "why_not", "shopping_list", "network"),
 )
@@ -47,13 +47,13 @@ class Page(NamedTuple):
     data: Json
 
     def html(self) -> str:
-        """Give the page, a document by itself."""
+        """Return the page as a complete HTML document."""
         light, picture, dark, page = (web(f"{name}.css") for name in ("light", "picture", "dark", "page"))
         script = '"use strict";\n(() => {\n' + "\n".join(web(f"{name}.js") for name in _SCRIPTS) + "})();\n"
         styles = {"light": light, "picture": picture, "page": dark + page}
         return web("page.html").format(
-            title=html.escape(_seen(self.title)),
-            text=html.escape(_seen(self.text)),
+            title=html.escape(_visible(self.title)),
+            text=html.escape(_visible(self.text)),
             data=in_script(self.data),
             scripts=digest(script),
             styles=" ".join(map(digest, styles.values())),
@@ -66,7 +66,7 @@ class Page(NamedTuple):
         write_whole(Path(file), utf_8(self.html()))
 
     def frame(self) -> str:
-        """Give HTML that shows the page inside another one, from which it is cut off."""
+        """Return HTML that shows the page inside another one, in a sandboxed frame."""
         return (
             '<iframe sandbox="allow-scripts allow-downloads allow-modals" title="task tree" '
             f'style="width:100%;height:640px;border:1px solid #ccc" srcdoc="{html.escape(self.html())}">'
@@ -76,15 +76,17 @@ class Page(NamedTuple):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Give what a notebook shows."""
+        """Return the MIME bundle that a notebook shows."""
         return {"text/plain": f"<Page: {self.title}>", "text/html": self.frame()}
 
 
-def view_json(answer: Json | None, trees: Iterable[tuple[Problem, Iterable[int]]], **beside: object) -> Json:
-    """Give what a page has: the document of an answer as it is, if it is about one.
+def view_json(
+    answer: Json | None, trees: Iterable[tuple[Problem, Iterable[int]]], **other_answers: object
+) -> Json:
+    """Return the data of a page: the document of an answer, ``None`` without one, and of other answers.
 
-    ``trees`` are all trees that the page shows, each by units of a problem, for the rates of these units.
-    ``beside`` are documents of other answers, as the schema names them.
+    ``trees`` are all trees that the page shows, as units of a problem, whose rates become part of the data.
+    ``other_answers`` are named as in the schema.
     """
     rates = {
         problem.network.unit_number(unit): fraction_json(problem.rate(unit))
@@ -96,27 +98,30 @@ def view_json(answer: Json | None, trees: Iterable[tuple[Problem, Iterable[int]]
         "view",
         answer=answer,
         rates=[{"unit": unit, "rate": rates[unit]} for unit in sorted(rates)] or None,
-        **{"searches": [], **dict.fromkeys(_OTHERS), **beside},
+        **{"searches": [], **dict.fromkeys(_OTHER_ANSWERS), **other_answers},
     )
 
 
 def network_json(problem: Problem) -> Json:
-    """Give a whole network with places for a picture: units first, then object nodes, each x and y."""
+    """Return a whole network as JSON, with coordinates: x and y of each unit, then of each object node.
+
+    Raises :class:`UserError` for a network that is too large for a layout, and without Graphviz.
+    """
     network = problem.network
     reached = reach(problem)
     objects, units = range(len(network.objects)), range(len(network))
     drawing = network_drawing(network, units, (), (), ())
-    found = spots(drawing)
-    places = {box.unit if box.node is None else box.node: found[box.name] for box in drawing.boxes}
-    listed = [places[network.unit_number(u)] for u in units]
-    listed += [places.get(node, (0, 0)) for node in network.objects]  # some are in no unit
+    by_name = coordinates(drawing)
+    positions = {box.unit if box.node is None else box.node: by_name[box.name] for box in drawing.boxes}
+    pairs = [positions[network.unit_number(u)] for u in units]
+    pairs += [positions.get(node, (0, 0)) for node in network.objects]  # some nodes are in no unit
     return {
         "objects": nodes_json(network, objects),
         "units": [
             {**mention_json(network, u), "inputs": network.inputs[u], "outputs": network.outputs[u]}
             for u in units
         ],
-        "places": [round(number) for place in listed for number in place],
+        "places": [round(number) for pair in pairs for number in pair],
         "kitchen": sorted(problem.kitchen),
         "reachable": [o for o in objects if reached.available[o]],
         "possible": sorted(reached.units),
@@ -124,19 +129,19 @@ def network_json(problem: Problem) -> Json:
 
 
 def web(name: str, folder: Path = WEB) -> str:
-    """Give a file that pages are made of."""
+    """Return the text of a file of the folder ``web``."""
     return (folder / name).read_text(encoding="utf-8")
 
 
 def digest(text: str) -> str:
-    """Give the digest of a script or style, as a policy names what it allows."""
+    """Return the digest of a script or style in the syntax of a content security policy."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
 def in_script(data: Json) -> str:
-    """Write data into a script, which ends at </script>: that is nowhere in them with < as a number."""
+    """Return data as JSON that can stand in a script: ``<`` is escaped, so that no ``</script>`` ends it."""
     return json_line(data).replace("<", "\\u003c")
 
 
-def _seen(text: str) -> str:
+def _visible(text: str) -> str:
     return UNSAFE.sub("\ufffd", text)

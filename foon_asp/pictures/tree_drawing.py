@@ -1,4 +1,4 @@
-"""Plans, trees of any origin and networks as drawings, with a caption that says whether they execute."""
+"""Drawings of plans, task trees and networks, with a caption that says whether they execute."""
 
 from collections.abc import Collection, Iterable, Sequence
 
@@ -10,17 +10,18 @@ from foon_asp.proof.simulation import Verdict, simulate
 
 
 def plan_drawing(problem: Problem, units: Sequence[FunctionalUnit], caption: str = "") -> Drawing:
-    """Draw a plan in which items are used up; without a caption, it says whether the plan runs."""
+    """Return the drawing of a plan in which items are used up; the default caption says whether it runs."""
     replay = replay_for(problem, units)
-    taken = [{copy.node: copy.made for copy in (*step.gone, *step.stayed)} for step in replay.steps]
-    taken += [{} for _ in units[len(taken) :]]
-    left = {copy.node: copy.made for copy in replay.left}
-    kept = {goal: left.get(goal) for goal in problem.goal_nodes}
+    sources = [{copy.node: copy.made for copy in (*step.gone, *step.stayed)} for step in replay.steps]
+    sources += [{} for _ in units[len(sources) :]]
+    final = {copy.node: copy.made for copy in replay.left}
+    goal_sources = {goal: final.get(goal) for goal in problem.goal_nodes}
     kitchen = {node for unit in units for node in unit.inputs if problem.at_hand(node)}
     runs = "runs" if replay.shortage is None else f"does not run for want of {replay.shortage.node}"
     caption = caption or f"{runs} ({problem.conditions}), {counted(len(units), 'unit')}"
-    captions = f"Plan for {_joined(kept)}", caption
-    return draw_plan(units, taken, kept, kitchen.union(filter(problem.at_hand, kept)), captions)
+    kitchen.update(filter(problem.at_hand, goal_sources))
+    captions = f"Plan for {_joined(goal_sources)}", caption
+    return draw_plan(units, sources, goal_sources, kitchen, captions)
 
 
 def tree_drawing(
@@ -32,10 +33,9 @@ def tree_drawing(
     network: Network,
     claim: Iterable[str] = (),
 ) -> Drawing:
-    """Draw a tree with lines about what is proved of it.
+    """Return the drawing of a tree; the lines of ``claim``, on what is proved of it, are its caption.
 
-    Without a claim, the units are numbered in an order that executes if one does, and the caption says
-    whether.
+    Without a claim, the units are numbered in an executable order if one exists, and the caption says so.
     """
     units, lines = tree.units, [*claim]
     if not lines:
@@ -49,8 +49,8 @@ def tree_drawing(
         }[simulation.verdict]
         lines = [f"{verdict} ({conditions(containers, network.level)}), {counted(len(units), 'unit')}"]
     title = f"Task tree for {_joined(goals)}" if goals else "Task tree"
-    gives = [given_outputs(unit, containers, utensils, network) for unit in units]
-    return draw_tree(units, kitchen, goals, (title, *lines), gives)
+    add_effects = [given_outputs(unit, containers, utensils, network) for unit in units]
+    return draw_tree(units, kitchen, goals, (title, *lines), add_effects)
 
 
 def network_drawing(
@@ -60,7 +60,7 @@ def network_drawing(
     goals: Iterable[int],
     caption: Iterable[str],
 ) -> Drawing:
-    """Draw units of a network as a graph; object nodes, too, are given by id."""
+    """Return the drawing of units of a network as a graph; units, kitchen items and goals are ids."""
     objects = network.objects
     numbered = ((network.unit_number(unit), network.unit(unit)) for unit in units)
     return draw_network(numbered, {objects[o] for o in kitchen}, {objects[o] for o in goals}, caption)

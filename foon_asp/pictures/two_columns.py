@@ -13,7 +13,7 @@ Row = tuple[Unit | None, Unit | None, Sequence[UnitDifference]]
 
 
 class Pair(NamedTuple):
-    """Units under a heading, beside each other; ``folded`` ones are shown when asked for."""
+    """Pairs of units of two networks under a heading; the reader has to unfold ``folded`` ones."""
 
     heading: str
     rows: Sequence[Row]
@@ -21,15 +21,18 @@ class Pair(NamedTuple):
 
 
 def two_columns(
-    title: str, names: Sequence[str], figures: Sequence[Sequence[str]], parts: Iterable[Pair]
+    title: str, names: Sequence[str], figures: Sequence[Sequence[str]], sections: Iterable[Pair]
 ) -> str:
-    """Give the page: figures in a table, then units under headings, with what differs marked."""
+    """Return the page: a table of figures, then units under headings, with differences marked.
+
+    ``names`` are those of the two networks. ``figures`` are rows of cells, the first one the header.
+    """
     style = web("light.css") + web("dark.css") + web("two_columns.css")
     head, *rows = figures
     table = _row("th", head) + "".join(_row("td", row) for row in rows)
     columns = "".join(f"<p>{letter}: {_text(name)}</p>" for letter, name in zip("AB", names, strict=True))
     body = f'<div class="pair">{columns}</div><table>{table}</table>'
-    body += "".join(map(_part, parts))
+    body += "".join(map(_section, sections))
     policy = f"default-src 'none'; style-src {digest(style)}; base-uri 'none'; form-action 'none'"
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -41,33 +44,34 @@ def two_columns(
     )
 
 
-def _part(part: Pair) -> str:
-    if not part.rows:
+def _section(section: Pair) -> str:
+    if not section.rows:
         return ""
-    heading = f"{part.heading}: {len(part.rows):,}"
-    rows = "\n".join(map(_pair, part.rows))
-    if part.folded:
+    heading = f"{section.heading}: {len(section.rows):,}"
+    rows = "\n".join(map(_pair, section.rows))
+    if section.folded:
         return f"<details>\n<summary>{heading}</summary>\n{rows}\n</details>\n"
     return f"<h2>{heading}</h2>\n{rows}\n"
 
 
 def _pair(row: Row) -> str:
-    left, right, differences = row
-    here = _unit(left, {(d.kind, d.a) for d in differences})
-    there = _unit(right, {(d.kind, d.b) for d in differences})
-    said = "".join(f"<li>{_said(difference)}</li>" for difference in differences)
-    return f'<div class="pair">{here}{there}{f"<ul>{said}</ul>" if said else ""}</div>'
+    unit_a, unit_b, differences = row
+    column_a = _unit(unit_a, {(d.kind, d.a) for d in differences})
+    column_b = _unit(unit_b, {(d.kind, d.b) for d in differences})
+    items = "".join(f"<li>{_difference(difference)}</li>" for difference in differences)
+    return f'<div class="pair">{column_a}{column_b}{f"<ul>{items}</ul>" if items else ""}</div>'
 
 
-def _said(difference: UnitDifference) -> str:
-    before = f"{_text(difference.of)}: " if difference.of else ""
+def _difference(difference: UnitDifference) -> str:
+    """Return a difference in words, such as ``state chopped only in A``."""
+    prefix = f"{_text(difference.of)}: " if difference.of else ""
     sides = [f"<b>{_text(name)}</b>" for name in (difference.a, difference.b) if name]
     where = (
         f"{sides[0]} in A, {sides[1]} in B"
         if len(sides) > 1
         else f"{sides[0]} only in {'A' if difference.a else 'B'}"
     )
-    return f"{before}{difference.kind} {where}"
+    return f"{prefix}{difference.kind} {where}"
 
 
 def _unit(unit: Unit | None, marked: set[tuple[str, str | None]]) -> str:
@@ -75,8 +79,8 @@ def _unit(unit: Unit | None, marked: set[tuple[str, str | None]]) -> str:
         return '<section class="none"></section>'
     motion = f"<b>{_text(unit.motion)}</b>" if ("motion", unit.motion) in marked else _text(unit.motion)
     inputs, outputs = (
-        "".join(f"<li>{_node(node, side, marked)}</li>" for node in nodes)
-        for side, nodes in (("input", unit.inputs), ("output", unit.outputs))
+        "".join(f"<li>{_node(node, role, marked)}</li>" for node in nodes)
+        for role, nodes in (("input", unit.inputs), ("output", unit.outputs))
     )
     return (
         f"<section><h3>{motion} <small>{_text(str(unit.source[0]))}</small></h3>"
@@ -84,10 +88,10 @@ def _unit(unit: Unit | None, marked: set[tuple[str, str | None]]) -> str:
     )
 
 
-def _node(node: Node, side: str, marked: set[tuple[str, str | None]]) -> str:
-    """Show a node in one-line notation, with the names in it that differ marked."""
+def _node(node: Node, role: str, marked: set[tuple[str, str | None]]) -> str:
+    """Return a node in one-line notation, with the names in it that differ marked."""
     text = str(node)
-    if (side, text) in marked:
+    if (role, text) in marked:
         return f"<b>{_text(text)}</b>"
     names = sorted(
         {name for kind, name in marked if name and kind not in {"motion", "input", "output"}}, key=len
@@ -97,7 +101,7 @@ def _node(node: Node, side: str, marked: set[tuple[str, str | None]]) -> str:
     pattern = "|".join(re.escape(name) for name in reversed(names))
     pieces = re.split(rf"(?<!\w)({pattern})(?!\w)", text)
     return "".join(
-        f"<b>{_text(piece)}</b>" if place % 2 else _text(piece) for place, piece in enumerate(pieces)
+        f"<b>{_text(piece)}</b>" if index % 2 else _text(piece) for index, piece in enumerate(pieces)
     )
 
 

@@ -153,9 +153,9 @@ def test_renaming_formatting_and_quick_fixes(client: LanguageClient, tmp_path: P
     assert silencing == sorted(silencing)  # what mends comes first
     after = applied(by_title["Write 'chopped' for the state 'choped' everywhere in this file"]["edit"])
     assert after.count("chopped") == 4
-    mended = next(title for title in by_title if title.startswith("Mend: no tab after S5"))
+    mended = next(title for title in by_title if title.startswith("Fix: no tab after S5"))
     assert "S5\tchoped\n" in applied(by_title[mended]["edit"])
-    closed = next(title for title in by_title if title.startswith("Mend: the last unit"))
+    closed = next(title for title in by_title if title.startswith("Fix: the last unit"))
     assert applied(by_title[closed]["edit"]) == source + "//\n"
     silenced = applied(by_title["Silence near-name on this line"]["edit"])
     assert "# noqa: near-name\nS5 choped" in silenced
