@@ -1,1 +1,1 @@
-"""Searches compared with the optimum, for one goal or thousands."""
+"""Comparison of searches with the optimum, for one goal or thousands."""

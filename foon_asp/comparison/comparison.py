@@ -1,4 +1,4 @@
-"""One goal: what each search returned, whether it executes, and how far it is from the optimum."""
+"""Comparison for one goal: the tree of each search, whether it executes, and its distance to the optimum."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -24,7 +24,7 @@ from foon_asp.searches import Ending, Search, SearchSettings
 if TYPE_CHECKING:
     from foon_asp.asp.breaking import Breaking
 
-# The objectives whose optima a tree is compared with.
+# The objectives by which trees are compared with the optimum.
 MEASURED = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)
 
 
@@ -40,12 +40,12 @@ class Optimum(Value, frozen=True):
 
 
 class Obstruction(Value, frozen=True):
-    """What stops every order of a tree.
+    """The reason why no order of a tree executes.
 
     Attributes:
         motion: The motion of the first unit that cannot run; null where a goal is missing.
         missing: What the unit lacks, or the goal.
-        cycle: Whether units that wait for each other are to blame.
+        cycle: Whether the reason is a cycle of units that wait for each other.
     """
 
     motion: str | None
@@ -54,11 +54,11 @@ class Obstruction(Value, frozen=True):
 
 
 class SearchResult(Value, frozen=True):
-    """What one search returned for one goal.
+    """The result of one search for one goal.
 
     Attributes:
         ending: How the search ended.
-        stuck_at: The object in the way, if one was.
+        stuck_at: The object at which the search got stuck, if it did.
         units: Unit ids in the order listed; null without a tree.
         measures: What the tree costs by each objective that is compared.
         ratios: Measure over optimum; null where the optimum is not proved, or 0.
@@ -91,22 +91,22 @@ class SearchResult(Value, frozen=True):
 
     @property
     def counts(self) -> bool:
-        """Whether it is a tree: one that executes, and keeps to the rules."""
+        """Whether the search returned a tree that executes and breaks no rule."""
         return self.executes and not self.breaks
 
     @property
     def waits(self) -> bool:
-        """Whether units of the tree wait for each other."""
+        """Whether units of the tree wait for each other in a cycle."""
         return self.obstacle is not None and self.obstacle.cycle
 
     def beats_the_optimum(self, objective: Objective) -> bool:
-        """Whether the tree is better than the proved optimum: it does not execute then, or breaks a rule."""
+        """Return whether the tree is better than the proved optimum, as one that does not execute may be."""
         ratio = self.ratios.get(objective)
         return ratio is not None and (ratio > 1 if multiplies(objective) else ratio < 1)
 
 
 class Comparison(Value, frozen=True):
-    """What the searches returned for one goal, beside the optimum.
+    """The results of the searches for one goal, and its optimum.
 
     Attributes:
         optimum: The optimum of each objective by itself.
@@ -124,30 +124,30 @@ def compare(
     time_limit: float | None = None,
     rules: Settings | None = None,
 ) -> Comparison:
-    """Run searches on a problem of one goal, simulate their trees and prove the optima beside them.
+    """Run searches on a problem of one goal, simulate their trees and prove the optimum of each objective.
 
     ``time_limit`` is in seconds for each optimum. Optima of ``success`` are left out where no rates are
-    known. Optima keep to the ``rules``; the searches know nothing of them, and it is said of their trees
-    which they break.
+    known. Optima keep to the ``rules``; the searches ignore them, and results list the rules that a tree
+    breaks.
     """
-    how = rules or Settings()
+    solver_settings = rules or Settings()
     optima: dict[Objective, Optimum] = {}
     for objective in MEASURED:
         if multiplies(objective) and problem.rates is None:
             continue
         deadline = Deadline(time_limit, settings.memory_limit)
-        outcome = solve(problem, (objective,), how._replace(deadline=deadline))
+        outcome = solve(problem, (objective,), solver_settings._replace(deadline=deadline))
         value = None if outcome.costs is None else outcome.costs.measure(objective)
         optima[objective] = Optimum(outcome.status, value)
     (goal,) = goals_of(problem.network, problem.goals)
-    results = tuple(judge(problem, search, settings, optima, how) for search in searches)
+    results = tuple(judge(problem, search, settings, optima, solver_settings) for search in searches)
     comparison = Comparison(goal, optima, results)
     _require_consistent(comparison)
     return comparison
 
 
 def _require_consistent(comparison: Comparison) -> None:
-    """Require that no tree that executes is better than a proved optimum: if one were, that is our bug."""
+    """Raise :class:`BugError` where an executable tree is better than a proved optimum."""
     for result in comparison.searches:
         if not result.counts:
             continue
@@ -173,33 +173,33 @@ def judge(
     optima: Mapping[Objective, Optimum],
     rules: Settings,
 ) -> SearchResult:
-    """Run one search, simulate the tree it returns, and compare it with the optima."""
+    """Run one search, and return its tree simulated and compared with the optima."""
     network = problem.network
-    found = search.run(replace(problem, items=None), settings)
-    if found.ending is not Ending.TREE:
-        stuck_at = None if found.stuck_at is None else node_of(network, found.stuck_at)
-        return SearchResult(search.name, found.ending, stuck_at)
-    tree = problem.tree(found.units)
-    simulation = simulated(problem, found.units, tree)
+    retrieval = search.run(replace(problem, items=None), settings)
+    if retrieval.ending is not Ending.TREE:
+        stuck_at = None if retrieval.stuck_at is None else node_of(network, retrieval.stuck_at)
+        return SearchResult(search.name, retrieval.ending, stuck_at)
+    tree = problem.tree(retrieval.units)
+    simulation = simulated(problem, retrieval.units, tree)
     obstruction = None
     if simulation.obstacle is not None:
-        place, missing, cycle = simulation.obstacle[:3]
-        motion = None if place is None else tree.units[place].motion
+        position, missing, cycle = simulation.obstacle[:3]
+        motion = None if position is None else tree.units[position].motion
         obstruction = Obstruction(motion, named_node(network, missing), bool(cycle))
-    costs, lasting = problem.costs(found.units), problem.items is None
+    costs, lasting = problem.costs(retrieval.units), problem.items is None
     measures = {
         objective: costs.measure(objective)
         for objective in MEASURED
         if not multiplies(objective) or costs.success is not None
     }
     executes = simulation.verdict is not Verdict.NEVER
-    asked = rules.constraints and executes
-    broken = _breaking(rules, not lasting).broken(problem, found.units) if asked else ()
+    check_rules = rules.constraints and executes
+    broken = _breaking(rules, not lasting).broken(problem, retrieval.units) if check_rules else ()
     return SearchResult(
         search.name,
-        found.ending,
+        retrieval.ending,
         None,
-        tuple(map(network.unit_number, found.units)),
+        tuple(map(network.unit_number, retrieval.units)),
         measures,
         {objective: _ratio(measure, optima.get(objective)) for objective, measure in measures.items()},
         simulation.verdict,
@@ -211,13 +211,14 @@ def judge(
 
 
 def _ratio(measure: Figure, optimum: Optimum | None) -> Fraction | None:
+    """Return a measure divided by the optimum; ``None`` where it is 0 or not proved."""
     if optimum is None or not optimum.value or optimum.status is not Status.OPTIMAL:
         return None
     return Fraction(measure) / optimum.value
 
 
 def simulated(problem: Problem, units: Sequence[int], tree: TaskTree) -> Simulation:
-    """Simulate a tree; where items are used up, it has to run as a plan, in whatever order."""
+    """Return the simulation of a tree; where items are used up, of a plan that executes each unit once."""
     simulation = simulate_for(problem, tree)
     if problem.items is None or simulation.verdict is Verdict.NEVER:
         return simulation
@@ -228,5 +229,7 @@ def simulated(problem: Problem, units: Sequence[int], tree: TaskTree) -> Simulat
     plan = order_that_runs(problem, units)
     if plan is None:
         return Simulation(Verdict.NEVER, (), obstacle, obstacle)
-    places = {unit: [n for n, each in enumerate(units) if each == unit] for unit in units}
-    return Simulation(Verdict.REORDERED, tuple(places[unit].pop(0) for unit in plan), obstacle, None)
+    positions: dict[int, list[int]] = {}
+    for position, unit in enumerate(units):
+        positions.setdefault(unit, []).append(position)
+    return Simulation(Verdict.REORDERED, tuple(positions[unit].pop(0) for unit in plan), obstacle, None)

@@ -1,4 +1,4 @@
-"""Comparisons as rows of a file, and the question that all its rows have in common."""
+"""Comparisons as rows of a file, and the question that all rows of a file answer."""
 
 import hashlib
 from collections.abc import Sequence
@@ -19,9 +19,9 @@ from foon_asp.text.json_value import Json, json_line
 
 
 def read_comparison(row: Json) -> Comparison:
-    """Return the comparison that a row was made of.
+    """Return the comparison of a row.
 
-    Raises one of the errors that :class:`RowsFile` knows for anything else.
+    Raises one of the errors of :class:`RowForm` for a value that is not the row of a comparison.
     """
     searches = [
         search | {name: _by_objective(search[name]) for name in ("measures", "ratios")}
@@ -41,7 +41,7 @@ def _by_objective(values: Json) -> dict[Objective, object]:
 def _exact(_: type, value: Any) -> Objective | Fraction | int:
     if isinstance(value, Objective) or type(value) is int:
         return value
-    return Fraction(*map(int, value["exact"].split("/")))  # without exponents: those stand for many digits
+    return Fraction(*map(int, value["exact"].split("/")))  # no exponents: 1e999999 has a million digits
 
 
 COMPARISONS = RowForm("compare-row", plain, read_comparison, lambda comparison: comparison.goal.node)
@@ -50,7 +50,10 @@ COMPARISONS = RowForm("compare-row", plain, read_comparison, lambda comparison: 
 def comparisons_question(
     problem: Problem, searches: Sequence[Search], settings: SearchSettings, rules: Settings | None = None
 ) -> Json:
-    """Describe what is asked, so that results of another question are not taken for this one's."""
+    """Return the question of a file of rows: data (as a digest), searches, settings and rules.
+
+    A file with another question is refused when a comparison is resumed.
+    """
     data: list[object] = [
         digests(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     ]

@@ -1,4 +1,4 @@
-"""Comparisons for many goals, in this process or several, as they come."""
+"""Comparisons for many goals, in this process or in several."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -13,7 +13,7 @@ from foon_asp.searches import Search, SearchSettings
 
 
 def makeable(problem: Problem) -> list[int]:
-    """List every object node that can be made and is not in the kitchen; the goals do not matter."""
+    """Return the ids of all object nodes that can be made and are not in the kitchen, whatever the goals."""
     return sorted(o for o in reach(problem).makers if o not in problem.kitchen)
 
 
@@ -26,24 +26,27 @@ def compare_goals(
     jobs: int = 1,
     rules: Settings | None = None,
 ) -> Iterator[Comparison]:
-    """Compare the searches on each goal by itself, in order of the goals, and under rules of the user's.
+    """Compare the searches on each goal by itself; yield the comparisons in order of the goals.
 
-    With more than one job, processes share the goals; the rows are the same.
+    With more than one job, processes share the goals; the comparisons are the same. Optima keep to the
+    ``rules``; ``time_limit`` is in seconds for each optimum.
+
+    Raises :class:`UserError` where a process dies, mostly for want of memory.
     """
     work = partial(_compare, problem.plain, tuple(searches), settings, time_limit, rules)
     if jobs == 1:
         yield from map(work, enumerate(goals))
         return
-    ready: dict[int, Comparison] = {}  # those that wait for an earlier goal
-    sent = 0
+    ready: dict[int, Comparison] = {}  # comparisons that wait for the one of an earlier goal
+    next_number = 0
     for done in share(partial(partial, work), [*enumerate(goals)], min(jobs, len(goals))):
         number, goal = done.task
         if isinstance(done.error, LostError):
             raise UserError(f"{problem.network.objects[goal]}: {done.error}; fewer --jobs take less memory")
         ready[number] = done.get()
-        while sent in ready:
-            yield ready.pop(sent)
-            sent += 1
+        while next_number in ready:
+            yield ready.pop(next_number)
+            next_number += 1
 
 
 def _compare(

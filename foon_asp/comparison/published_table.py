@@ -1,4 +1,4 @@
-"""The published figures of the searches, which those measured here are held against."""
+"""Published figures of the searches, for comparison with the measured ones."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ class PublishedTable(Value, frozen=True):
 
     Attributes:
         source: Where they were published.
-        containers: The container rule that they were found under.
+        containers: The container rule under which they were measured.
         columns: The heading of each search.
         goals: Functional units by the label of the goal, and by search.
     """
@@ -24,5 +24,5 @@ class PublishedTable(Value, frozen=True):
 
 
 def read_published(file: Path) -> PublishedTable:
-    """Return the figures of a file, such as that which comes with the program."""
+    """Return the figures of a JSON file, such as the one in the bundled data."""
     return msgspec.json.decode(file.read_bytes(), type=PublishedTable)

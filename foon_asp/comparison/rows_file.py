@@ -1,4 +1,4 @@
-"""A file of rows as JSON Lines: written as they come, read back to resume after an interruption."""
+"""Rows file: results as JSON Lines, appended one by one, and read back to resume after an interruption."""
 
 import contextlib
 import os
@@ -18,13 +18,14 @@ else:
 Row = TypeVar("Row")
 Value = TypeVar("Value")
 
-_BEYOND = 1 << 40  # where no byte of a file is: on Windows, who locks a byte keeps others from reading it
+# In bytes, beyond the end of any file: on Windows, a locked byte cannot be read by other processes.
+_LOCK_OFFSET = 1 << 40
 
 
 class RowForm(NamedTuple, Generic[Row]):
-    """How rows of a ``kind`` are written, and what identifies one.
+    """The format of rows of a ``kind``: how they are written, read and identified.
 
-    ``read`` makes a row of what ``plain`` made of it. It refuses anything else by raising a
+    ``plain`` returns a row as JSON, and ``read`` is its inverse. For other JSON, ``read`` raises a
     :class:`ValueError`, :class:`KeyError`, :class:`TypeError`, :class:`AttributeError` or
     :class:`ArithmeticError`. ``key`` returns the question that a row answers.
     """
@@ -36,16 +37,15 @@ class RowForm(NamedTuple, Generic[Row]):
 
 
 class RowsFile(Generic[Row]):
-    """A file of rows under construction, which one process writes at a time.
+    """A file to which one process at a time appends rows.
 
-    Its first line is the question (data and settings); every line says its kind and version. Rows are
-    written whole and at once; a last line that an interruption cut short is dropped. ``done`` has the rows by
-    key, and ``twice`` a warning for each that has the key of an earlier one. The lock ends with the process,
-    however that ends.
+    The first line is the question (data and settings); every line has its kind and version. Each row is
+    written to the disk at once; an incomplete last line, from an interruption, is dropped. ``done`` are the
+    rows by key, and ``twice`` has a warning for each row with the key of an earlier one. The file is locked
+    until it is closed or the process ends.
 
-    Raises :class:`UserError`, and leaves the file as it is, where another run writes it, where it was begun
-    for another question, where its lines are of another version, and where it holds anything that this class
-    did not write.
+    Raises :class:`UserError`, and leaves the file unchanged, where another run writes it, where it was begun
+    for another question, where its lines are of another version, and where it has other contents.
     """
 
     def __init__(self, path: Path, form: RowForm[Row], question: Json) -> None:
@@ -59,17 +59,17 @@ class RowsFile(Generic[Row]):
                 content = self._file.read()
             first_line = self._line({"question": question})
             is_new = first_line.startswith(content)  # empty, or cut short
-            kept = 0 if is_new else self._read_rows(content, question)
+            end = 0 if is_new else self._read_rows(content, question)
             with self._reported("written"):
-                self._file.truncate(kept)
-                self._file.seek(kept)
+                self._file.truncate(end)
+                self._file.seek(end)
                 self._write(first_line if is_new else b"")
         except BaseException:
             self.__exit__()
             raise
 
     def add(self, row: Row) -> None:
-        """Write a row; it is on the disk when this returns."""
+        """Append a row; when this returns, it is on the disk."""
         with self._reported("written"):
             self._write(self._line(self._form.plain(row)))
         self.done[self._form.key(row)] = row
@@ -78,14 +78,14 @@ class RowsFile(Generic[Row]):
         return self
 
     def __exit__(self, *_: object) -> None:
-        with contextlib.suppress(OSError):  # all rows are on the disk already, or their fault was reported
+        with contextlib.suppress(OSError):  # all rows are on the disk, or an error was reported
             self._file.close()
 
     def _locked(self) -> IO[bytes]:
-        """Open the file for this run alone; raises :class:`UserError` where another one writes it."""
+        """Return the file, open and locked; raises :class:`UserError` where another run has locked it."""
         if self.path.exists() and not self.path.is_file():
             raise UserError(f"{self.path}: is not a file in which results can be kept")
-        file = open(self.path, "r+b", opener=lambda name, how: os.open(name, how | os.O_CREAT, 0o666))  # noqa: SIM115 (closed at the end)
+        file = open(self.path, "r+b", opener=lambda name, flags: os.open(name, flags | os.O_CREAT, 0o666))  # noqa: SIM115 (closed at the end)
         if _lock(file):
             file.seek(0)
             return file
@@ -96,21 +96,21 @@ class RowsFile(Generic[Row]):
         )
 
     def _read_rows(self, content: bytes, question: Json) -> int:
-        """Read the rows of a file that was begun, and return how many of its bytes are whole lines."""
+        """Read the rows of an existing file, and return the length of its complete lines, in bytes."""
         first, newline, rows = content.partition(b"\n")
-        begun = self._read(first, 1, dict) if newline else {}
-        if begun.keys() != {"question"}:
+        header = self._read(first, 1, dict) if newline else {}
+        if header.keys() != {"question"}:
             raise UserError(
                 f"{self.path}: contains something other than results of foon-asp, and was not changed; "
                 "name another file"
             )
-        there, now = json_line(begun["question"]), json_line(question)
-        if read_json(there) != read_json(now):
+        old, new = json_line(header["question"]), json_line(question)
+        if read_json(old) != read_json(new):
             raise UserError(
                 f"{self.path}: was started for another question; name another file, or remove this one\n"
-                f"  there: {there}\n  now:   {now}"
+                f"  there: {old}\n  now:   {new}"
             )
-        *lines, rest = rows.split(b"\n")
+        *lines, incomplete = rows.split(b"\n")
         numbers: dict[object, int] = {}
         for number, line in enumerate(lines, 2):
             row = self._read(line, number, self._form.read)
@@ -121,9 +121,10 @@ class RowsFile(Generic[Row]):
                     f"{self.path}:{number}: warning: a row of the same question as line {numbers[key]}; "
                     "whoever reads them counts both: remove one"
                 )
-        return len(content) - len(rest)
+        return len(content) - len(incomplete)
 
     def _read(self, line: bytes, number: int, read: Callable[[Json], Value]) -> Value:
+        """Return the value of a line; raises :class:`UserError` for an invalid one, or another version."""
         try:
             value: Json = read_json(line)
             version = value.pop("schema")
@@ -148,21 +149,22 @@ class RowsFile(Generic[Row]):
         os.fsync(self._file.fileno())
 
     @contextlib.contextmanager
-    def _reported(self, done: str) -> Iterator[None]:
+    def _reported(self, action: str) -> Iterator[None]:
+        """Raise :class:`UserError` for an ``OSError``: the file cannot be ``action`` (read, written)."""
         try:
             yield
         except OSError as error:
-            raise UserError(f"{self.path}: cannot be {done}: {error.strerror or error}") from None
+            raise UserError(f"{self.path}: cannot be {action}: {error.strerror or error}") from None
 
 
 def _lock(file: IO[bytes]) -> bool:
-    """Lock an open file until it is closed, and return whether nobody else has it locked.
+    """Lock an open file until it is closed; return ``False`` where another process has locked it.
 
-    Where the file system knows no locks, nobody else is taken to have it.
+    On a file system without locks, the result is ``True``.
     """
     try:
         if sys.platform == "win32":
-            os.lseek(file.fileno(), _BEYOND, os.SEEK_SET)
+            os.lseek(file.fileno(), _LOCK_OFFSET, os.SEEK_SET)
             msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
         else:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

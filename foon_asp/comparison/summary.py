@@ -1,4 +1,4 @@
-"""What a paper would say of many comparisons: how many trees execute, how far the others are off."""
+"""Summary statistics of many comparisons, as papers report them: how far trees are from the optimum."""
 
 import statistics
 from collections.abc import Iterable, Sequence
@@ -11,11 +11,11 @@ from foon_asp.problem import Objective, multiplies
 
 
 class Distance(NamedTuple):
-    """How many times worse than the optimum the trees are that execute and keep to rules; 1 is optimal.
+    """Statistics of the ratio to the optimum, over the trees that execute and break no rule; 1 is optimal.
 
-    For ``success`` it is the optimum over the tree's product, so that more is worse here too. ``share`` is
-    the share of trees that are optimal, ``worst_goal`` the goal of the worst. The 90th percentile is the
-    least value that at least nine tenths of the trees do not exceed.
+    The ratio is cost over optimum, for ``success`` optimum over product, so that more is always worse.
+    ``share`` is the fraction of trees that are optimal, ``worst_goal`` the goal of the worst ratio. The 90th
+    percentile is the least ratio that at least nine tenths of the trees do not exceed.
     """
 
     share: Fraction
@@ -27,9 +27,9 @@ class Distance(NamedTuple):
 
 
 class Summary(NamedTuple):
-    """One search over many goals that can all be made.
+    """The summary of one search over many goals that can all be made.
 
-    ``results`` are what it returned, goal by goal. ``distances`` are by objective.
+    ``results`` are its results, goal by goal. ``distances`` are by objective; one without any tree is absent.
     """
 
     search: str
@@ -38,34 +38,35 @@ class Summary(NamedTuple):
 
 
 def summarize_comparisons(comparisons: Sequence[Comparison]) -> list[Summary]:
-    """Sum up comparisons, one summary for each search, in the order of the searches."""
+    """Return a summary of the comparisons for each search, in the order of the searches."""
     names = dict.fromkeys(result.search for row in comparisons for result in row.searches)
     return [_summary(name, comparisons) for name in names]
 
 
 def _summary(name: str, comparisons: Sequence[Comparison]) -> Summary:
-    found = [(row.goal, result) for row in comparisons for result in row.searches if result.search == name]
+    results = [(row.goal, result) for row in comparisons for result in row.searches if result.search == name]
     distances: dict[Objective, Distance] = {}
     for objective in MEASURED:
         ratios = [
             (1 / ratio if multiplies(objective) else ratio, str(goal))
-            for goal, result in found
+            for goal, result in results
             if result.counts and (ratio := result.ratios.get(objective))
         ]
         if ratios:
             distances[objective] = _distance(sorted(ratios))
-    return Summary(name, tuple(result for _, result in found), distances)
+    return Summary(name, tuple(result for _, result in results), distances)
 
 
 def _distance(ratios: list[tuple[Fraction, str]]) -> Distance:
+    """Return the statistics of ratios, in ascending order, with their goals."""
     values = [value for value, _ in ratios]
     share, median = Fraction(values.count(Fraction(1)), len(values)), statistics.median(values)
-    mean, most = statistics.mean(values), values[-(-9 * len(values) // 10) - 1]
-    return Distance(share, mean, median, most, *ratios[-1])
+    mean, percentile_90 = statistics.mean(values), values[-(-9 * len(values) // 10) - 1]
+    return Distance(share, mean, median, percentile_90, *ratios[-1])
 
 
 def all_proved(comparisons: Iterable[Comparison]) -> bool:
-    """Whether every optimum of every comparison is proved, or proved not to exist."""
+    """Return whether every optimum of every comparison is proved, or proved not to exist."""
     return all(
         optimum.status in {Status.OPTIMAL, Status.INFEASIBLE}
         for comparison in comparisons

@@ -1,1 +1,1 @@
-"""Other processes of this program, which end with it at the latest."""
+"""Child processes of this program, which never outlive it: pipes, workers and pools."""

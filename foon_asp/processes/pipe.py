@@ -1,4 +1,4 @@
-"""Values through pipes between two processes of this program, each with its length before it."""
+"""Messages through pipes between two processes of this program: pickled values, each after its length."""
 
 import os
 import pickle
@@ -15,75 +15,78 @@ from foon_asp.aside import Aside
 T = TypeVar("T")
 
 OUT_OF_MEMORY = 77
-"""The exit code of a process that has no more memory."""
+"""The exit code of a process that ran out of memory."""
 
 _LENGTH = struct.Struct("!Q")
+_CHUNK_BYTES = 1 << 20  # read at once: a wrong length would otherwise allocate all memory
 
 
 def packed(value: object) -> bytes:
-    """Give a value as :func:`receive` reads it."""
+    """Return a value as the bytes of a message, which :func:`receive` reads."""
     content = pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
     return _LENGTH.pack(len(content)) + content
 
 
 def write(pipe: RawIOBase, content: bytes) -> None:
-    """Write all of some bytes; raises ``OSError`` where nobody reads any more."""
-    left = memoryview(content)
-    while left:
-        left = left[pipe.write(left) :]
+    """Write bytes completely; raises ``OSError`` where the other end is closed."""
+    unwritten = memoryview(content)
+    while unwritten:
+        unwritten = unwritten[pipe.write(unwritten) :]
 
 
 def send(pipe: RawIOBase, value: object) -> None:
-    """Write a value; raises ``OSError`` where nobody reads any more."""
+    """Write a value as a message; raises ``OSError`` where the other end is closed."""
     write(pipe, packed(value))
 
 
 def receive(pipe: RawIOBase) -> Any:
-    """Wait for a value; raises ``EOFError`` where nobody writes any more."""
+    """Wait for a message, and return its value; raises ``EOFError`` where the other end is closed."""
     return pickle.loads(receive_packed(pipe))
 
 
 def receive_packed(pipe: RawIOBase) -> bytes:
-    """Wait for a value, and give it pickled; raises ``EOFError`` where nobody writes any more."""
+    """Wait for a message, and return it pickled; raises ``EOFError`` where the other end is closed."""
     (length,) = _LENGTH.unpack(_exactly(pipe, _LENGTH.size))
     return _exactly(pipe, length)
 
 
 def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], FileIO]":
-    """Take standard input for requests, which ``read`` reads one by one, and standard output for answers.
+    """Make this process a worker: return the queue of its requests, and the pipe for its answers.
 
-    For a process that another one asks. Ctrl-C is for the other one, and whatever else this one prints goes
-    to standard error. A thread reads, so that this process ends with the other one, whatever it is at.
+    A thread reads requests from standard input, each by ``read``, and ends the process once its parent has
+    ended, even during a computation. Answers go to what was standard output; anything else that this process
+    prints goes to standard error. Ctrl-C is ignored, since the parent handles it.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     incoming, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)
     sys.stdout = sys.stderr
-    asked: queue.SimpleQueue[T] = queue.SimpleQueue()
+    received: queue.SimpleQueue[T] = queue.SimpleQueue()
 
     def listen() -> None:
         while True:
             try:
-                asked.put(read(incoming))
-            except EOFError:  # nobody asks any more
+                received.put(read(incoming))
+            except EOFError:  # the parent has ended
                 os._exit(0)
             except MemoryError:
                 os._exit(OUT_OF_MEMORY)
 
     Aside(listen)
-    return asked, answers
+    return received, answers
 
 
 def _exactly(pipe: RawIOBase, size: int) -> bytes:
-    parts: list[bytes] = []
+    """Read a number of bytes; raises ``EOFError`` where the pipe ends before."""
+    chunks: list[bytes] = []
     while size:
         try:
-            part = pipe.read(min(size, 1 << 20))
+            chunk = pipe.read(min(size, _CHUNK_BYTES))
         except (OSError, ValueError):  # closed
-            part = None
-        if not part:
+            chunk = None
+        if not chunk:
             raise EOFError
-        parts.append(part)
-        size -= len(part)
-    return b"".join(parts)
+        chunks.append(chunk)
+        size -= len(chunk)
+    return b"".join(chunks)

@@ -1,4 +1,4 @@
-"""Tasks shared among processes of this machine, which end with this one, whatever they are at."""
+"""Process pool: tasks shared among child processes, with a time limit for each task."""
 
 import contextlib
 import pickle
@@ -18,35 +18,35 @@ Task = TypeVar("Task")
 Answer = TypeVar("Answer")
 
 Begin = Callable[[], Callable[[Task], Answer]]
-"""Begins the work in a process, and returns what does a task there; it has to pickle."""
+"""Called once in each process, it returns the function that does tasks there; it has to pickle."""
 
 
 class LostError(Exception):
-    """A task whose process died of it, or was ended since it was late."""
+    """The process of a task died, with an exit ``code``, or was killed at its time limit (``None``)."""
 
     def __init__(self, code: int | None) -> None:
         if code is None:
-            why = "the process that worked on it gave no answer in time"
+            reason = "the process that worked on it gave no answer in time"
         elif code < 0:
-            why = f"the process that worked on it was killed by {signal.Signals(-code).name}"
+            reason = f"the process that worked on it was killed by {signal.Signals(-code).name}"
         else:
-            why = f"the process that worked on it ended with exit code {code}"
-        super().__init__(why)
+            reason = f"the process that worked on it ended with exit code {code}"
+        super().__init__(reason)
         self.is_late = code is None
 
 
 class Done(NamedTuple, Generic[Task, Answer]):
-    """A task and its answer, or what was raised in its place: by the work, or :class:`LostError`."""
+    """A task and its answer, or the exception in its place: of the work, or a :class:`LostError`."""
 
     task: Task
     answer: Answer | None
     error: Exception | None
 
     def get(self) -> Answer:
-        """Return the answer; raise what was raised in its place."""
+        """Return the answer, or raise the exception in its place."""
         if self.error is not None:
             raise self.error
-        return self.answer  # type: ignore[return-value]  # there is one
+        return self.answer  # type: ignore[return-value]  # not None without an error
 
 
 def share(
@@ -55,34 +55,34 @@ def share(
     jobs: int,
     seconds: Callable[[Task], float | None] = lambda _: None,
 ) -> "Iterator[Done[Task, Answer]]":
-    """Do tasks in processes, each of which begins the work once, and give the answers as they come.
+    """Do tasks in up to ``jobs`` processes; yield them with their answers, in the order in which they finish.
 
-    Where a process dies, or is at a task for more than its ``seconds``, which begin when the work has begun
-    in it, another one takes its place.
+    A process that dies, or exceeds the ``seconds`` of its task, is replaced by another one. The time of the
+    first task of a process starts once ``begin`` has returned in it.
     """
-    first, waiting, heard = packed(begin), iter(tasks), _Heard()
+    first, remaining, messages = packed(begin), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
     started = 0
     try:
-        for task in islice(waiting, jobs):
-            workers[started] = _Worker(first, task, started, heard)
+        for task in islice(remaining, jobs):
+            workers[started] = _Worker(first, task, started, messages)
             started += 1
         while workers:
-            number, said = _next(workers, heard)
+            number, (kind, value) = _next(workers, messages)
             worker = workers.get(number)
-            if worker is None:  # it was ended meanwhile
+            if worker is None:  # it was killed before its message was read
                 continue
-            done, (kind, value) = worker.task, said
+            done = worker.task
             if kind == "ready":
-                worker.begins(seconds(done))
+                worker.start_timer(seconds(done))
                 continue
             if kind == "lost":
                 code = worker.end() if worker.is_late else worker.died()
                 value = LostError(None if worker.is_late else code)
-            for task in islice(waiting, 1):
+            for task in islice(remaining, 1):
                 if kind == "lost":
                     del workers[number]
-                    workers[started] = _Worker(first, task, started, heard)
+                    workers[started] = _Worker(first, task, started, messages)
                     started += 1
                 else:
                     worker.ask(task, seconds(task))
@@ -96,41 +96,44 @@ def share(
             worker.end()
 
 
-_Said = tuple[str, Any]
-_Heard = SimpleQueue[tuple[int, _Said]]
+_Message = tuple[str, Any]  # its kind (ready, done, raised, lost) and value
+_Messages = SimpleQueue[tuple[int, _Message]]  # with the number of the process that sent it
 
 
-def _next(workers: "dict[int, _Worker[Any]]", heard: _Heard) -> tuple[int, _Said]:
-    """Wait until a process says something, or has died or is late, of which it is said that it is lost."""
+def _next(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tuple[int, _Message]:
+    """Wait for a message; that of a process which died, or exceeds its time, is ``lost``."""
     while True:
         ends = {worker.end_by: number for number, worker in workers.items() if worker.end_by is not None}
         end = min(ends, default=None)
         with contextlib.suppress(Empty):
-            return heard.get(timeout=None if end is None else max(0.0, end - time.monotonic()))
+            return messages.get(timeout=None if end is None else max(0.0, end - time.monotonic()))
         if end is not None and time.monotonic() >= end:
             workers[ends[end]].is_late = True
             return ends[end], ("lost", None)
 
 
 class _Worker(PythonProcess, Generic[Task]):
-    """A process that does tasks, and the one that it is at."""
+    """A process that does tasks, and its current ``task``, which it has to finish by ``end_by``.
 
-    def __init__(self, first: bytes, task: Task, number: int, heard: _Heard) -> None:
+    ``end_by`` is a time of the monotonic clock, or ``None``.
+    """
+
+    def __init__(self, first: bytes, task: Task, number: int, messages: _Messages) -> None:
         super().__init__("foon_asp.processes.pool", "work is shared")
         self.task = task
         self.is_late = False
         self.end_by: float | None = None
-        self.beside(_write, self._out, first + packed(task))  # which it reads when it has started
-        self.beside(_listen, self._in, number, heard)
+        self.start_thread(_write, self._out, first + packed(task))  # waits until the process has started
+        self.start_thread(_listen, self._in, number, messages)
 
-    def begins(self, seconds: float | None) -> None:
-        """Count the seconds from now on."""
+    def start_timer(self, seconds: float | None) -> None:
+        """Start the time of the current task."""
         self.end_by = None if seconds is None else time.monotonic() + seconds
 
     def ask(self, task: Task, seconds: float | None) -> None:
-        """Give it another task; if it has died meanwhile, that is heard."""
+        """Send the process another task; if it has died, its message ``lost`` follows."""
         self.task = task
-        self.begins(seconds)
+        self.start_timer(seconds)
         _write(self._out, packed(task))
 
 
@@ -139,37 +142,38 @@ def _write(pipe: RawIOBase, content: bytes) -> None:
         write(pipe, content)
 
 
-def _listen(pipe: RawIOBase, number: int, heard: _Heard) -> None:
+def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
     with contextlib.suppress(EOFError):
         while True:
-            heard.put((number, receive(pipe)))
-    heard.put((number, ("lost", None)))
+            messages.put((number, receive(pipe)))
+    messages.put((number, ("lost", None)))
 
 
 def serve() -> None:
-    """Do the tasks on standard input, after what begins the work, until there are no more."""
-    asked, answers = requests(receive_packed)
-    do = _begun(asked.get())
-    with contextlib.suppress(BrokenPipeError):  # nobody reads any more
+    """Do tasks as a process of a pool, after ``begin``, and send their answers, until the parent ends."""
+    received, answers = requests(receive_packed)
+    do = _work(received.get())
+    with contextlib.suppress(BrokenPipeError):  # the parent has ended
         send(answers, ("ready", None))
         while True:
-            write(answers, _answer(do, asked.get()))
+            write(answers, _answer(do, received.get()))
 
 
-def _begun(begin: bytes) -> Callable[[Any], Any]:
-    """Begin the work; where that fails, each task is answered with why."""
+def _work(begin: bytes) -> Callable[[Any], Any]:
+    """Return the function that does tasks; where ``begin`` raises, one that raises the same for each task."""
     try:
         do: Callable[[Any], Any] = pickle.loads(begin)()
     except Exception as error:
-        refused = error
+        failure = error
 
         def do(_: object) -> Any:
-            raise refused
+            raise failure
 
     return do
 
 
 def _answer(do: Callable[[Any], Any], task: bytes) -> bytes:
+    """Return the message with the answer to a task, or with the exception that it raised."""
     try:
         return packed(("done", do(pickle.loads(task))))
     except Exception as error:
@@ -177,7 +181,7 @@ def _answer(do: Callable[[Any], Any], task: bytes) -> bytes:
 
 
 def _portable(error: Exception) -> Exception:
-    """Return an error as it can be given to another process; some do not pickle."""
+    """Return an error as one that can be sent to another process; those that do not pickle become bugs."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

@@ -1,4 +1,4 @@
-"""Another process of the Python that runs this one, for work that cannot be interrupted in this one."""
+"""A child process of the same Python, for work that cannot be interrupted within this process."""
 
 import atexit
 import contextlib
@@ -16,22 +16,23 @@ from foon_asp.aside import Aside
 from foon_asp.deadline import uninterrupted
 from foon_asp.errors import UserError
 
-_PATIENCE = 5.0  # seconds until what follows from the end of a process has happened
+_END_SECONDS = 5.0  # to wait for threads and exit codes after the end of a process
 _PACKAGES = str(Path(__file__).resolve().parents[2])
 
-# A process group of its own: ctrl-C at a terminal is for this process, which ends the other.
-_APART: dict[str, Any] = {"start_new_session": True}
+# A process group of its own: ctrl-C at a terminal reaches only this process, which ends the child.
+_OWN_GROUP: dict[str, Any] = {"start_new_session": True}
 if sys.platform == "win32":
-    _APART = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.CREATE_NO_WINDOW}
+    _OWN_GROUP = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.CREATE_NO_WINDOW}
 
 _all: "weakref.WeakSet[PythonProcess]" = weakref.WeakSet()
 
 
 class PythonProcess:
-    """A process in which ``serve`` of a module reads from standard input and writes to standard output.
+    """A child process that runs ``serve`` of a module, which reads standard input and writes standard output.
 
-    It finds the modules that this process finds, and ends with it at the latest. Raises :class:`UserError`
-    where it is not known where Python is; ``what`` is done there.
+    It has the module search path of this process, and never outlives it. ``options`` are of Python.
+
+    Raises :class:`UserError` where the path of Python is not known; ``what`` begins its message.
     """
 
     def __init__(self, module: str, what: str, *options: str, stderr: int | None = None) -> None:
@@ -48,45 +49,45 @@ class PythonProcess:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=stderr,
-            **_APART,
+            **_OWN_GROUP,
         )
         self._out = cast("RawIOBase", self._process.stdin)
         self._in = cast("RawIOBase", self._process.stdout)
-        self._beside: list[Aside] = []
+        self._threads: list[Aside] = []
         _all.add(self)
 
     @property
     def alive(self) -> bool:
-        """Whether it runs."""
-        with uninterrupted():  # a process has a lock, and so in what follows
+        """Whether the process runs."""
+        with uninterrupted():  # Popen takes a lock, here and in what follows
             return self._process.poll() is None
 
-    def beside(self, target: Callable[..., None], *arguments: object) -> None:
-        """Let a thread speak with the process, or listen to it, until it ends."""
-        self._beside = [each for each in self._beside if not each.ended(0)]
-        self._beside.append(Aside(target, *arguments))
+    def start_thread(self, target: Callable[..., None], *arguments: object) -> None:
+        """Start a thread that reads from or writes to the process, and ends with it."""
+        self._threads = [thread for thread in self._threads if not thread.ended(0)]
+        self._threads.append(Aside(target, *arguments))
 
     def end(self) -> int:
-        """End it and the processes it has started, whatever they are at; give what it ended with."""
+        """Kill the process and the processes that it has started; return its exit code."""
         with uninterrupted():
             if hasattr(os, "killpg"):
                 with contextlib.suppress(OSError):
                     os.killpg(self._process.pid, signal.SIGKILL)
             self._process.kill()
             code = self._process.wait()
-        for thread in self._beside:
-            thread.ended(_PATIENCE)  # before another file gets the number that it reads from
+        for thread in self._threads:
+            thread.ended(_END_SECONDS)  # before another file gets the descriptor that it reads
         self._close()
         return code
 
     def died(self) -> int:
-        """Wait a while for the end of a process that writes no more; give what it ended with."""
+        """Return the exit code of a process that has closed its output; one that does not end is killed."""
         with uninterrupted(), contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(_PATIENCE)
+            self._process.wait(_END_SECONDS)
         return self.end()
 
     def abandon(self) -> None:
-        """Let go of a process that belongs to another: this one is a copy of that one."""
+        """Forget the process after a fork: it is a child of the process that this one is a copy of."""
         self._process.returncode = 0
         self._close()
 
@@ -102,7 +103,7 @@ def _end_all() -> None:
 
 
 def _forget_all() -> None:
-    """Know of no process after a fork: those there are belong to the other."""
+    """Forget all processes after a fork: they are children of the parent."""
     for process in list(_all):
         process.abandon()
 

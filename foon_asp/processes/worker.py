@@ -1,4 +1,4 @@
-"""A process that is asked one thing after another; between two questions it waits, for a start takes long."""
+"""Worker processes that answer requests one after the other; idle ones are kept, since a start is slow."""
 
 import contextlib
 import os
@@ -12,12 +12,12 @@ from foon_asp.errors import BugError
 from foon_asp.processes.pipe import receive, write
 from foon_asp.processes.python_process import PythonProcess
 
-Said = tuple[str, Any]
-"""What a process says: of what kind it is, and a value."""
+Message = tuple[str, Any]
+"""A message of a process: its kind, and a value."""
 
 
 class DiedError(Exception):
-    """A process died while it was asked, with an exit code."""
+    """A process died while it answered a request, with an exit code."""
 
     def __init__(self, code: int) -> None:
         super().__init__(f"ended with exit code {code}")
@@ -25,9 +25,9 @@ class DiedError(Exception):
 
 
 class Worker(PythonProcess):
-    """A process in which ``serve`` of a module answers what it reads from standard input.
+    """A process in which ``serve`` of a module answers the requests on its standard input.
 
-    ``read`` reads one thing that it says; by default a pickled kind and value.
+    ``read`` reads one message from its output; by default a pickled kind and value.
     """
 
     def __init__(
@@ -36,38 +36,40 @@ class Worker(PythonProcess):
         what: str,
         *options: str,
         stderr: int | None = None,
-        read: Callable[[RawIOBase], Said] = receive,
+        read: Callable[[RawIOBase], Message] = receive,
     ) -> None:
         super().__init__(module, what, *options, stderr=stderr)
         self.has_spoken = False
-        self._asked = False  # and has not answered: in the middle of something, or ended
-        self._said: queue.SimpleQueue[Said | None] = queue.SimpleQueue()
-        self.beside(_listen, self._in, read, self._said)
+        self._busy = False  # from a request until its answer, and after the end
+        self._messages: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
+        self.start_thread(_listen, self._in, read, self._messages)
 
     @property
     def ready(self) -> bool:
-        """Whether it can be asked."""
-        return not self._asked and self.alive
+        """Whether the process can answer a request."""
+        return not self._busy and self.alive
 
     def ask(
-        self, request: bytes, deadline: Deadline, hear: Mapping[str, Callable[[Any], None]] | None = None
-    ) -> Said:
-        """Send a request, pass on what is said on the way by its kind, and return the answer.
+        self, request: bytes, deadline: Deadline, handlers: Mapping[str, Callable[[Any], None]] | None = None
+    ) -> Message:
+        """Send a request, and return the first message of a kind without handler: the answer.
 
-        Whatever is raised ends the process: :class:`LimitError` at a limit and at ctrl-C,
-        :class:`DiedError` where the process died, and what ``hear`` raises.
+        The values of messages before it, such as progress, are passed to the handler of their kind.
+
+        Raises :class:`LimitError` at a limit and at ctrl-C, :class:`DiedError` where the process died, and
+        what a handler raises; each of them ends the process.
         """
-        if self._asked:
+        if self._busy:
             raise BugError("a process was asked that had been ended")
-        self._asked = True
+        self._busy = True
         deadline.count(self._process.pid)
         try:
-            self.beside(_write, self._out, request)
+            self.start_thread(_write, self._out, request)
             while True:
                 kind, value = self._next(deadline)
-                if hear is None or kind not in hear:
+                if handlers is None or kind not in handlers:
                     break
-                hear[kind](value)
+                handlers[kind](value)
         except BaseException as error:
             self.end()
             if isinstance(error, KeyboardInterrupt) and not isinstance(error, LimitError):
@@ -76,43 +78,44 @@ class Worker(PythonProcess):
             raise
         finally:
             deadline.uncount(self._process.pid)
-        self._asked = False
+        self._busy = False
         return kind, value
 
     def tell(self, request: bytes) -> None:
-        """Send what nothing is answered to, and so short that it does not wait until it is read."""
+        """Send a request without an answer, short enough for the buffer of the pipe."""
         _write(self._out, request)
 
-    def _next(self, deadline: Deadline) -> Said:
+    def _next(self, deadline: Deadline) -> Message:
+        """Wait for a message; raises :class:`DiedError` or :class:`LimitError`."""
         while True:
             with contextlib.suppress(queue.Empty):
-                said = self._said.get(timeout=max(0.001, deadline.slice()))
-                if said is None:
+                message = self._messages.get(timeout=max(0.001, deadline.slice()))
+                if message is None:
                     raise DiedError(self.died())
                 self.has_spoken = True
-                return said
+                return message
             deadline.check()
 
     def end(self) -> int:
-        """End the process, whatever it is at; give what it ended with."""
-        self._asked = True
+        """Kill the process; return its exit code."""
+        self._busy = True
         return super().end()
 
     def abandon(self) -> None:
-        """Let go of a process that belongs to another: this one is a copy of that one."""
-        self._asked = True
+        """Forget the process after a fork: it is a child of the process that this one is a copy of."""
+        self._busy = True
         super().abandon()
 
 
 W = TypeVar("W", bound=Worker)
 
-# One for each key. Taken and given in one step each: a program that is dropped gives its process back in the
-# middle of anything, and a lock might be held there.
+# One worker for each key. Accesses are single atomic operations, and have no lock: the garbage collector may
+# call ``give_back`` at any time, also while the lock is held.
 _idle: dict[Hashable, Any] = {}
 
 
 def take(key: Hashable, start: Callable[[], W]) -> W:
-    """Return the process that waits under a key, or start one."""
+    """Return the idle worker of a key, or start one."""
     worker: W | None = _idle.pop(key, None)
     if worker is not None and worker.ready:
         return worker
@@ -122,24 +125,25 @@ def take(key: Hashable, start: Callable[[], W]) -> W:
 
 
 def give_back(key: Hashable, worker: Worker) -> None:
-    """Let a process wait for whoever takes it; end one that cannot be asked, or where another waits."""
+    """Make a worker the idle one of a key; it is ended if it is not ready, or the key has an idle worker."""
     if not worker.ready or _idle.setdefault(key, worker) is not worker:
         worker.end()
 
 
 def _write(pipe: RawIOBase, content: bytes) -> None:
-    with contextlib.suppress(OSError, ValueError):  # that it died is seen where the answer is waited for
+    with contextlib.suppress(OSError, ValueError):  # the wait for the answer notices a process that died
         write(pipe, content)
 
 
 def _listen(
-    pipe: RawIOBase, read: Callable[[RawIOBase], Said], said: "queue.SimpleQueue[Said | None]"
+    pipe: RawIOBase, read: Callable[[RawIOBase], Message], messages: "queue.SimpleQueue[Message | None]"
 ) -> None:
+    """Put the messages of a process into a queue, and ``None`` at the end of its output."""
     with contextlib.suppress(EOFError):
         while True:
-            said.put(read(pipe))
-    said.put(None)
+            messages.put(read(pipe))
+    messages.put(None)
 
 
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_idle.clear)  # those there are belong to the other
+    os.register_at_fork(after_in_child=_idle.clear)  # the workers are children of the parent

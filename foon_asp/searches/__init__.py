@@ -1,4 +1,4 @@
-"""Searches, of the literature and of other packages, over the same problem as the solver and without it."""
+"""Published searches, and those of other packages, over the same problem as the solver and without it."""
 
 from foon_asp.searches.breadth_first import breadth_first as breadth_first
 from foon_asp.searches.catalog import SEARCHES as SEARCHES

@@ -1,4 +1,4 @@
-"""Breadth-first retrieval: the first unit that makes each object, objects from a queue."""
+"""Breadth-first retrieval: the first achiever of each object, objects from a queue."""
 
 from foon_asp.problem import Problem
 from foon_asp.searches.retrieval import Retrieval, backward, least
@@ -6,9 +6,9 @@ from foon_asp.searches.search import SearchSettings
 
 
 def breadth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
-    """Retrieve a tree breadth first.
+    """Retrieve a tree breadth-first.
 
-    Promises nothing about the tree but what :func:`~foon_asp.searches.retrieval.backward` does: the first
-    unit in file order is taken for each object, whether or not it can ever run.
+    The first achiever in file order is chosen for each object, whether or not it can ever run, so that the
+    tree has no other guarantees than those of :func:`~foon_asp.searches.retrieval.backward`.
     """
     return backward(problem, least(settings.ties))

@@ -1,4 +1,4 @@
-"""The searches by name: ours, and those that other packages offer."""
+"""Catalog of the searches by name: built-in ones, and those that other packages offer."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -13,32 +13,32 @@ from foon_asp.searches.offered_search import offered_search
 from foon_asp.searches.search import Search
 
 ENTRY_POINTS: Final = "foon_asp.searches"
-_OPTIMUM = "optimum"  # what tables have in the place of a search
+_OPTIMUM = "optimum"  # the row of the optimum in tables of searches
 _LEAST_DEPTH = "a tree that executes, of least depth, or the proof that none does"
-_NOTHING = "only that each input it needs is in the kitchen or an output of a unit of the tree"
+_INPUTS_MADE = "only that each input it needs is in the kitchen or an output of a unit of the tree"
 
 SEARCHES: Final[Mapping[str, Search]] = {
     search.name: search
     for search in (
-        Search("bfs", _NOTHING, breadth_first),
-        Search("dfs", _NOTHING, depth_first),
+        Search("bfs", _INPUTS_MADE, breadth_first),
+        Search("dfs", _INPUTS_MADE, depth_first),
         Search("ids", _LEAST_DEPTH, iterative_deepening),
-        Search("greedy-success", _NOTHING, greedy_success),
-        Search("greedy-inputs", _NOTHING, greedy_inputs),
+        Search("greedy-success", _INPUTS_MADE, greedy_success),
+        Search("greedy-inputs", _INPUTS_MADE, greedy_inputs),
     )
 }
-"""The searches of the literature."""
+"""The published searches, by name."""
 
 
 def search_names() -> tuple[str, ...]:
-    """List the names of all searches, those of other packages after ours; for help, not to go by."""
+    """Return the names of all searches, those of other packages last; for help, without a check of names."""
     return tuple(dict.fromkeys([*SEARCHES, *(offer.name for offer in find_offers(ENTRY_POINTS))]))
 
 
 def find_searches() -> dict[str, Search]:
-    """Give all searches, those of other packages after ours; none of these is imported.
+    """Return all searches by name, those of other packages last; no package is imported.
 
-    Raises :class:`UserError` where a package offers one by a name that is taken.
+    Raises :class:`UserError` where a package offers a search by a name that another one has.
     """
     offers = offers_by_name(find_offers(ENTRY_POINTS), [*SEARCHES, _OPTIMUM])
     return {**SEARCHES, **{name: offered_search(offer) for name, offer in offers.items()}}

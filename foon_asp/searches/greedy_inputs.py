@@ -1,4 +1,4 @@
-"""Greedy best-first retrieval by number of inputs (heuristic 2 of the literature)."""
+"""Greedy best-first retrieval by the number of inputs (the published heuristic 2)."""
 
 from foon_asp.problem import Problem
 from foon_asp.searches.retrieval import Count, Retrieval, backward, least
@@ -6,10 +6,10 @@ from foon_asp.searches.search import SearchSettings
 
 
 def greedy_inputs(problem: Problem, settings: SearchSettings) -> Retrieval:
-    """Take for each object the unit with the fewest inputs.
+    """Retrieve a tree with the achiever of the fewest inputs for each object.
 
-    Locally best, and no more: the sum over the tree may be far from the least, and the tree may not
-    execute.
+    The choice is locally optimal only: the number of inputs of the tree may be far from the optimum, and the
+    tree may not execute.
     """
     network = problem.network
 

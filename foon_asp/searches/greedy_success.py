@@ -1,4 +1,4 @@
-"""Greedy best-first retrieval by success rate (heuristic 1 of the literature)."""
+"""Greedy best-first retrieval by success rate (the published heuristic 1)."""
 
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
@@ -7,10 +7,12 @@ from foon_asp.searches.search import SearchSettings
 
 
 def greedy_success(problem: Problem, settings: SearchSettings) -> Retrieval:
-    """Take for each object the unit whose motion has the highest success rate.
+    """Retrieve a tree with the achiever of the highest success rate for each object.
 
-    Locally best, and no more: the product over the tree may be far from the greatest, and the tree may
-    not execute. Raises :class:`UserError` where no rates are known.
+    The choice is locally optimal only: the product of the tree may be far from the optimum, and the tree may
+    not execute.
+
+    Raises :class:`UserError` where no rates are known.
     """
     if problem.rates is None:
         raise UserError("the search by success rate needs a rates file (--rates)")

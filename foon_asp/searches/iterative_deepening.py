@@ -1,4 +1,4 @@
-"""Iterative deepening: depth-limited depth-first search with backtracking, deeper and deeper."""
+"""Iterative deepening: depth-limited depth-first search with backtracking and memoization (Korf 1985)."""
 
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Problem, backwards
@@ -8,16 +8,16 @@ from foon_asp.searches.search import SearchSettings
 
 
 def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval:
-    """Find a tree that executes, of least depth, or show that there is none.
+    """Return an executable tree of least depth, or prove that none exists.
 
-    A kitchen item has depth 0, a unit one more than the deepest input it needs, an object the depth of
-    the unit that makes it; the depth of a tree is that of its deepest goal. For each limit in turn, every
-    unit that makes an object is tried, in file order, until one has all its inputs within the limit less
-    one. What failed at which limit, and what was found, is remembered, so a limit costs at most one pass
-    over the units that can matter. When no object gets within reach by one more level, none ever will.
+    A kitchen item has depth 0, a unit one more than its deepest precondition, an object the depth of its
+    achiever; the depth of a tree is that of its deepest goal. For each depth limit, the achievers of an
+    object are tried in file order, until all preconditions of one are solved within the limit less one.
+    Results are memoized, so that a limit takes at most one pass over the relevant units. If one more level
+    solves no new object, no further level does.
 
-    Reaching a limit of the ``settings`` ends in ``unknown``. With ``published`` it is what the published
-    programs do instead.
+    At a limit of the ``settings`` the ending is ``unknown``. With ``published`` the search is what the
+    published programs do instead: breadth-first retrieval.
     """
     if settings.published:
         return breadth_first(problem, settings)
@@ -25,9 +25,9 @@ def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval
     limit = 0
     while True:
         try:
-            if all(search.within(goal, limit) for goal in problem.goals):
+            if all(search.solve(goal, limit) for goal in problem.goals):
                 return Retrieval(Ending.TREE, search.tree())
-            if limit and not search.grows(limit):
+            if limit and not search.solves_more(limit):
                 return Retrieval(Ending.NONE)
         except TimeoutError:
             return Retrieval(Ending.UNKNOWN)
@@ -37,79 +37,83 @@ def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval
 
 
 class _DepthLimited:
-    """The depth-limited search, and what it remembers between limits.
+    """The depth-limited search, and its memo of results over all limits.
 
-    ``failed[o]`` is the greatest limit within which object ``o`` was shown not to be made. ``found[o]`` is
-    the least limit within which it was, with the unit that makes it: the inputs of that unit were found
-    within smaller limits, so following the units never runs in a circle.
+    ``failed[o]`` is the greatest limit within which object ``o`` cannot be made. ``solved[o]`` is the least
+    limit within which it can, and its achiever: the preconditions of this unit are solved within smaller
+    limits, so that the achievers have no cycle.
     """
 
     def __init__(self, problem: Problem, deadline: Deadline) -> None:
         self.problem = problem
         self.deadline = deadline
         self.failed: dict[int, int] = {}
-        self.found: dict[int, tuple[int, int]] = {}
+        self.solved: dict[int, tuple[int, int]] = {}
         _, relevant = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen)
         self.objects = sorted(relevant)
 
-    def within(self, goal: int, limit: int) -> bool:
-        """Whether an object can be made within a limit; a stack of its own, so depth is no matter."""
-        answer = self._known(goal, limit)
+    def solve(self, goal: int, limit: int) -> bool:
+        """Return whether an object can be made within a limit; not recursive, for limits of any depth.
+
+        Raises ``TimeoutError`` at the deadline.
+        """
+        answer = self._memoized(goal, limit)
         if answer is not None:
             return answer
         makers, needs = self.problem.makers, self.problem.needs
-        # a frame: object, limit, number of the unit being tried, number of the input being looked at
+        # a frame: object, limit, index of the current achiever, index of its current precondition
         stack = [[goal, limit, 0, 0]]
         while stack:
             if self.deadline.passed:
                 raise TimeoutError
             frame = stack[-1]
-            o, bound, tried, looked = frame
-            if o in self.found and self.found[o][0] <= bound:  # meanwhile, within a smaller limit
+            o, bound, achiever, precondition = frame
+            if o in self.solved and self.solved[o][0] <= bound:  # by another frame, within a smaller limit
                 stack.pop()
                 continue
-            if tried == len(makers[o]):
+            if achiever == len(makers[o]):
                 self.failed[o] = max(bound, self.failed.get(o, -1))
                 stack.pop()
                 continue
-            unit = makers[o][tried]
-            if looked == len(needs[unit]):
-                self.found[o] = (bound, unit)
+            unit = makers[o][achiever]
+            if precondition == len(needs[unit]):
+                self.solved[o] = (bound, unit)
                 stack.pop()
                 continue
-            answer = self._known(needs[unit][looked], bound - 1)
+            answer = self._memoized(needs[unit][precondition], bound - 1)
             if answer is None:
-                stack.append([needs[unit][looked], bound - 1, 0, 0])
+                stack.append([needs[unit][precondition], bound - 1, 0, 0])
             elif answer:
                 frame[3] += 1
             else:
-                frame[2:] = [tried + 1, 0]
-        return goal in self.found and self.found[goal][0] <= limit
+                frame[2:] = [achiever + 1, 0]
+        return goal in self.solved and self.solved[goal][0] <= limit
 
-    def grows(self, limit: int) -> bool:
-        """Whether some object that can matter is made within this limit and not within one less."""
-        before = {o for o in self.objects if o in self.found and self.found[o][0] < limit}
-        return any(o not in before and self.within(o, limit) for o in self.objects)
+    def solves_more(self, limit: int) -> bool:
+        """Return whether a relevant object can be made within this limit and not within one less."""
+        earlier = {o for o in self.objects if o in self.solved and self.solved[o][0] < limit}
+        return any(o not in earlier and self.solve(o, limit) for o in self.objects)
 
     def tree(self) -> tuple[int, ...]:
-        """Follow the units found from the goals, and list them in an order that executes."""
+        """Return the achievers of the goals and of their preconditions, in an executable order."""
         levels: dict[int, int] = {}
-        waiting = list(self.problem.goals)
-        while waiting:
-            o = waiting.pop()
+        open_goals = list(self.problem.goals)
+        while open_goals:
+            o = open_goals.pop()
             if o in self.problem.kitchen:
                 continue
-            limit, unit = self.found[o]
+            limit, unit = self.solved[o]
             if unit not in levels or levels[unit] > limit:
                 levels[unit] = limit
-                waiting.extend(self.problem.needs[unit])
+                open_goals.extend(self.problem.needs[unit])
         return tuple(sorted(levels, key=lambda unit: (levels[unit], unit)))
 
-    def _known(self, o: int, limit: int) -> bool | None:
+    def _memoized(self, o: int, limit: int) -> bool | None:
+        """Return whether an object can be made within a limit, or ``None`` where that is not known yet."""
         if o in self.problem.kitchen:
             return True
         if limit <= 0 or self.failed.get(o, -1) >= limit:
             return False
-        if o in self.found and self.found[o][0] <= limit:
+        if o in self.solved and self.solved[o][0] <= limit:
             return True
         return None

@@ -1,4 +1,4 @@
-"""Searches that other packages offer: run in a process of their own, and what they give is looked over."""
+"""Searches that other packages offer: run in a process of their own, and their results are validated."""
 
 import functools
 from typing import Any
@@ -12,28 +12,31 @@ from foon_asp.searches.search import Search, SearchSettings
 
 
 def offered_search(offer: Offer) -> Search:
-    """Make a search of what a package offers."""
+    """Return the search that a package offers."""
     promise = f"what {offer.package} says of it; foon-asp has checked only its tree"
     return Search(offer.name, promise, functools.partial(_retrieve, offer), offer.package)
 
 
 def _retrieve(offer: Offer, problem: Problem, settings: SearchSettings) -> Retrieval:
-    """Run it; ``unknown`` at a limit. Raises :class:`UserError` where it raises, or gives no retrieval."""
+    """Run an offered search; at a limit its ending is ``unknown``.
+
+    Raises :class:`UserError` where the search raises, or returns no valid retrieval.
+    """
     deadline = Deadline(settings.time_limit, settings.memory_limit)
     try:
-        given = ask_offered(offer, deadline, problem.plain, settings)
+        reply = ask_offered(offer, deadline, problem.plain, settings)
     except LimitError:
         return Retrieval(Ending.UNKNOWN)
-    if isinstance(given, Raised):
-        raise offer.raised(given)
-    return _looked_over(offer, problem, given)
+    if isinstance(reply, Raised):
+        raise offer.raised(reply)
+    return _validated(offer, problem, reply)
 
 
-def _looked_over(offer: Offer, problem: Problem, given: Any) -> Retrieval:
-    """Take what was given for a retrieval, if it is one."""
-    fault = offer.fault(f"gave {given!r}, expected a Retrieval")
+def _validated(offer: Offer, problem: Problem, reply: Any) -> Retrieval:
+    """Return the retrieval in a reply; raises :class:`UserError` where it is not a valid one."""
+    fault = offer.fault(f"gave {reply!r}, expected a Retrieval")
     try:
-        ending, units, stuck_at = given
+        ending, units, stuck_at = reply
         ending = Ending(ending)
     except (ValueError, TypeError):
         raise fault from None

@@ -1,4 +1,4 @@
-"""What a search ended with, and the backward procedure that the published searches share."""
+"""The result of a search, and the backward retrieval that most published searches share."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -9,14 +9,14 @@ from typing import NamedTuple
 from foon_asp.problem import Problem
 
 Choose = Callable[[Sequence[int]], int]
-"""Chooses one of the units that make an object; they come in file order and there is at least one."""
+"""Chooses one of the achievers of an object, which are in file order; at least one exists."""
 
 
 class Ending(StrEnum):
     """How a search ended.
 
     ``tree``: with units, which may or may not execute. ``stuck``: at an object that is not in the kitchen
-    and that no unit makes. ``none``: having shown that no tree executes. ``unknown``: at a limit.
+    and that no unit makes. ``none``: with the proof that no tree executes. ``unknown``: at a limit.
     """
 
     TREE = "tree"
@@ -26,7 +26,7 @@ class Ending(StrEnum):
 
 
 class Retrieval(NamedTuple):
-    """The result of a search: ``units`` by id in the order listed, ``stuck_at`` the object in the way."""
+    """The result of a search: the ids of ``units`` in the order listed, and the object it is ``stuck_at``."""
 
     ending: Ending
     units: tuple[int, ...] = ()
@@ -34,51 +34,52 @@ class Retrieval(NamedTuple):
 
 
 class Count(StrEnum):
-    """What counts as inputs: input object nodes and their ingredients, or the nodes alone."""
+    """The inputs that are counted: input object nodes and their ingredients, or the nodes alone."""
 
     INGREDIENTS = "ingredients"
     NODES = "nodes"
 
 
 class Ties(StrEnum):
-    """Which of several equally good units is taken: the first or the last in file order."""
+    """The tie-breaking rule: of equally good units, the first or the last in file order is chosen."""
 
     FIRST = "first"
     LAST = "last"
 
 
 def backward(problem: Problem, choose: Choose, stack: bool = False) -> Retrieval:
-    """Retrieve a tree as the published programs do, from a queue of objects, or with ``stack`` a stack.
+    """Retrieve a tree backward from the goals, without backtracking, as the published programs do.
 
-    It starts with the goals. An object that was taken before or is in the kitchen is skipped; for any
-    other, one unit that makes it is chosen, appended (unless it is there already) and its needed inputs
-    are queued. At the end the list is reversed. Nothing is ever taken back, so the tree may be larger
-    than need be and may not execute: it promises only that every needed input is in the kitchen or an
-    output of some unit of the tree. Outputs are taken as annotated, as published: a container that the rule
-    ``implied`` let a unit skip counts as made here, and not when the tree is executed.
+    Open objects, at first the goals, are in a queue, or with ``stack`` in a stack. An object that was
+    processed before or is in the kitchen is skipped; for any other, one achiever is chosen and appended to
+    the tree (unless it has it), and its preconditions become open. At the end the list is reversed. No choice
+    is revised, so that the tree may be larger than necessary and may not execute: the only guarantee is that
+    every precondition is in the kitchen or an output of a unit of the tree. Outputs are those annotated, as
+    published: a container that a unit may skip under the rule ``implied`` counts as made here, but not when
+    the tree is executed.
 
     Source: D. Paulius et al., "Functional Object-Oriented Network for Manipulation Learning", IROS 2016
     (retrieval of task trees), and the published programs that followed (docs/dev/sources.md).
     """
     network, kitchen = problem.network, problem.kitchen
-    waiting = deque(problem.goals)
-    taken: set[int] = set()
+    open_objects = deque(problem.goals)
+    closed: set[int] = set()
     units: dict[int, None] = {}
-    while waiting:
-        o = waiting.pop() if stack else waiting.popleft()
-        if o in taken or o in kitchen:
+    while open_objects:
+        o = open_objects.pop() if stack else open_objects.popleft()
+        if o in closed or o in kitchen:
             continue
-        taken.add(o)
+        closed.add(o)
         candidates = network.producers[o]
         if not candidates:
             return Retrieval(Ending.STUCK, stuck_at=o)
         unit = choose(candidates)
         if unit not in units:
             units[unit] = None
-            waiting.extend(problem.needs[unit])
+            open_objects.extend(problem.needs[unit])
     return Retrieval(Ending.TREE, tuple(reversed(units)))
 
 
 def least(ties: Ties, size: Callable[[int], int | Fraction] = lambda _: 0) -> Choose:
-    """Choose the unit of the least size; of several, the first or the last in file order."""
+    """Return a function that chooses the unit of the least size, with ties broken by file order."""
     return lambda candidates: min(candidates if ties is Ties.FIRST else reversed(candidates), key=size)

@@ -1,4 +1,4 @@
-"""What a search is: a function from a problem to a tree, its name and what it promises."""
+"""The interface of searches: a function from a problem and settings to a tree, with a name and guarantees."""
 
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -9,11 +9,12 @@ from foon_asp.searches.retrieval import Count, Retrieval, Ties
 
 @dataclass(frozen=True, slots=True)
 class SearchSettings:
-    """What can be set of the searches; each looks at what concerns it.
+    """The settings of searches, of which each search uses some.
 
-    ``published`` makes ``ids`` the published iterative deepening, which takes the first unit everywhere
-    and so is breadth-first retrieval. ``time_limit`` is in seconds, ``memory_limit``
-    in bytes.
+    ``ties`` breaks ties in all of them, ``count`` is of ``greedy-inputs``. ``published`` makes ``ids`` the
+    published iterative deepening, which always chooses the first unit and so is breadth-first retrieval.
+    ``depth_limit`` is in units (``ids``), ``time_limit`` in seconds, ``memory_limit`` in bytes; ``None`` is
+    no limit.
     """
 
     ties: Ties = Ties.FIRST
@@ -25,17 +26,20 @@ class SearchSettings:
 
 
 class Retrieve(Protocol):
-    """The function of a search, ours or that of another package (docs/entry-points.md)."""
+    """The function of a search, built-in or of another package (docs/entry-points.md)."""
 
     def __call__(self, problem: Problem, settings: SearchSettings, /) -> Retrieval:
-        """Look for a tree that makes the goals of a problem.
+        """Search for a tree that makes the goals of a problem.
 
-        Nothing has to be right: the tree is simulated, and its costs are computed, by whoever asks.
+        The tree may be wrong: the caller simulates it, and computes its costs.
         """
 
 
 class Search(NamedTuple):
-    """One search: what it promises, how to run it, and the package it is of if it is not ours."""
+    """A search: its name, its guarantees in words (``promise``), and the function that runs it.
+
+    ``package`` is the distribution that offers it; ``None`` for a built-in search.
+    """
 
     name: str
     promise: str

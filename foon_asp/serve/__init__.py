@@ -1,1 +1,1 @@
-"""A page on this machine that asks again: what is asked of it, how it answers, and who may ask."""
+"""A local web page that asks questions interactively: its server, its requests and their protection."""

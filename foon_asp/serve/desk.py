@@ -1,4 +1,4 @@
-"""Where questions are handed in: one is answered at a time, and a later one ends the one before."""
+"""Desk: it answers the questions of the page, one at a time; a new question cancels the current one."""
 
 import threading
 from collections.abc import Callable
@@ -23,48 +23,53 @@ from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import entry_names, nodes_beginning
 from foon_asp.text.json_value import Json
 
-_KEPT = 4  # pages
-_NAMES = 30  # completions
+_KEPT_PAGES = 4  # answers that can still be shown: each takes some megabytes
+_MAX_COMPLETIONS = 30  # of a name
 
 Tell = Callable[[Json], object]
+"""Sends an event to the browser."""
 Rules = tuple[Constraint, ...]
 
 
-class _Told(Reporter):
-    """Tells of what is found until there is an answer; what other questions find later is not about it."""
+class _EventReporter(Reporter):
+    """A reporter that sends events to the browser; progress only until the first page is finished.
+
+    The progress of further answers, such as alternatives, would be taken for that of the first.
+    """
 
     def __init__(self, tell: Tell) -> None:
         self._tell, self._answered = tell, False
 
     def event(self, event: Json) -> None:
-        """Tell of anything; of progress only before there is a page."""
+        """Send an event; of kind ``progress`` only before the first page."""
         self._answered = self._answered or event["kind"] == "page"
         if event["kind"] != "progress" or not self._answered:
             self._tell(event)
 
     def warning(self, message: str) -> None:
-        """Tell of a warning."""
+        """Send a warning."""
         self.event({"kind": "warning", "text": message})
 
     def tree(self, costs: Costs) -> None:
-        """Tell of a tree."""
+        """Send the costs of a new incumbent."""
         self.event({"kind": "progress", "text": f"found a tree: {costs_text(costs)}"})
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Tell of a bound."""
+        """Send a new lower bound."""
         self.event({"kind": "progress", "text": bound_text(objective, bound)})
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Tell of an answer of several."""
+        """Send the number of finished parts of a question."""
         self.event({"kind": "progress", "text": f"{word}: {done} of {total}"})
 
 
 class Desk:
-    """What is asked of data, under limits for each question, ``first`` the question that the page opens with.
+    """The questions about one set of data; ``first`` is the question that the page opens with.
 
-    Rules and encodings of ``how`` hold for all questions, and the stock of ``used_up`` where items are.
-    What happens is told as it happens, in plain values: ``progress`` and ``warning`` with a text, ``page``
-    with the number of a page, ``error`` with a text and, for rules, places in their text.
+    Limits (seconds, bytes) are for each question. Rules and encodings of ``settings`` hold for all questions,
+    and the stock of ``used_up`` for those in which items are used up. Answers are sent as events:
+    ``progress`` and ``warning`` with a text, ``page`` with the number of a page, ``without`` with a text,
+    ``error`` with a text and, for rules, positions in their text.
     """
 
     def __init__(
@@ -73,23 +78,23 @@ class Desk:
         first: Form,
         time_limit: float | None = None,
         memory_limit: int | None = None,
-        how: Settings | None = None,
+        settings: Settings | None = None,
         used_up: UsedUp | None = None,
     ) -> None:
         self._foon, self._first = foon, first
         self._limits = time_limit, memory_limit
-        how = how or Settings()
-        self._how = how._replace(constraints=tuple(map(find_constraint, how.constraints)))
-        before = sum(isinstance(each, RuleText) for each in set(self._how.constraints))
-        self._box = f"rule {before + 1}"  # what the rules of the page are called in messages
+        settings = settings or Settings()
+        self._settings = settings._replace(constraints=tuple(map(find_constraint, settings.constraints)))
+        rule_texts = sum(isinstance(rule, RuleText) for rule in set(self._settings.constraints))
+        self._page_rules = f"rule {rule_texts + 1}"  # the name of the page's rules in messages
         self._used_up = used_up or UsedUp()
-        self._turn = threading.Lock()
+        self._lock = threading.Lock()
         self._token = Cancel()
         self._pages: dict[int, tuple[View, Rules]] = {}
         self._number = 0
 
     def start(self) -> Json:
-        """Give what the page knows when it opens."""
+        """Return the data of the page when it opens: names to complete, objectives, and fixed conditions."""
         dataset = self._foon.dataset
         return {
             "goals": [*entry_names(dataset.listed, dataset.names)],
@@ -101,39 +106,39 @@ class Desk:
         }
 
     def _always(self) -> list[str]:
-        """Say what holds for every question, files by their names alone."""
-        how, told, stock = self._how, self._used_up.told, self._used_up.stock
-        rules = (each.name if isinstance(each, Path) else str(each) for each in how.constraints)
-        encodings = [] if how.encodings is None else [f"encodings: {how.encodings.name}"]
+        """Return the conditions of all questions in words; files by their names, without folders."""
+        settings, stays_of, stock = self._settings, self._used_up.told, self._used_up.stock
+        rules = (rule.name if isinstance(rule, Path) else str(rule) for rule in settings.constraints)
+        encodings = [] if settings.encodings is None else [f"encodings: {settings.encodings.name}"]
         counts = [f"stock: {node} {count}" for node, count in stock.items()]
-        return [*rules, *how.constants, *encodings, *counts] + [
-            f"{'stays' if stays else 'goes'}: {name}" for name, stays in told.items()
+        return [*rules, *settings.constants, *encodings, *counts] + [
+            f"{'stays' if stays else 'goes'}: {name}" for name, stays in stays_of.items()
         ]
 
     def names(self, start: str) -> list[str]:
-        """Give object nodes whose names begin so, in the notation by which they are asked for."""
+        """Return object nodes whose names begin with ``start``, in one-line notation."""
         names = self._foon.dataset.names
-        return [str(names.node(o)) for o in nodes_beginning(start, names, _NAMES)]
+        return [str(names.node(o)) for o in nodes_beginning(start, names, _MAX_COMPLETIONS)]
 
     def page(self, number: int) -> str | None:
-        """Give a page by its number, ``None`` where it is no longer kept."""
-        kept = self._pages.get(number)
-        return None if kept is None else kept[0].html()
+        """Return the HTML of a page by its number; ``None`` where it is no longer kept."""
+        entry = self._pages.get(number)
+        return None if entry is None else entry[0].html()
 
     def cancel(self) -> None:
-        """End what is being answered, with what was found by then."""
+        """Cancel the current question; it ends with its incumbent."""
         self._token.cancel()
 
     def next(self) -> Cancel:
-        """End what is being answered, and give a token for the next question."""
+        """Cancel the current question, and return the token that cancels the next one."""
         self._token.cancel()
         self._token = Cancel()
         return self._token
 
     def ask(self, form: Form, token: Cancel, tell: Tell) -> None:
-        """Answer a question with pages, and tell of all that happens."""
+        """Answer a question with pages; ``tell`` receives an event for each, and for progress and errors."""
 
-        def answer(deadline: Deadline, told: _Told) -> None:
+        def answer(deadline: Deadline, _: _EventReporter) -> None:
             if not form.goals:
                 raise UserError("name a goal")
             if not form.objectives:
@@ -141,73 +146,75 @@ class Desk:
             with deadline.watched("reading", late=True):
                 problem = self._problem(form)
             chosen = chosen_objectives(problem, form.objectives)
-            rules = (*self._how.constraints, *([RuleText(form.rules)] if form.rules.strip() else []))
-            how = self._how._replace(constraints=rules, deadline=deadline)
-            named = {"constraints": rules, "constants": how.constants, "encodings": how.encodings}
-            for page in pages(problem, chosen, how, form.beside, named):
+            rules = (*self._settings.constraints, *([RuleText(form.rules)] if form.rules.strip() else []))
+            settings = self._settings._replace(constraints=rules, deadline=deadline)
+            named = {"constraints": rules, "constants": settings.constants, "encodings": settings.encodings}
+            for page in pages(problem, chosen, settings, form.beside, named):
                 assert page.answer is not None
-                tell({"kind": "page", "number": self._kept(page, rules), "text": page.answer.claim})
+                tell({"kind": "page", "number": self._keep(page, rules), "text": page.answer.claim})
 
         self._run(answer, token, tell)
 
     def _problem(self, form: Form) -> Problem:
+        """Return the problem of a form, over the data with its changes to the kitchen."""
         foon = self._foon.vary(adding=form.adding, without=form.without)
         stock = stays = None
         if form.items != "lasting":
-            there = set(foon.kitchen)  # what was taken from the kitchen is not in stock
-            stock = {node: count for node, count in self._used_up.stock.items() if node in there}
+            kitchen = set(foon.kitchen)  # an item that the form removes is not in stock
+            stock = {node: count for node, count in self._used_up.stock.items() if node in kitchen}
             stays = self._used_up.told
         return foon.problem(
             *form.goals, containers=form.containers, items=form.items, stock=stock, stays=stays
         )
 
-    def without(self, asked: Without, token: Cancel, tell: Tell) -> None:
-        """Tell what the optimum of an answer is without one part of it."""
+    def without(self, form: Without, token: Cancel, tell: Tell) -> None:
+        """Send the regret of a unit or kitchen item: how much worse the optimum is without it."""
 
-        def answer(deadline: Deadline, told: _Told) -> None:
-            view, rules = self._pages.get(asked.page, (None, ()))
+        def answer(deadline: Deadline, reporter: _EventReporter) -> None:
+            view, rules = self._pages.get(form.page, (None, ()))
             if view is None or view.answer is None:
                 raise UserError("this page is no longer kept: ask again")
             best, network = view.answer, view.answer.problem.network
             if best.status is not Status.OPTIMAL:
                 raise UserError("the tree is not proved best")
-            unit = None if asked.unit is None else network.unit_of_number(asked.unit)
-            of_item = (o for o in best.problem.kitchen if str(network.objects[o]) == asked.item)
-            item = next(of_item, None)
+            unit = None if form.unit is None else network.unit_of_number(form.unit)
+            named = (o for o in best.problem.kitchen if str(network.objects[o]) == form.item)
+            item = next(named, None)
             if unit is None and item is None:
                 raise UserError("the tree has nothing of that kind")
-            how = self._how._replace(constraints=rules, deadline=deadline)
-            regret = regret_of(best, how, unit, item)
+            settings = self._settings._replace(constraints=rules, deadline=deadline)
+            regret = regret_of(best, settings, unit, item)
             text = regret.loss_text(best.objectives[0])
             if regret.costs is not None:
                 text += f"; the best is then {costs_text(regret.costs, best.objectives)}"
-            told.event({"kind": "without", "text": text})
+            reporter.event({"kind": "without", "text": text})
 
         self._run(answer, token, tell)
 
-    def _kept(self, page: View, rules: Rules) -> int:
+    def _keep(self, page: View, rules: Rules) -> int:
+        """Keep a page instead of the oldest one, and return its number."""
         self._number += 1
         self._pages[self._number] = page, rules
-        self._pages.pop(self._number - _KEPT, None)
+        self._pages.pop(self._number - _KEPT_PAGES, None)
         return self._number
 
-    def _run(self, answer: Callable[[Deadline, _Told], None], token: Cancel, tell: Tell) -> None:
-        """Answer when it is its turn; whatever goes wrong is told."""
-        places, told = [], _Told(tell)
+    def _run(self, answer: Callable[[Deadline, _EventReporter], None], token: Cancel, tell: Tell) -> None:
+        """Answer a question once the one before has ended; any error becomes an event."""
+        positions, reporter = [], _EventReporter(tell)
         try:
-            with self._turn, stoppable(None, token, "asking") as within:
-                deadline = Deadline(*self._limits, within=within)
-                with asked_by(Caller(told, deadline=deadline)):
-                    answer(deadline, told)
+            with self._lock, stoppable(None, token, "asking") as cancelled:
+                deadline = Deadline(*self._limits, within=cancelled)
+                with asked_by(Caller(reporter, deadline=deadline)):
+                    answer(deadline, reporter)
             return
         except StoppedError as stopped:
             text = str(stopped)
         except InputError as error:
             text = str(error)
-            places = [
-                {"line": each.source.line, "column": each.source.column, "text": each.message}
-                for each in error.diagnostics
-                if each.source.file == self._box
+            positions = [
+                {"line": fault.source.line, "column": fault.source.column, "text": fault.message}
+                for fault in error.diagnostics
+                if fault.source.file == self._page_rules
             ]
         except UserError as error:
             text = str(error)
@@ -215,4 +222,4 @@ class Desk:
             text = "out of memory; --memory-limit stops before that"
         except Exception as error:
             text = f"foon-asp has a bug: {type(error).__name__}: {error}"
-        told.event({"kind": "error", "text": text, "places": places})
+        reporter.event({"kind": "error", "text": text, "places": positions})

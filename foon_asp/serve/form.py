@@ -1,4 +1,4 @@
-"""What somebody asks on the page: plain words, read from JSON, in which nothing names a file."""
+"""The questions of the page, read from JSON; for security, none of their fields is a path of a file."""
 
 from typing import Any, TypeVar
 
@@ -10,11 +10,15 @@ from foon_asp.questions.view import Beside
 from foon_asp.text.json_value import read_json
 
 Names = tuple[str, ...]
-Asked = TypeVar("Asked", bound=msgspec.Struct)
+Question = TypeVar("Question", bound=msgspec.Struct)
 
 
 class Form(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One question: ``adding`` and ``without`` change the kitchen, ``rules`` is the text of the box."""
+    """A question for the best tree.
+
+    ``adding`` and ``without`` are kitchen items to add and to remove, ``rules`` is text of rules, and
+    ``beside`` are further answers that the page shows.
+    """
 
     goals: Names = ()
     objectives: Names = ("units",)
@@ -27,7 +31,7 @@ class Form(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Without(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The optimum of the answer ``page`` without one ``unit``, or without one kitchen ``item``."""
+    """A question for the optimum of the answer ``page`` without one ``unit``, or one kitchen ``item``."""
 
     page: int
     unit: int | None = None
@@ -39,8 +43,8 @@ class Without(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             raise ValueError("expected a unit or an item")
 
 
-def read_question(text: bytes, kind: type[Asked]) -> Asked:
-    """Read a question of a kind from JSON; raises :class:`UserError` for whatever is none."""
+def read_question(text: bytes, kind: type[Question]) -> Question:
+    """Return a question of a kind, read from JSON; raises :class:`UserError` for invalid text."""
     try:
         return msgspec.convert(read_json(text, _object), kind)
     except ValueError as error:
@@ -48,7 +52,7 @@ def read_question(text: bytes, kind: type[Asked]) -> Asked:
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Make an object; raises :class:`ValueError` where a key stands twice in it."""
+    """Return an object of JSON; raises :class:`ValueError` where it has a key twice."""
     value = dict(pairs)
     if len(value) < len(pairs):
         raise ValueError("a key stands twice in one object")

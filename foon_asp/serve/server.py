@@ -1,4 +1,4 @@
-"""The server: it listens on this machine alone, at an address that nobody can guess."""
+"""The web server: it listens on the loopback interface only, at an address with a secret token."""
 
 import secrets
 import socket
@@ -12,7 +12,7 @@ from foon_asp.serve.site import site
 
 
 def serve(desk: Desk, ready: Callable[[str], object]) -> None:
-    """Serve a desk until ctrl-C; ``ready`` is called with the address."""
+    """Serve a desk until ctrl-C; ``ready`` is called with the address once the server accepts connections."""
     token = secrets.token_urlsafe(24)
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
@@ -21,7 +21,7 @@ def serve(desk: Desk, ready: Callable[[str], object]) -> None:
         config = uvicorn.Config(
             site(desk, token, port),
             http=Connection,
-            backlog=128,  # connections that are accepted before the first of them is looked at
+            backlog=128,  # connections that may wait to be accepted
             access_log=False,  # it would have the token
             log_config=None,
             log_level="critical",

@@ -1,7 +1,7 @@
-"""What the browser may ask of this machine, and who may ask it.
+"""The web application: its routes, and the protection against requests of other users and sites.
 
-An address is ``/TOKEN/...``. Who does not know the token, or comes by another host or from another site, is
-refused before anything else is looked at. No address is a path of a file.
+An address is ``/TOKEN/...``. A request without the token, with another host, or from another site, is refused
+before anything else of it is read. No address is a path of a file.
 """
 
 import asyncio
@@ -28,8 +28,8 @@ from foon_asp.text.json_value import Json, json_line
 
 Asgi = Callable[[Any, Any, Any], Any]
 
-_LONGEST = 1_000_000  # bytes of a question
-_NUMBER = re.compile("[0-9]{1,18}")  # Python reads no number of any length
+_MAX_BODY_BYTES = 1_000_000  # of a question: more would be read into memory before it is refused
+_NUMBER = re.compile("[0-9]{1,18}")  # ``int`` raises for thousands of digits
 _WEB = Path(__file__).resolve().parent / "web"
 _HEADERS = {
     "content-security-policy": "default-src 'none'; frame-ancestors 'none'",
@@ -42,9 +42,9 @@ _HEADERS = {
 
 
 def site(desk: Desk, token: str, port: int) -> Asgi:
-    """Give the site of a desk, for whoever knows the token and comes to this port of this machine."""
+    """Return the web application of a desk, for requests with the token, to this port of this machine."""
 
-    def opened(_: Request) -> Response:
+    def open_page(_: Request) -> Response:
         page, policy = _asking_page(desk.start())
         return HTMLResponse(page, headers={"content-security-policy": policy})
 
@@ -59,17 +59,17 @@ def site(desk: Desk, token: str, port: int) -> Asgi:
         return JSONResponse(desk.names(request.query_params.get("start", "")))
 
     async def ask(request: Request) -> Response:
-        return await _told(request, desk, lambda body: partial(desk.ask, read_question(body, Form)))
+        return await _stream(request, desk, lambda body: partial(desk.ask, read_question(body, Form)))
 
     async def without(request: Request) -> Response:
-        return await _told(request, desk, lambda body: partial(desk.without, read_question(body, Without)))
+        return await _stream(request, desk, lambda body: partial(desk.without, read_question(body, Without)))
 
     async def cancel(_: Request) -> Response:
         desk.cancel()
         return Response(status_code=204)
 
     routes = [
-        Route(f"/{token}/", opened),
+        Route(f"/{token}/", open_page),
         Route(f"/{token}/page/{{number}}", answer),
         Route(f"/{token}/names", names),
         Route(f"/{token}/ask", ask, methods=["POST"]),
@@ -80,35 +80,38 @@ def site(desk: Desk, token: str, port: int) -> Asgi:
 
 
 def _guarded(app: Asgi, token: str, host: str) -> Asgi:
-    """Refuse who may not ask, and send the headers that every answer has."""
+    """Return an application that refuses unauthorized requests, and adds security headers to responses."""
 
     async def guarded(scope: Any, receive: Any, send: Any) -> None:
         if scope["type"] != "http":
             return
 
-        async def sent(message: Any) -> None:
+        async def send_with_headers(message: Any) -> None:
             if message["type"] == "http.response.start":
-                own = {name.lower() for name, _ in message["headers"]}
-                more = [(name.encode(), value.encode()) for name, value in _HEADERS.items()]
-                message["headers"] = [*message["headers"], *(each for each in more if each[0] not in own)]
+                present = {name.lower() for name, _ in message["headers"]}
+                defaults = [(name.encode(), value.encode()) for name, value in _HEADERS.items()]
+                missing = [header for header in defaults if header[0] not in present]
+                message["headers"] = [*message["headers"], *missing]
             await send(message)
 
         headers: dict[str, list[str]] = {}
         for name, value in scope["headers"]:
             headers.setdefault(name.decode("latin-1").lower(), []).append(value.decode("latin-1"))
-        refused = _refused(scope["method"], scope["path"], headers, token, host)
-        refusal = PlainTextResponse("refused", refused or 200, {"connection": "close"})
-        await (app if refused is None else refusal)(scope, receive, sent)
+        status = _refusal_status(scope["method"], scope["path"], headers, token, host)
+        refusal = PlainTextResponse("refused", status or 200, {"connection": "close"})
+        await (app if status is None else refusal)(scope, receive, send_with_headers)
 
     return guarded
 
 
-def _refused(method: str, path: str, headers: Mapping[str, list[str]], token: str, host: str) -> int | None:
-    """Say with which status a request is refused, ``None`` where it is not."""
+def _refusal_status(
+    method: str, path: str, headers: Mapping[str, list[str]], token: str, host: str
+) -> int | None:
+    """Return the HTTP status with which a request is refused, or ``None`` for an authorized one."""
     if headers.get("host") != [host]:
         return 421
     origins = headers.get("origin", [])
-    if any(each != f"http://{host}" for each in origins):
+    if any(origin != f"http://{host}" for origin in origins):
         return 403
     if not hmac.compare_digest(path[1 : len(token) + 2].encode(), f"{token}/".encode()):
         return 404
@@ -117,21 +120,21 @@ def _refused(method: str, path: str, headers: Mapping[str, list[str]], token: st
     return None
 
 
-async def _told(
+async def _stream(
     request: Request, desk: Desk, read: Callable[[bytes], Callable[[Cancel, Tell], None]]
 ) -> Response:
-    """Answer a question line by line, each a JSON object, until it is answered or nobody listens."""
+    """Return the events of a question as a stream of JSON Lines; a closed connection cancels the question."""
     body = b""
-    async for part in request.stream():
-        body += part
-        if len(body) > _LONGEST:
+    async for chunk in request.stream():
+        body += chunk
+        if len(body) > _MAX_BODY_BYTES:
             return PlainTextResponse("this question is too long", 413)
     try:
         answer = read(body)
     except UserError as error:
         return PlainTextResponse(str(error), 400)
 
-    token = desk.next()  # before anything is answered: who hears that it has begun may cancel it
+    token = desk.next()  # before the response: once it has begun, the browser may cancel the question
 
     async def lines() -> AsyncIterator[str]:
         loop, queue = asyncio.get_running_loop(), asyncio.Queue[Json | None]()
@@ -157,7 +160,7 @@ async def _told(
 
 
 def _asking_page(data: Json) -> tuple[str, str]:
-    """Give the page that asks, and its policy."""
+    """Return the HTML of the page with the form, and its content security policy."""
     style = "\n".join([web("light.css"), web("dark.css"), web("page.css"), web("ask.css", _WEB)])
     script = '"use strict";\n(() => {\n' + web("element.js") + web("ask.js", _WEB) + "})();\n"
     page = web("ask.html", _WEB).format(style=style, script=script, data=in_script(data))

@@ -166,7 +166,7 @@ def test_rules_and_stocks_of_the_command_line_hold_for_every_question(tmp_path: 
     fixed = (mine, RuleText(":- use(U), #false."))
     glass = foon_asp.parse_node("drinking glass; empty")
     used_up = foon_asp.UsedUp(told={"muddler": False}, stock={glass: 0})
-    desk = Desk(foon, Form(), how=Settings(fixed, constants=('forbidden="crush"',)), used_up=used_up)
+    desk = Desk(foon, Form(), settings=Settings(fixed, constants=('forbidden="crush"',)), used_up=used_up)
     assert desk.start()["always"] == [
         "mine.lp",
         ":- use(U), #false.",
