@@ -1,4 +1,4 @@
-"""How a command asks a question: it reads the data, makes the problem, and asks."""
+"""Asking a question for a command: the data are read, problems are posed, and the question is called."""
 
 import importlib
 from collections.abc import Mapping, Sequence
@@ -29,82 +29,85 @@ from foon_asp.questions.tree import read_answer
 
 
 def find_question(verb: str) -> Question:
-    """Give a question; its module is imported only then."""
+    """Return the question of a verb, whose module is imported only now."""
     module = importlib.import_module(f"foon_asp.questions.{module_name(verb)}")
     return question_of(getattr(module, question_name(verb)))
 
 
-def parameters(question: Question, given: Mapping[str, Any], parts: Part) -> dict[str, Any]:
-    """Give the values of the options that belong to these parts."""
-    own = (option.name for option in question.options if option.part & parts)
-    return {name: given[name] for name in own if name in given}
+def parameters(question: Question, values: Mapping[str, Any], parts: Part) -> dict[str, Any]:
+    """Return the values, by name, of the options of a question that belong to ``parts``."""
+    names = (option.name for option in question.options if option.part & parts)
+    return {name: values[name] for name in names if name in values}
 
 
 def ask(
-    question: Question, given: Mapping[str, Any], deadline: Deadline | None, form: str | None = None
+    question: Question, values: Mapping[str, Any], deadline: Deadline | None, form: str | None = None
 ) -> Result:
-    """Ask a question with the parameters of a command, whose ``deadline`` it has.
+    """Call a question with the parameters of a command, under its ``deadline``; return the result.
 
-    ``form`` is the format of the result, if one is chosen.
+    ``form`` is the chosen format of the result; ``None`` is the default. Several assumed goals give an
+    :class:`Each` of results.
     """
     own = {option.name for option in question.options}
-    command = _Command({name: value for name, value in given.items() if name not in own})
+    command = _Command({name: value for name, value in values.items() if name not in own})
     with Progress(deadline) as progress:
-        who = Caller(progress, deadline=deadline, lenient=bool(given.get("lenient")), form=form)
-        with asked_by(who):
-            posed = _posed(question, command, given)
-        _warn_of_measures(command, given)
-        if question.pose is not no_data or "time_limit" in {option.name for option in question.options}:
-            progress.begin()  # there is a tree to wait for
-        with asked_by(who._replace(read_seconds=command.read_seconds)):
-            how = parameters(question, given, Part.QUESTION | Part.COMMAND)
-            found = [question.command(*about, **how) for about in posed]
-    if len(found) == 1:
-        return found[0]
-    return Each(found)
+        caller = Caller(progress, deadline=deadline, lenient=bool(values.get("lenient")), form=form)
+        with asked_by(caller):
+            posed = _posed(question, command, values)
+        _warn_of_measures(command, values)
+        if question.pose is not no_data or "time_limit" in own:
+            progress.begin()  # a search follows
+        with asked_by(caller._replace(read_seconds=command.read_seconds)):
+            options_ = parameters(question, values, Part.QUESTION | Part.COMMAND)
+            results = [question.command(*subject, **options_) for subject in posed]
+    if len(results) == 1:
+        return results[0]
+    return Each(results)
 
 
-def _warn_of_measures(command: "_Command", given: Mapping[str, Any]) -> None:
-    """Warn of files of measures none of which is an objective of the question."""
-    chosen = given.get("objectives")
+def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
+    """Print a warning for each file of measures that the objectives of the question do not use."""
+    chosen = values.get("objectives")
     if not command.measures_named or chosen is None:
         return
     named = {word.strip() for words in chosen for word in words.split(",")}
-    files: dict[str, list[str]] = {}
+    measures_of: dict[str, list[str]] = {}
     for measure in command.dataset.measures.values():
-        files.setdefault(measure.place, []).append(measure.name)
-    for place, names in files.items():
+        measures_of.setdefault(measure.place, []).append(measure.name)
+    for file, names in measures_of.items():
         if named.isdisjoint(names):
             listed = " or ".join(f"--objective {name}" for name in names)
             click.echo(
-                f"{place}: warning: no objective is its measure, so it has no effect; add {listed}", err=True
+                f"{file}: warning: no objective is its measure, so it has no effect; add {listed}", err=True
             )
 
 
-def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) -> list[tuple[object, ...]]:
-    """Pose a question: once, or for each of several goals that were assumed. What is assumed is said."""
-    asked = parameters(question, given, Part.PROBLEM)
-    tree = given.get("tree")
+def _posed(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
+    """Return the subjects of a question (problems, trees): one, or one for each of several assumed goals.
+
+    Assumed goals and kitchen items are reported to the user.
+    """
+    problem_options = parameters(question, values, Part.PROBLEM)
+    tree = values.get("tree")
     if question.pose not in {a_plan, a_tree} and tree is not None and tree.is_file():  # a pipe is read once
         listed = read_answer(tree)
         settle_data(command, {tree: listed})
-        if asked.get("goals_named") == ():
-            asked["goals_named"] = tuple(map(str, listed.goals))
-    says_goals = question.pose in {no_data, a_plan, a_tree}  # itself, where there are any
-    unnamed = not says_goals and asked.get("goals_named") == ()
-    alone = question.pose in {one_problem, one_problem_or_each} and not asked.get("all_goals")
-    each_alone = unnamed and alone
-    goals = command.unnamed_goals() if each_alone else []
+        if problem_options.get("goals_named") == ():
+            problem_options["goals_named"] = tuple(map(str, listed.goals))
+    reports_goals = question.pose in {no_data, a_plan, a_tree}  # the question itself, if it has goals
+    unnamed = not reports_goals and problem_options.get("goals_named") == ()
+    one_goal = question.pose in {one_problem, one_problem_or_each} and not problem_options.get("all_goals")
+    goals = command.unnamed_goals() if unnamed and one_goal else []
     if len(goals) < 2:
-        posed = [question.pose(command, **asked)]
+        posed = [question.pose(command, **problem_options)]
     else:
-        _refuse_one_file(question, given)
-        posed = [question.pose(command, **asked | {"goals_named": [goal]}) for goal in goals]
-    problems = [each for about in posed for each in about if isinstance(each, Problem)]
-    if problems and unnamed:  # what is about no problem may need no data
+        _refuse_one_file(question, values)
+        posed = [question.pose(command, **problem_options | {"goals_named": [goal]}) for goal in goals]
+    problems = [value for subject in posed for value in subject if isinstance(value, Problem)]
+    if problems and unnamed:  # without a problem, the data may not be needed, and are not read
         goals = goals or command.dataset.assumed_goals()
     if {goal for problem in problems for goal in problem.goal_nodes} != set(goals):
-        goals = []  # it is about others
+        goals = []  # the question has other goals, which are not assumed
     if problems and (goals or not command.dataset.has_kitchen):
         from foon_asp.dataset.assumed import goal_lines, kitchen_lines
 
@@ -116,9 +119,9 @@ def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) ->
     return posed
 
 
-def _refuse_one_file(question: Question, given: Mapping[str, Any]) -> None:
-    """Raise :class:`UserError` if the answers for several goals would be written into one file."""
-    files = [given.get("output"), given.get("certificate")]
+def _refuse_one_file(question: Question, values: Mapping[str, Any]) -> None:
+    """Raise :class:`UserError` where the results for several goals would be written into one file."""
+    files = [values.get("output"), values.get("certificate")]
     if question.suffixes or any(files):
         raise UserError(
             "no goal is named, and there are several, which one file cannot hold: name one (--goal)"
@@ -126,7 +129,7 @@ def _refuse_one_file(question: Question, given: Mapping[str, Any]) -> None:
 
 
 class _Command:
-    """What a question may use of its command: the data, and the limits of reading."""
+    """The command of a question, as :class:`foon_asp.questions.posing.Command` describes it."""
 
     def __init__(self, data: dict[str, Any]) -> None:
         self._data = data
@@ -134,16 +137,19 @@ class _Command:
 
     @cached_property
     def dataset(self) -> Dataset:
-        """The data that the options name; read when first used."""
+        """The data that the options name, read at the first access."""
         return options.read_dataset(**self._data)
 
     @property
     def read_seconds(self) -> float | None:
-        """How long reading took; ``None`` if nothing was read."""
+        """The time that reading took; ``None`` if nothing was read."""
         return self.dataset.read_seconds if "dataset" in self.__dict__ else None
 
     def unnamed_goals(self) -> list[ObjectNode]:
-        """Return the goals that are answered one by one where none is named: of data that are named, all."""
+        """Return the goals of a command without ``--goal``, which are answered one by one.
+
+        They are all listed goals of data that the command names, and otherwise the assumed ones.
+        """
         if self.names_data:
             listed = self.dataset.listed
             return self.dataset.listed_goals() if len(listed) > 1 else self.dataset.assumed_goals()
@@ -151,22 +157,22 @@ class _Command:
 
     @property
     def names_data(self) -> bool:
-        """Whether a network is named."""
+        """Whether the command names a network."""
         return any(self._data.get(option) for option in ("sources", "folder", "network"))
 
     @property
     def level(self) -> int:
         """The level at which object nodes are compared."""
-        found: int = self._data["level"]
-        return found
+        level: int = self._data["level"]
+        return level
 
     @property
     def measures_named(self) -> bool:
-        """Whether files of measures are named."""
+        """Whether the command names files of measures."""
         return bool(self._data.get("measures"))
 
     def given(self, option: str) -> bool:
-        """Whether an option was given in the command itself, and not by default."""
+        """Return whether an option is on the command line, and has not its default value."""
         return self._context.get_parameter_source(option) is ParameterSource.COMMANDLINE
 
     def add_sources(self, sources: Sequence[Path]) -> None:
@@ -176,5 +182,5 @@ class _Command:
             self.__dict__.pop("dataset", None)
 
     def reading(self) -> AbstractContextManager[object]:
-        """Stop what is read in a ``with`` block at the limits of the command."""
+        """Return a context in which reading stops at the limits of the command."""
         return options.reading()

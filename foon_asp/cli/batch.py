@@ -1,4 +1,4 @@
-"""``foon-asp batch``: thousands of questions in one run, each answer a row."""
+"""``foon-asp batch``: thousands of questions in one run, with a row for each answer."""
 
 import statistics
 import time
@@ -32,7 +32,7 @@ from foon_asp.questions.options import EACH_LIMITS, JOBS, RULES
 from foon_asp.rules.constraint import Constraint
 from foon_asp.text.json_value import Json, json_text
 
-_SHOWN = 3  # errors, of possibly thousands
+_MAX_ERRORS_SHOWN = 3  # of possibly thousands: the first ones mostly have the same cause
 
 
 @click.command("batch")
@@ -91,21 +91,20 @@ def command(
     with 3 when a limit stopped some, or ctrl-C the run.
     """
     check_outputs()
-    given = options.with_sources(sources, data["folder"], data["network"])
-    data["folder"], data["network"] = given
+    data["folder"], data["network"] = options.with_sources(sources, data["folder"], data["network"])
     measures = measured(data)
     lines = read_questions(questions, time_limit, measures)
     files = named_files(lines)
     refuse_inputs(results_file, files)
     opening = Opening(tuple(data.items()), digest(data, files))
     opened = opening(quiet=False)
-    asked = list(each_question(lines, opened))
+    distinct = list(each_question(lines, opened))
 
     def warn(message: str) -> None:
         click.echo(message, err=True)
 
-    how = Settings(constraints, encodings, constants)
-    common = {"data": opening.digest, "level": data["level"], **rules_digest(how, warn, opened.example)}
+    settings = Settings(constraints, encodings, constants)
+    common = {"data": opening.digest, "level": data["level"], **rules_digest(settings, warn, opened.example)}
     rows_file = results_file
     if results_file.suffix in FORMATS:
         rows_file = results_file.with_name(f"{results_file.name}.jsonl")
@@ -116,44 +115,45 @@ def command(
     with RowsFile(rows_file, ANSWERS, common) as results:
         for text in results.twice:
             warn(text)
-        before = [results.done[one] for one in asked if one in results.done]
-        left = [one for one in asked if one not in results.done]
+        before = [results.done[question] for question in distinct if question in results.done]
+        open_questions = [question for question in distinct if question not in results.done]
         with Progress() as progress:
-            progress.step("answering", len(before), len(asked))
+            progress.step("answering", len(before), len(distinct))
             progress.begin()
+            processes = min(jobs, max(1, len(open_questions)))
             try:
                 rows = (
-                    answer_all(opening, left, min(jobs, max(1, len(left))), memory_limit, how)
+                    answer_all(opening, open_questions, processes, memory_limit, settings)
                     if scheduler is None
-                    else answer_on_cluster(opening, left, scheduler, memory_limit, how)
+                    else answer_on_cluster(opening, open_questions, scheduler, memory_limit, settings)
                 )
                 for row in rows:
                     results.add(row)
                     answered.append(row)
-                    progress.step("answering", len(before) + len(answered), len(asked))
+                    progress.step("answering", len(before) + len(answered), len(distinct))
             except KeyboardInterrupt:
                 interrupted = True
         if rows_file is not results_file:
             objectives = (*Objective, *map(Objective.of_measure, measures))
             write_table(results_file, results.done.values(), objectives)
-    found = _summary(asked, before, answered) | {"seconds": round(time.monotonic() - began, 3)}
+    summary = _summary(distinct, before, answered) | {"seconds": round(time.monotonic() - began, 3)}
     if format_ == "json":
-        click.echo(json_text(found), nl=False)
+        click.echo(json_text(summary), nl=False)
     else:
-        for line in _in_words(found, [row for row in answered if row.error is not None]):
+        for line in _in_words(summary, [row for row in answered if row.error is not None]):
             click.echo(line)
         click.echo(f"results: {results_file}")
     if interrupted:
         click.echo("interrupted: run the same command again to continue", err=True)
-    return _exit_code(found["statuses"], interrupted)
+    return _exit_code(summary["statuses"], interrupted)
 
 
-def _summary(asked: Sequence[Asked], before: Sequence[AnswerRow], answered: Sequence[AnswerRow]) -> Json:
-    """Count rows by status and by proof, and return the median and greatest seconds of those answered now."""
+def _summary(questions: Sequence[Asked], before: Sequence[AnswerRow], answered: Sequence[AnswerRow]) -> Json:
+    """Return the JSON of a run: numbers of rows by status and by proof, and the seconds of new answers."""
     seconds = [row.seconds for row in answered if row.seconds is not None]
     return document(
         "batch",
-        questions=len(asked),
+        questions=len(questions),
         answered_before=len(before),
         answered=len(answered),
         statuses=dict(sorted(Counter(row.status for row in (*before, *answered)).items())),
@@ -163,23 +163,23 @@ def _summary(asked: Sequence[Asked], before: Sequence[AnswerRow], answered: Sequ
     )
 
 
-def _in_words(found: Json, without_answer: Sequence[AnswerRow]) -> Iterator[str]:
-    """Describe what was found, with the first of the rows that have an error."""
-    before, answered = found["answered_before"], found["answered"]
-    yield counted(found["questions"], "question", ",") + (
+def _in_words(summary: Json, without_answer: Sequence[AnswerRow]) -> Iterator[str]:
+    """Return the lines of a summary, with the errors of the first rows ``without_answer``."""
+    before, answered = summary["answered_before"], summary["answered"]
+    yield counted(summary["questions"], "question", ",") + (
         f", {before:,} of them answered before" if before else ""
     )
-    yield f"in total: {_counts(found['statuses'], '') or 'none'}"
+    yield f"in total: {_counts(summary['statuses'], '') or 'none'}"
     if answered:
-        yield f"answered {answered:,} in {found['seconds']:.1f} s"
-        yield f"proved: {_counts(found['proofs'], 'by ') or 'none'}"
-    if found["seconds_median"] is not None:
-        yield f"seconds for one: median {found['seconds_median']:.3f}, worst {found['seconds_worst']:.3f}"
-    shown = without_answer[:_SHOWN]
-    yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in shown)
+        yield f"answered {answered:,} in {summary['seconds']:.1f} s"
+        yield f"proved: {_counts(summary['proofs'], 'by ') or 'none'}"
+    if summary["seconds_median"] is not None:
+        yield f"seconds for one: median {summary['seconds_median']:.3f}, worst {summary['seconds_worst']:.3f}"
+    reported = without_answer[:_MAX_ERRORS_SHOWN]
+    yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in reported)
     failed = sum(row.status == "failed" for row in without_answer)
-    if failed > len(shown):
-        yield f"... and {failed - len(shown)} more failed: see their rows"
+    if failed > len(reported):
+        yield f"... and {failed - len(reported)} more failed: see their rows"
 
 
 def _counts(counts: dict[str, int], by: str) -> str:

@@ -23,22 +23,22 @@ from foon_asp.text.object_list import read_object_list
 
 @dataclass(frozen=True)
 class Opening:
-    """How to open the data: the options that name it, and a digest of the files.
+    """A function that opens the data of a batch: the options that name them, and a digest of the files.
 
-    Equal ones open the same data.
+    Equal openings open the same data.
     """
 
     named: tuple[tuple[str, Any], ...]
     digest: str
 
     def __call__(self, quiet: bool = True) -> "BatchData":
-        """Open the data; warnings are shown once, not by every worker."""
+        """Return the data, opened; ``quiet`` suppresses the warnings, which the first process has shown."""
         with contextlib.redirect_stderr(io.StringIO()) if quiet else contextlib.nullcontext():
             return BatchData(options.read_dataset(**dict(self.named)))
 
 
 class BatchData:
-    """The open data, and the kitchens read so far."""
+    """The open data of a batch, with a dataset for each kitchen that was read so far."""
 
     def __init__(self, dataset: Dataset) -> None:
         self._datasets: dict[str | None, Dataset] = {None: dataset}
@@ -57,23 +57,25 @@ class BatchData:
 
     @property
     def example(self) -> Problem:
-        """A question of these data, by which rules for all of them are looked over."""
+        """A problem over the data, with which the rules for all questions are checked."""
         return self._datasets[None].problem((0,), "strict")
 
-    def problem(self, asked: Asked) -> Problem:
-        """Pose a question; what its goals can need of a large store is read when it is looked at."""
-        dataset = self._with(asked.kitchen)
-        stock, stays = (None if file is None else NamedPath(file) for file in (asked.stock, asked.stays))
-        items = items_of(dataset, asked.items, stock, stays)
-        return dataset.nearby(dataset.goals(asked.goals), asked.containers, items)
+    def problem(self, question: Asked) -> Problem:
+        """Return the problem of a question; of a large store, the relevant part is read at its first use."""
+        dataset = self._with(question.kitchen)
+        files = question.stock, question.stays
+        stock, stays = (None if file is None else NamedPath(file) for file in files)
+        items = items_of(dataset, question.items, stock, stays)
+        return dataset.nearby(dataset.goals(question.goals), question.containers, items)
 
     def _with(self, kitchen: str | None) -> Dataset:
+        """Return the dataset with another kitchen (a file, or ``@starting``); ``None`` is its own."""
         if kitchen is not None and kitchen not in self._datasets:
-            given = self._datasets[None]
+            dataset = self._datasets[None]
             self._datasets[kitchen] = (
-                given.with_starting_kitchen()
+                dataset.with_starting_kitchen()
                 if kitchen == str(STARTING)
-                else given.with_kitchen(read_object_list(NamedPath(kitchen)))
+                else dataset.with_kitchen(read_object_list(NamedPath(kitchen)))
             )
         return self._datasets[kitchen]
 
@@ -88,22 +90,25 @@ def measured(named: dict[str, Any]) -> Collection[str]:
     return read_measures(files)
 
 
-def digest(named: dict[str, Any], beside: Iterable[Path]) -> str:
-    """Return a digest of all files that the options name, and of those that questions name."""
+def digest(named: dict[str, Any], question_files: Iterable[Path]) -> str:
+    """Return a digest of the contents of all files that the options and the questions name.
+
+    Raises :class:`UserError` for a pipe, which the processes could not read again.
+    """
     measures = named["measures"]
     named = {key: value for key, value in named.items() if key not in {"level", "lenient", "measures"}}
     files = find_data(**named)
-    found = hashlib.sha256()
-    if files.kitchen in {None, STARTING}:  # other answers than with an empty kitchen
-        found.update(str(STARTING).encode())
+    total = hashlib.sha256()
+    if files.kitchen in {None, STARTING}:  # its answers are not those of an empty kitchen
+        total.update(str(STARTING).encode())
     for file in (
         *files.network,
-        *(each for each in files[1:] if each not in {None, STARTING}),
-        *sorted(set(beside)),
+        *(table for table in files[1:] if table not in {None, STARTING}),
+        *sorted(set(question_files)),
         *measures,
     ):
         if not file.is_file():
             raise UserError(f"{file}: expected a file, since every process reads it again")
         with file.open("rb") as opened:
-            found.update(hashlib.file_digest(opened, "sha256").digest())
-    return found.hexdigest()[:16]
+            total.update(hashlib.file_digest(opened, "sha256").digest())
+    return total.hexdigest()[:16]

@@ -18,19 +18,19 @@ _RULES = "foon_asp.rules"
 
 
 def _keep_rules(context: click.Context, _: click.Parameter, value: tuple[str, ...]) -> None:
-    """Keep the rules of a command until its constraints are read."""
+    """Store the rules of a command in its context, for :func:`_with_rules`."""
     context.meta[_RULES] = tuple(map(RuleText, value))
 
 
 def _with_rules(
     context: click.Context, _: click.Parameter, value: tuple[Constraint, ...]
 ) -> tuple[Constraint, ...]:
-    """Return constraints with the rules behind them, each once."""
+    """Return the constraints of a command followed by its rules, without duplicates."""
     return tuple(dict.fromkeys((*value, *context.meta.get(_RULES, ()))))
 
 
 def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> dict[Constraint, int]:
-    """Read files with their weights."""
+    """Return the weights of soft constraints."""
     if not value:
         return {}
     from foon_asp.cli.weighted_files import weighted_files
@@ -45,14 +45,14 @@ def _constraint(text: str) -> Constraint:
 def _options_alone(
     context: click.Context, parameter: click.Parameter, value: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Take the words before the first option of another program for networks, which no option names."""
+    """Split arguments: words before the first option are networks, and the others are another program's."""
     words = list(itertools.takewhile(lambda word: not word.startswith("-"), value))
     context.params["sources"] = tuple(map(NamedPath, words))
     return value[len(words) :]
 
 
 def _complete(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
-    """Complete a name from the data; what reads these is imported only then."""
+    """Return the completions of a name from the data."""
     from foon_asp.cli.completed_words import completed_words
 
     return completed_words(context, parameter, begun)
@@ -63,7 +63,7 @@ _CALLBACKS = {"rules": _keep_rules, "constraints": _with_rules}
 
 
 def click_options(*options: Option) -> Callable[[Command], Command]:
-    """Make parameters of click from several options, in that order."""
+    """Return a decorator that adds parameters of click for several options, in this order."""
 
     def decorate(command: Command) -> Command:
         return functools.reduce(lambda f, option: click_option(option)(f), reversed(options), command)
@@ -72,7 +72,7 @@ def click_options(*options: Option) -> Callable[[Command], Command]:
 
 
 def click_option(option: Option) -> Callable[[Command], Command]:
-    """Make a parameter of click from an option."""
+    """Return a decorator that adds the parameter of click for an option."""
     choices = option.choices() if callable(option.choices) else option.choices
     kinds: dict[Kind, Any] = {
         Kind.TEXT: click.Choice(choices) if choices else None,
@@ -105,7 +105,7 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         show_default=option.default is not None,
         metavar=option.metavar or ("FILE" if option.kind in {Kind.FILE, Kind.WRITTEN} else None),
         expose_value=option.part is not Part.MORE,
-        is_eager=option.part is Part.MORE,  # to be there when the other is read
+        is_eager=option.part is Part.MORE,  # before the option to which it adds
         callback=_weights if option.kind is Kind.WEIGHTS else _CALLBACKS.get(option.name),
         shell_complete=_complete if option.name in _NAMED_IN_DATA else None,
         help=f"{option.help[:-1]}; repeatable." if option.many else option.help,

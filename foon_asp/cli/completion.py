@@ -1,4 +1,4 @@
-"""``foon-asp completion``: scripts for shells, which ask click what a line may continue with."""
+"""``foon-asp completion``: scripts for shells, which ask click for the completions of a line."""
 
 import os
 import re
@@ -18,41 +18,41 @@ from foon_asp.cli.verbs import SHELL_REQUEST
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 
-_MAX_WORDS = 200
+_MAX_WORDS = 200  # of a completion: shells list no more readably
 _LINE = "FOON_ASP_LINE"  # in the environment: the line up to the cursor
 
 
 class _Shell(ShellComplete):
-    """A shell that is sent words, one a line; where there are none, it completes names of files itself.
+    """A shell that receives completions, one a line; without any, it completes names of files itself.
 
-    The scripts of click split words at commas or blanks, which names of object nodes have.
+    The scripts of click split completions at commas or blanks, which names of object nodes have.
     """
 
     def get_completion_args(self) -> tuple[list[str], str]:
-        """Return the words after the name of the program, and the one that is typed."""
+        """Return the words after the name of the program, and the incomplete word at the cursor."""
         *words, typed = split_arg_string(f"{os.environ[_LINE]}x")  # x: the last word is begun even if empty
         return words[1:], typed[:-1]
 
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
-        """Return the words that may be meant; none where the data that the line names cannot be read."""
+        """Return the completions; none where the data that the line names cannot be read."""
         option, equals, _ = incomplete.partition("=") if incomplete.startswith("-") else ("", "", "")
         try:
-            found = super().get_completions(args, incomplete)
+            items = super().get_completions(args, incomplete)
         except (UserError, OSError, click.ClickException):
             return []
         words = dict.fromkeys(
-            f"{option * bool(equals)}{equals}{item.value}" for item in found if item.type == "plain"
+            f"{option * bool(equals)}{equals}{item.value}" for item in items if item.type == "plain"
         )
         return [CompletionItem(word) for word in [*words][:_MAX_WORDS]]
 
     def format_completion(self, item: CompletionItem[str]) -> str:
-        """Return a word as it is printed."""
+        """Return a completion as the line that is printed."""
         return escaped(item.value)
 
 
 @add_completion_class
 class _Bash(_Shell):
-    """Bash completes what stands behind ``:`` and ``=`` as a word of its own, unless a quote is open."""
+    """Bash, which completes the text after ``:`` or ``=`` as a word of its own, unless a quote is open."""
 
     name = "bash"
     source_template = """_foon_asp() {
@@ -68,11 +68,11 @@ complete -o default -o filenames -F _foon_asp %(prog_name)s
 """
 
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
-        """Return what may follow the last ``:`` or ``=``."""
+        """Return the completions without the text up to the last ``:`` or ``=``."""
         is_quoted = os.environ[_LINE].removesuffix(incomplete).endswith(("'", '"'))
         begun = None if is_quoted else re.match(r".*[:=]", incomplete)
-        found = super().get_completions(args, incomplete)
-        return [CompletionItem(item.value[begun.end() :]) for item in found] if begun else found
+        items = super().get_completions(args, incomplete)
+        return [CompletionItem(item.value[begun.end() :]) for item in items] if begun else items
 
 
 @add_completion_class
@@ -99,7 +99,7 @@ complete -c %(prog_name)s -a '(__foon_asp)'
 
 
 def answer_shell(program: click.Command, request: str) -> ExitCode:
-    """Print the script of a shell (``bash_source``), or the words that it asks for (``bash_complete``)."""
+    """Print the script of a shell (``bash_source``), or the completions of a line (``bash_complete``)."""
     return ExitCode(shell_complete(program, {}, "foon-asp", SHELL_REQUEST, request))
 
 

@@ -1,4 +1,4 @@
-"""``foon-asp constraints``: the ready-made constraints and their parameters, and what any rules do."""
+"""``foon-asp constraints``: a list of the ready-made constraints, and explanations of any rules."""
 
 import click
 
@@ -22,7 +22,7 @@ _EXPLAIN = CONSTRAINTS._replace(
     help="Say what the rules of a file or of a ready-made constraint do, and how fast that is.",
 )
 _RULE = RULE._replace(name="stated", part=Part.COMMAND, help="A rule to explain, by itself or beside files.")
-_CONSTANTS = CONSTANTS._replace(name="given", help="The value of a #const in what is explained.")
+_CONSTANTS = CONSTANTS._replace(name="values", help="The value of a #const in what is explained.")
 
 
 @click.command("constraints")
@@ -30,7 +30,7 @@ _CONSTANTS = CONSTANTS._replace(name="given", help="The value of a #const in wha
 @options.format_option(*TABLES)
 @options.debug_option
 def command(
-    explained: tuple[Constraint, ...], stated: tuple[str, ...], given: tuple[str, ...], format_: str
+    explained: tuple[Constraint, ...], stated: tuple[str, ...], values: tuple[str, ...], format_: str
 ) -> ExitCode:
     """List the ready-made constraints: what each demands, and how to use it.
 
@@ -41,10 +41,10 @@ def command(
     tree: that decides how much can be left out before the search. Name all that you use together, since a
     rule may depend on others.
     """
-    asked = (*explained, *map(RuleText, stated))
-    if asked:
-        return _explain(asked, given, format_)
-    if given:
+    constraints = (*explained, *map(RuleText, stated))
+    if constraints:
+        return _explain(constraints, values, format_)
+    if values:
         raise UserError("-c sets a constant of what is explained: name that with --explain")
     listed = library_constraints()
     if format_ == "text":
@@ -54,12 +54,12 @@ def command(
     return ExitCode.DONE
 
 
-def _explain(asked: tuple[Constraint, ...], constants: tuple[str, ...], format_: str) -> ExitCode:
-    """Print what rules do."""
+def _explain(constraints: tuple[Constraint, ...], constants: tuple[str, ...], format_: str) -> ExitCode:
+    """Print an explanation of rules; raises :class:`UserError` where encodings are replaced."""
     from foon_asp.report.rule_list import rules_json, rules_text
 
     rules = assemble(
-        Settings(asked, constants=constants), lambda message: click.echo(message, err=True)
+        Settings(constraints, constants=constants), lambda message: click.echo(message, err=True)
     ).understood
     if rules is None:
         raise UserError("the built-in encodings were changed, so nothing is known of rules beside them")

@@ -1,4 +1,4 @@
-"""``foon-asp convert``: FOON files in another dialect, and a list of what gets lost."""
+"""``foon-asp convert``: FOON files in another dialect, with a report of losses."""
 
 from collections import Counter
 from pathlib import Path
@@ -20,7 +20,7 @@ from foon_asp.text.plain_file import read_plain_text
 
 
 class _Task(NamedTuple):
-    """A file to convert, and where to; ``None`` is stdout."""
+    """A file to convert, and the file to write; ``None`` is stdout."""
 
     file: Path
     to: Path | None
@@ -87,7 +87,7 @@ def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: 
         raise InputError(errors)
     for warning in summarize(converter.diagnostics):
         click.echo(warning, err=True)
-    contents = [utf_8(result.text) for result in results]  # all of them, before one is written
+    contents = [utf_8(result.text) for result in results]  # errors of any come before the first is written
     for task, content in zip(tasks, contents, strict=True):
         if task.to is None:
             write_data(content)
@@ -106,7 +106,10 @@ def _make_folder(folder: Path) -> None:
 
 
 def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target: Dialect) -> list[_Task]:
-    """Decide where each file is written: no two to the same place."""
+    """Return the files with the paths that they are written to.
+
+    Raises :class:`UserError` where two would be written to the same path, or several need a folder.
+    """
     if len(files) == 1 and not is_folder:
         file = files[0].file
         if output is None or str(output) == "-":
@@ -117,36 +120,36 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
         raise UserError(f"{len(files)} files need a folder: name one with -o")
     if output.exists() and not output.is_dir():
         raise UserError(f"{output}: expected a folder for {len(files)} files, found a file")
-    tasks = [_Task(file, output / within.with_suffix(_suffix(file, target))) for file, within in files]
-    seen: dict[Path | None, Path] = {}
+    tasks = [_Task(file, output / relative.with_suffix(_suffix(file, target))) for file, relative in files]
+    sources: dict[Path | None, Path] = {}
     for file, to in tasks:
-        place = None if to is None else to.resolve()
-        if place in seen:
-            raise UserError(f"{seen[place]} and {file} would both be written to {to}")
-        seen[place] = file
+        resolved = None if to is None else to.resolve()
+        if resolved in sources:
+            raise UserError(f"{sources[resolved]} and {file} would both be written to {to}")
+        sources[resolved] = file
     return tasks
 
 
 def _suffix(file: Path, target: Dialect) -> str:
-    """Return the ending for what a file becomes; beside a neutral network, lists are a JSON list of names."""
+    """Return the suffix of the converted file; the neutral form of lists of objects is JSON."""
     if target is Dialect.NEUTRAL and is_object_list(read_plain_text(file)):
         return Dialect.JSON_LIST.suffix
     return target.suffix
 
 
 def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left_out: int) -> str:
-    """Return a summary: the dialects, and what was lost."""
+    """Return a summary in words: the dialects, and the losses, the most frequent first."""
     dialects = Counter(result.dialect for result in results)
     if len(tasks) == 1:
         head = f"{tasks[0].file}: {results[0].dialect} → {target}"
     else:
         read = ", ".join(f"{count} {dialect}" for dialect, count in dialects.items())
         head = f"{len(tasks)} files ({read}) → {target}"
-    found = [(loss, lost) for result in results for loss, lost in result.lost.items()]
+    losses = [(kind, lost) for result in results for kind, lost in result.lost.items()]
     rows = []
-    for kind in dict.fromkeys(loss for loss, _ in found):
-        lost = [of_kind for loss, of_kind in found if loss is kind]
-        rows.append((sum(of_kind.occurrences for of_kind in lost), f"{kind}; first at {lost[0].first}"))
+    for kind in dict.fromkeys(kind for kind, _ in losses):
+        of_kind = [lost for other, lost in losses if other is kind]
+        rows.append((sum(lost.occurrences for lost in of_kind), f"{kind}; first at {of_kind[0].first}"))
     if left_out:
         rows.append((left_out, "lines that are in no unit; see the warnings"))
     if not rows:

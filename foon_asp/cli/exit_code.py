@@ -1,10 +1,10 @@
-"""The exit codes, and what each promises."""
+"""Exit codes of the command line."""
 
 from enum import IntEnum
 
 
 class ExitCode(IntEnum):
-    """How a command ended."""
+    """The exit code of a command."""
 
     DONE = 0
     """Done, and where something was to be proved, proved."""
@@ -15,4 +15,4 @@ class ExitCode(IntEnum):
     LIMIT = 3
     """Stopped at a limit without a proof; the best tree and its bound were printed."""
     BUG = 70
-    """A bug of ours."""
+    """A bug of foon-asp."""

@@ -1,4 +1,4 @@
-"""``foon-asp facts``: what the solver is given, for bare clingo."""
+"""``foon-asp facts``: the facts of a problem, for bare clingo."""
 
 import shlex
 from pathlib import Path
@@ -72,8 +72,8 @@ def command(
     """
     dataset = options.read_dataset(**data)  # type: ignore[arg-type]
     chosen = parse_objectives(objectives, dataset.measures)
-    goals, how = dataset.goals(goals_named), items_of(dataset, items, stock, stays)
-    problem = dataset.problem(goals, containers, items=how)
+    goals, used_up = dataset.goals(goals_named), items_of(dataset, items, stock, stays)
+    problem = dataset.problem(goals, containers, items=used_up)
     if dataset.goals_from and not goals_named:
         if len(goals) > 1:
             named = "".join(f"\n  --goal {shlex.quote(str(goal))}" for goal in dataset.assumed_goals())
@@ -83,7 +83,7 @@ def command(
         click.echo("\n".join(kitchen_lines(dataset, [problem], options.is_verbose())), err=True)
     facts = printed_program(problem, chosen, Settings(constraints, encodings), soft).text
     if format_ == "json":
-        lines = facts.rstrip("\n").split("\n")  # a name may hold what other letters end a line
+        lines = facts.rstrip("\n").split("\n")  # not splitlines: names may have other line separators
         click.echo(json_text(document("facts", problem, chosen, facts=lines)), nl=False)
     else:
         write_data(facts)

@@ -70,6 +70,7 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
 
 
 def _report(files: int, changed: int, refused: int, check: bool) -> None:
+    """Print the numbers of files that changed or were refused; nothing for a single file."""
     if files < 2:
         return
     verb = "would change" if check else "changed"

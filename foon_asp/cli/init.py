@@ -63,7 +63,7 @@ def command(folder: Path, recipe: Path | None) -> ExitCode:
 
 
 def _files(recipe: Path | None) -> dict[str, str]:
-    """Return the texts of the files by name."""
+    """Return the texts of the data folder's files by name; raises :class:`UserError` without a unit."""
     source = recipe or starter_recipe() / "FOON.txt"
     if is_store(source):
         raise UserError(f"{source}: expected a recipe, FOON text or JSON, found a store")

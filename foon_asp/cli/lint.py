@@ -1,4 +1,4 @@
-"""``foon-asp lint``: what is wrong with FOON files, or worth a look."""
+"""``foon-asp lint``: findings in FOON files, their fixes, and the baseline of known ones."""
 
 import dataclasses
 import functools
@@ -32,7 +32,7 @@ from foon_asp.text.plain_file import plain_text, read_content
 
 
 def _codes(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
-    """Complete the code of a rule."""
+    """Return the completions of a rule's code."""
     return [code for code in CATALOG if code.startswith(begun)]
 
 
@@ -132,7 +132,7 @@ def command(
     stdin = len(on_disk) < len(paths)
     if output is not None:
         check_outputs(linted_files(on_disk))
-    for wrong, words in (
+    for misused, message in (
         (fix and diff, "--fix repairs and --diff only shows: give one of them"),
         (unsafe_fixes and not (fix or diff), "--unsafe-fixes goes with --fix or --diff"),
         (write_baseline and not baseline, "--write-baseline needs --baseline FILE, the file to write"),
@@ -150,10 +150,10 @@ def command(
             "--learn FILE|DIR... -o FILE collects names: leave out all other options",
         ),
     ):
-        if wrong:
-            raise UserError(words)
+        if misused:
+            raise UserError(message)
     if learn:
-        return _learn(linted_files(on_disk), output)
+        return _write_vocabulary(linted_files(on_disk), output)
     contents = {stdin_filename or Path("<stdin>"): sys.stdin.buffer.read()} if stdin else {}
     find = functools.partial(lint, *on_disk, select=select, ignore=ignore, vocabulary=vocabulary)
     if baseline and write_baseline:
@@ -163,24 +163,24 @@ def command(
         write_whole(baseline, utf_8(json_text(baseline_json(baseline, findings))))
         click.echo(f"wrote {baseline}: {counted(len(findings), 'finding')}", err=True)
         return ExitCode.DONE
-    found = find(contents=contents, baseline=baseline)
+    linted = find(contents=contents, baseline=baseline)
     if fix or diff:
-        repaired = _repaired(found, contents, unsafe_fixes)
-        count = sum(is_mendable(finding, unsafe_fixes) for finding in found.findings)
+        repaired = _repaired(linted, contents, unsafe_fixes)
+        count = sum(is_mendable(finding, unsafe_fixes) for finding in linted.findings)
         if diff:
             return _show(repaired, count)
         contents = _write(repaired, contents)
-        found = dataclasses.replace(find(contents=contents, baseline=baseline), mended=count)
+        linted = dataclasses.replace(find(contents=contents, baseline=baseline), mended=count)
         for content in contents.values():  # the mended text of standard input
             write_data(content)
-    _report(found, statistics, format_, err=fix and stdin)
+    _report(linted, statistics, format_, err=fix and stdin)
     if baseline:
-        _report_known(found)
-    return ExitCode.NEGATIVE if found.ending is Ending.NEGATIVE else ExitCode.DONE
+        _report_known(linted)
+    return ExitCode.NEGATIVE if linted.ending is Ending.NEGATIVE else ExitCode.DONE
 
 
-def _learn(files: Sequence[Path], output: Path | None) -> ExitCode:
-    """Write the names in files, which ``--vocabulary`` reads."""
+def _write_vocabulary(files: Sequence[Path], output: Path | None) -> ExitCode:
+    """Write the vocabulary of files, which ``--vocabulary`` reads; raises for files with errors."""
     linted = LintedFiles(files)
     linted.reader.raise_errors()
     write_output(output, utf_8(Vocabulary.of(Names(linted)).text()))
@@ -190,14 +190,14 @@ def _learn(files: Sequence[Path], output: Path | None) -> ExitCode:
 _Repaired = Mapping[Path, tuple[bytes, bytes]]  # the content of a file before and after
 
 
-def _repaired(found: Linted, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
-    """Return the content of every file with something to repair."""
+def _repaired(linted: Linted, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
+    """Return the content of every file with a fixable finding, before and after its repair."""
     fixes: dict[str, list[Diagnostic]] = {}
-    for finding in found.findings:
+    for finding in linted.findings:
         if is_mendable(finding, unsafe):
             fixes.setdefault(finding.source.file, []).append(finding)
     repaired = {}
-    for file in (file for file in found.files if str(file) in fixes):
+    for file in (file for file in linted.files if str(file) in fixes):
         if file not in contents and not file.is_file():
             raise UserError(f"{file}: not a file that can be written; --fix repairs files in place")
         before = contents[file] if file in contents else read_content(file)
@@ -206,7 +206,7 @@ def _repaired(found: Linted, contents: Mapping[Path, bytes], unsafe: bool) -> _R
 
 
 def _write(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, bytes]:
-    """Rewrite files; return what stands on standard input, repaired."""
+    """Write repaired files; return the repaired ``contents`` of standard input."""
     for file, (before, after) in repaired.items():
         if before != after and file not in contents:
             write_whole(file, after)
@@ -215,7 +215,7 @@ def _write(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, by
 
 
 def _show(repaired: _Repaired, count: int) -> ExitCode:
-    """Show what would be repaired."""
+    """Print the diff of the repairs, and their number."""
     for file, (before, after) in repaired.items():
         show_diff(str(file), plain_text(before, file), plain_text(after, file))
     changed = sum(before != after for before, after in repaired.values())
@@ -223,21 +223,21 @@ def _show(repaired: _Repaired, count: int) -> ExitCode:
     return ExitCode.NEGATIVE if changed else ExitCode.DONE
 
 
-def _report(found: Linted, statistics: bool, format_: str, err: bool) -> None:
-    """Print the findings; commands of GitHub are for a program, and not escaped."""
+def _report(linted: Linted, statistics: bool, format_: str, err: bool) -> None:
+    """Print the findings; workflow commands of GitHub are data, which is not escaped."""
     if format_ == "github":
-        write_data(found.github())
+        write_data(linted.github())
     elif format_ == "json":
-        click.echo(found.json_text(), nl=False)
+        click.echo(linted.json_text(), nl=False)
     else:
-        text = found.statistics(terminal()[0]) if statistics else getattr(found, format_)()
+        text = linted.statistics(terminal()[0]) if statistics else getattr(linted, format_)()
         click.echo(text, nl=False, err=err)
 
 
-def _report_known(found: Linted) -> None:
-    """Report how many findings the baseline left out, and how many in it are gone."""
-    text = f"{counted(found.known, 'known finding')} left out"
-    if found.gone:
-        text += f"; {found.gone} in the baseline {'is' if found.gone == 1 else 'are'} gone: "
+def _report_known(linted: Linted) -> None:
+    """Print how many findings the baseline left out, and how many of its findings no longer occur."""
+    text = f"{counted(linted.known, 'known finding')} left out"
+    if linted.gone:
+        text += f"; {linted.gone} in the baseline {'is' if linted.gone == 1 else 'are'} gone: "
         text += "--write-baseline takes note"
     click.echo(text, err=True)

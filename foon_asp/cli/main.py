@@ -1,4 +1,4 @@
-"""``foon-asp``: the verbs, and the exit code of every ending."""
+"""``foon-asp``: the group of all verbs, and the exit code and message of every error."""
 
 import contextlib
 import os
@@ -22,7 +22,7 @@ from foon_asp.escapes import escaped, note_line_end
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-_INSTEAD = {
+_REPLACEMENTS = {  # advice for names of verbs that no longer exist
     "certify": "type: foon-asp solve --certificate FILE, or foon-asp check TREE --certificate FILE",
     "diff-network": "type: foon-asp diff A B (two networks, too)",
     "clash": "type: foon-asp why-not --constraint A.lp --constraint B.lp (which clash, and what to drop)",
@@ -38,14 +38,14 @@ _INSTEAD = {
 
 
 class _Verbs(click.Group):
-    """Imports a verb's module only when that verb is asked for."""
+    """The group of verbs, which imports the module of a verb when it is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         command = verb_command(cmd_name) if cmd_name in VERBS else None
-        raise_at_ctrl_c()  # what it needs is imported
+        raise_at_ctrl_c()  # after all imports
         return command
 
     def resolve_command(
@@ -55,9 +55,9 @@ class _Verbs(click.Group):
         if word not in VERBS and not word.startswith("-") and not ctx.resilient_parsing:
             from difflib import get_close_matches
 
-            near = get_close_matches(word.lower().replace("_", "-"), VERBS, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else "foon-asp help lists the verbs"
-            hint = _INSTEAD.get(word, hint)
+            similar = get_close_matches(word.lower().replace("_", "-"), VERBS, n=1)
+            hint = f"did you mean {similar[0]!r}?" if similar else "foon-asp help lists the verbs"
+            hint = _REPLACEMENTS.get(word, hint)
             ctx.fail(f"there is no verb {word!r}; {hint}")
         return super().resolve_command(ctx, args)
 
@@ -68,8 +68,8 @@ class _Verbs(click.Group):
         from click.shell_completion import CompletionItem
 
         verbs = [verb for verb, entry in VERBS.items() if entry.group != FOR_PROGRAMS]
-        found = [CompletionItem(verb) for verb in verbs if verb.startswith(incomplete)]
-        return found + click.Command.shell_complete(self, ctx, incomplete)
+        items = [CompletionItem(verb) for verb in verbs if verb.startswith(incomplete)]
+        return items + click.Command.shell_complete(self, ctx, incomplete)
 
 
 @click.group(
@@ -114,9 +114,9 @@ def _warned(message: Warning | str, *_: object, **__: object) -> None:
 
 
 def _run(words: list[str], began: float | None) -> ExitCode:
-    """Run a verb; report what went wrong, and give the exit code.
+    """Run a verb, report an error on stderr, and return the exit code.
 
-    Its limits count from when it ``began``, or from when they are made.
+    Limits count from the time ``began`` of the monotonic clock, or ``None`` for the current time.
     """
     try:
         try:
@@ -136,27 +136,27 @@ def _run(words: list[str], began: float | None) -> ExitCode:
 
 
 def _ended(error: BaseException, debug: bool) -> ExitCode:
-    """Report on stderr how a command ended, and return its exit code."""
-    keep(error)  # with all that was at hand where it was raised
+    """Report an error on stderr, and return its exit code."""
+    keep(error)  # with the frames of its traceback, whose memory would take long to free
     say_remarks(True)
     if debug and not isinstance(error, click.ClickException | click.Abort | KeyboardInterrupt):
         traceback.print_exception(error)
-    if isinstance(error, BrokenPipeError):  # the reader of our output went away, as `head` does
+    if isinstance(error, BrokenPipeError):  # the reader of our output has ended, as `head` does
         drop_output()
         return ExitCode.DONE
-    nobody_to_tell = contextlib.suppress(OSError, UserError)
+    ignored_output_errors = contextlib.suppress(OSError, UserError)
     if isinstance(error, click.ClickException):
-        with nobody_to_tell:
+        with ignored_output_errors:
             error.show(sys.stderr)
         return ExitCode.USAGE
     code, text = _message(error)
-    with nobody_to_tell:
+    with ignored_output_errors:
         click.echo(text, err=True)
     return code
 
 
 def _message(error: BaseException) -> tuple[ExitCode, str]:
-    """Return the exit code of an error that is not click's, and what to say of it."""
+    """Return the exit code and the message of an error that is not click's."""
     match error:
         case LimitError() | click.Abort(__cause__=LimitError()):
             limit = error.__cause__ if isinstance(error, click.Abort) else error
@@ -172,7 +172,7 @@ def _message(error: BaseException) -> tuple[ExitCode, str]:
         case UserError():
             text = str(error)
             return ExitCode.USAGE, text if ": error: " in text else f"error: {text}"
-        case OSError():  # the world's: a full disk, no permission, a folder in place of a file
+        case OSError():  # of the system: a full disk, no permission, a folder in place of a file
             name = "" if error.filename is None else f"{escaped(os.fsdecode(error.filename))}: "
             return ExitCode.USAGE, f"error: {name}{error.strerror or error}"
     return ExitCode.BUG, (

@@ -76,9 +76,9 @@ def command(
         raise UserError("--store writes a store: leave out -o and --report")
     if store is None and any(table for name, table in tables.items() if name != "unit_prices"):
         raise UserError("kitchen, rates, utensils and goals are kept in a store only: name one with --store")
-    found = find_data(folder, named, **tables)
-    with bytes_bar("merging", found.network):
-        merged = merge_files(found, store, lenient)
+    files = find_data(folder, named, **tables)
+    with bytes_bar("merging", files.network):
+        merged = merge_files(files, store, lenient)
     for text in merged.warnings:
         click.echo(text, err=True)
     if store is not None:

@@ -1,4 +1,4 @@
-"""Paths that a user names, always shown on one line."""
+"""Paths that a user names, which are shown on one line whatever characters they have."""
 
 import os
 from pathlib import Path, PosixPath, WindowsPath
@@ -17,7 +17,7 @@ else:
 class NamedPath(_Base):
     """A path that is safe in messages: ``f"{path}"`` is escaped, ``str(path)`` is the name.
 
-    Paths found in it as a folder are of the same class.
+    Paths derived from it, such as the files of a folder, are of the same class.
     """
 
     def __format__(self, spec: str) -> str:
@@ -25,7 +25,7 @@ class NamedPath(_Base):
 
 
 class WrittenPath(click.Path):
-    """The type of a parameter that names what is written: a file that the command does not read."""
+    """The type of a parameter that names an output: a file that the command writes and does not read."""
 
     def __init__(self, allow_dash: bool = False) -> None:
         super().__init__(allow_dash=allow_dash, path_type=NamedPath)

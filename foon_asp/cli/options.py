@@ -1,4 +1,4 @@
-"""Options that several verbs share, and the data they name."""
+"""Options that several verbs share: of data, limits and output; and the data that they name."""
 
 import functools
 from collections.abc import Callable, Sequence
@@ -94,12 +94,12 @@ _DEBUG_OPTION = click.option(
 
 
 def debug_option(command: Command) -> Command:
-    """Add the options that every verb has: ``main`` looks at them itself."""
+    """Add the options of every verb, ``--quiet`` and ``--debug``, which ``main`` interprets."""
     return _QUIET_OPTION(_DEBUG_OPTION(command))
 
 
 def format_option(*formats: str) -> Callable[[Command], Command]:
-    """Make ``--format`` with the formats of a verb, the first by default."""
+    """Return a decorator that adds ``--format`` with these formats, of which the first is the default."""
     return click.option(
         "--format", "format_", type=click.Choice(formats), default=formats[0], show_default=True
     )
@@ -108,9 +108,9 @@ def format_option(*formats: str) -> Callable[[Command], Command]:
 files_argument = click.argument("paths", nargs=-1, required=True, type=_PATH, metavar="FILE|DIR...")
 
 
-def output_option(words: str, help_: str) -> Callable[[Command], Command]:
-    """Make ``--output`` of a verb that writes FOON, for which ``-`` is stdout."""
-    return click.option("-o", "--output", type=WrittenPath(allow_dash=True), metavar=words, help=help_)
+def output_option(metavar: str, help_: str) -> Callable[[Command], Command]:
+    """Return a decorator that adds ``--output``, for which ``-`` is stdout."""
+    return click.option("-o", "--output", type=WrittenPath(allow_dash=True), metavar=metavar, help=help_)
 
 
 def network_options(command: Command) -> Command:
@@ -120,7 +120,7 @@ def network_options(command: Command) -> Command:
 
 
 def is_verbose() -> bool:
-    """Return whether the current command was given ``-v``."""
+    """Return whether the current command has ``-v``."""
     return bool(click.get_current_context().meta.get(_VERBOSE))
 
 
@@ -130,20 +130,20 @@ def data_options(command: Command) -> Command:
 
 
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
-    """Add the limits of a whole command, from reading on: ``deadline``.
+    """Add the options of the limits of a whole command, which it gets as its ``deadline``.
 
-    If one is reached, a message says what to do.
+    At a limit, a message says what to do.
     """
 
     @functools.wraps(command)
-    def limited(time_limit: float | None, memory_limit: int | None, **given: object) -> ExitCode:
+    def limited(time_limit: float | None, memory_limit: int | None, **values: object) -> ExitCode:
         deadline = begin(time_limit, memory_limit)
         try:
-            code = command(deadline=deadline, **given)
+            code = command(deadline=deadline, **values)
         except KeyboardInterrupt as stop:
             if deadline.stopped is None or deadline.interrupted or isinstance(stop, LimitError):
                 raise
-            raise LimitError(deadline) from None  # it struck where nobody says so
+            raise LimitError(deadline) from None  # an interrupt of the deadline, in code of a library
         if code is ExitCode.LIMIT and deadline.stopped and not deadline.interrupted:
             click.echo(f"stopped at {deadline.stopped}: {deadline.advice}", err=True)
         return code
@@ -152,7 +152,7 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 
 
 def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:
-    """Start the limits of the current command: with the process, if that is there for it alone."""
+    """Return the deadline of the current command: from the start of a process that runs only this command."""
     context = click.get_current_context()
     began = context.obj if isinstance(context.obj, float) else None
     deadline = Deadline(time_limit, memory_limit, began)
@@ -161,7 +161,7 @@ def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:
 
 
 def reading() -> Watch:
-    """Stop what is read in a ``with`` block at the limits of the command, if it has any."""
+    """Return a context in which reading stops at the limits of the command, if it has any."""
     context = click.get_current_context(silent=True)
     deadline: Deadline | None = context.meta.get(_DEADLINE) if context else None
     return (deadline or Deadline()).watched("reading", late=True)
@@ -170,9 +170,11 @@ def reading() -> Watch:
 def with_sources(
     sources: Sequence[Path], folder: Path | None, network: Sequence[Path]
 ) -> tuple[Path | None, tuple[Path, ...]]:
-    """Give the folder and the networks that are named, with and without an option.
+    """Return the folder and the networks that the command names, as arguments (``sources``) or by options.
 
-    A single folder without an option is one with all data. Raises :class:`UserError` for what is not there.
+    A single folder as argument is a folder with all data.
+
+    Raises :class:`UserError` for a source that does not exist.
     """
     for source in sources:
         if not source.exists():
@@ -195,9 +197,9 @@ def read_dataset(
     measures: Sequence[Path] = (),
     sources: Sequence[Path] = (),
 ) -> Dataset:
-    """Read the data that the options name; warnings go to stderr.
+    """Return the data that the options name; warnings go to stderr.
 
-    ``sources`` are networks named without an option, see :func:`with_sources`.
+    ``sources`` are networks named as arguments, see :func:`with_sources`.
     """
     folder, network = with_sources(sources, folder, network)
     with reading():
@@ -208,7 +210,9 @@ def read_dataset(
             from foon_asp.rules.measure import read_measures
 
             dataset = dataset.measured(read_measures(measures))
-    context = click.get_current_context(silent=True)  # a worker of a batch has none, and reads until it ends
+    context = click.get_current_context(
+        silent=True
+    )  # a worker of a batch has none, and never closes the data
     if context:
         context.call_on_close(dataset.close)
     for text in dataset.brief:

@@ -1,4 +1,4 @@
-"""Standard output and error: everything that a command prints passes through here and is made safe."""
+"""Standard output and error: streams that escape everything a command prints for terminals."""
 
 import contextlib
 import os
@@ -21,11 +21,11 @@ _SIGNS = {"→": "->", "≈": "~", "×": "x", "†": "+"}
 
 
 class SafeStream:
-    """A stream of text that escapes what a terminal or a log would hide or obey.
+    """A text stream that escapes characters which a terminal or a log would hide or execute.
 
-    Letters that its encoding lacks are escaped, too. ``stream`` is ``None`` if it was closed from the start.
-    What cannot be written is an error, except ``remarks``, without which an answer is still complete. A
-    ``styled`` stream lets colours pass; names must be escaped before. A ``quiet`` one drops what is written.
+    Characters that its encoding lacks are escaped as well. ``stream`` is ``None`` if it was closed from the
+    start. A failed write is an error, except of ``remarks``, since an answer is complete without them. A
+    ``styled`` stream allows the codes of colours; names must be escaped before. A ``quiet`` one drops text.
     """
 
     errors = "strict"
@@ -38,11 +38,11 @@ class SafeStream:
 
     @property
     def encoding(self) -> str:
-        """The encoding, needed only for styled text."""
+        """The encoding of the stream, which only styled text needs."""
         return (self._styled and self.stream and self.stream.encoding) or "utf-8"
 
     def write(self, text: str) -> int:
-        """Write a text; raises :class:`UserError` if the disk is full or the output closed."""
+        """Write a text; raises :class:`UserError` where the disk is full or the output is closed."""
         if not isinstance(text, str):
             raise TypeError(f"expected text, found {type(text).__name__}")
         if self.quiet:
@@ -53,7 +53,7 @@ class SafeStream:
         return len(text)
 
     def write_data(self, content: bytes) -> None:
-        """Write bytes as they are."""
+        """Write bytes unchanged."""
         with self._faults():
             stream = self._open()
             stream.flush()
@@ -67,11 +67,11 @@ class SafeStream:
                 self.stream.flush()
 
     def isatty(self) -> bool:
-        """Whether it is a terminal, and shows what is written."""
+        """Return whether the stream is a terminal, and not quiet."""
         return not self.quiet and self.stream is not None and self.stream.isatty()
 
     def writable(self) -> bool:
-        """Whether it can be written: yes."""
+        """Return ``True``: the stream can be written."""
         return True
 
     def __getattr__(self, name: str) -> Any:
@@ -95,7 +95,7 @@ class SafeStream:
 
 @contextlib.contextmanager
 def safe_streams() -> Iterator[None]:
-    """Send everything that is printed through :class:`SafeStream`."""
+    """Replace standard output and error by :class:`SafeStream` in a ``with`` block."""
     forget_line_ends()
     out, err = sys.stdout, sys.stderr
     sys.stdout = cast(TextIO, SafeStream(out))
@@ -106,9 +106,9 @@ def safe_streams() -> Iterator[None]:
         sys.stdout, sys.stderr = out, err
 
 
-def say_remarks(said: bool) -> None:
-    """Print what goes to standard error from now on, or drop it."""
-    cast(SafeStream, sys.stderr).quiet = not said
+def say_remarks(shown: bool) -> None:
+    """Show or drop everything that is written to standard error from now on."""
+    cast(SafeStream, sys.stderr).quiet = not shown
 
 
 def write_data(content: str | bytes) -> None:
@@ -122,7 +122,7 @@ def write_data(content: str | bytes) -> None:
 
 
 def write_output(output: Path | None, content: bytes) -> None:
-    """Write into a file, and report that; or to standard output, which is ``None`` or ``-``."""
+    """Write into a file, and report it on stderr; or to standard output for ``None`` or ``-``."""
     from foon_asp.report.whole_file import write_whole
 
     if output is None or str(output) == "-":
@@ -133,18 +133,18 @@ def write_output(output: Path | None, content: bytes) -> None:
 
 
 def console(err: bool = False) -> "Console":
-    """Give a console for tables and progress, with colours at a terminal."""
+    """Return a console of rich for tables and progress, with colours at a terminal."""
     from rich.console import Console
 
-    here = sys.stderr if err else sys.stdout
-    stream = here.stream if isinstance(here, SafeStream) else here
+    target = sys.stderr if err else sys.stdout
+    stream = target.stream if isinstance(target, SafeStream) else target
     return Console(file=cast(TextIO, SafeStream(stream, remarks=err, styled=True)))
 
 
 def terminal() -> tuple[int | None, bool]:
-    """Return how wide the terminal is that standard output is, and whether it shows colours.
+    """Return the width of the terminal, in columns, and whether it shows colours.
 
-    The width is ``None`` where it is no terminal.
+    The width is ``None`` where standard output is no terminal.
     """
     if not sys.stdout.isatty():
         return None, False
@@ -152,7 +152,7 @@ def terminal() -> tuple[int | None, bool]:
 
 
 def write_parts(parts: Iterable[Part]) -> None:
-    """Write lines and tables to standard output, as wide and in such colours as the terminal has."""
+    """Write lines and tables to standard output, in the width and the colours of the terminal."""
     width, coloured = terminal()
     text = with_plain_signs(rendered(parts, width, coloured))
     stream = sys.stdout
@@ -162,13 +162,13 @@ def write_parts(parts: Iterable[Part]) -> None:
 
 
 def say(text: str) -> None:
-    """Write a remark to standard error, folded between words where that is a terminal."""
+    """Write a remark to standard error, wrapped at the width of a terminal."""
     width = shutil.get_terminal_size().columns if sys.stderr.isatty() else None
     click.echo(rendered([text], width), err=True, nl=False)
 
 
 def with_plain_signs(text: str) -> str:
-    """Give a text for people with ASCII for those of our signs that its output does not have."""
+    """Return a text with ASCII for the signs that the encoding of standard output lacks."""
     encoding = getattr(getattr(sys.stdout, "stream", sys.stdout), "encoding", None) or "utf-8"
     return text.translate(
         {ord(sign): ascii_ for sign, ascii_ in _SIGNS.items() if encodable(sign, encoding) != sign}
@@ -176,7 +176,7 @@ def with_plain_signs(text: str) -> str:
 
 
 def drop_output() -> None:
-    """Discard what is not written yet: nobody can read it, and Python would try at its end."""
+    """Discard unwritten output, which Python would otherwise try to write at exit, and fail."""
     for stream in (sys.stdout, sys.stderr):
         if stream is None:
             continue

@@ -1,4 +1,4 @@
-"""Files that a command writes, which are never those it reads."""
+"""Output files of a command, which must not be files that it reads."""
 
 import contextlib
 from collections.abc import Iterable, Iterator, Mapping
@@ -14,15 +14,14 @@ from foon_asp.rules.constraint import LibraryUse, find_constraint
 from foon_asp.text.data_folder import find_data, network_files
 
 _DATA = ("kitchen", "rates", "utensils", "goals", "unit_prices")
-_STDIN = Path("/dev/stdin")  # which may be a file: foon-asp lint - < recipe.txt
+_STDIN = Path("/dev/stdin")  # may be a file: foon-asp lint - < recipe.txt
 
 
 def check_outputs(read: Iterable[Path] = (), written: Iterable[Path] | None = None) -> None:
     """Raise :class:`UserError` if the current command would write a file that it reads, or one file twice.
 
-    ``read`` are files that its parameters do not name, such as those of a folder, and ``written`` what is
-    written in place of what they name. To be called before anything is solved, so that nobody waits an hour
-    for this error.
+    ``read`` are inputs that its parameters do not name, such as the files of a folder, and ``written`` its
+    outputs, if the parameters do not name them. It is called before the search, which may take an hour.
     """
     outputs = [*(_outputs() if written is None else written)]
     if not outputs:
@@ -41,7 +40,7 @@ def refuse_inputs(file: Path, inputs: Iterable[Path]) -> None:
 
 
 def read_files() -> Iterator[Path]:
-    """Return the files that the current command reads: those named, and those that they stand for."""
+    """Return the files that the current command reads: named files, and the files of folders."""
     context = click.get_current_context()
     written = {parameter.name for parameter in _written(context)}
     named: list[Path] = []
@@ -60,11 +59,11 @@ def read_files() -> Iterator[Path]:
 
 
 def _written(context: click.Context) -> list[click.Parameter]:
-    return [each for each in context.command.params if isinstance(each.type, WrittenPath)]
+    return [parameter for parameter in context.command.params if isinstance(parameter.type, WrittenPath)]
 
 
 def _outputs() -> Iterator[Path]:
-    """Return the files that the parameters of the current command name to be written."""
+    """Return the output files that the parameters of the current command name."""
     context = click.get_current_context()
     for parameter in _written(context):
         for path in _paths(context.params[str(parameter.name)]):
@@ -77,37 +76,37 @@ def _outputs() -> Iterator[Path]:
 
 
 def _paths(value: object) -> list[Path]:
-    """Return the paths that the value of a parameter has; a mapping has them as keys."""
+    """Return the paths in the value of a parameter: a path, several, or the keys of a mapping."""
     values = value if isinstance(value, tuple | Mapping) else (value,)
     return [
-        each.file if isinstance(each, LibraryUse) else each
-        for each in values
-        if isinstance(each, Path | LibraryUse)
+        item.file if isinstance(item, LibraryUse) else item
+        for item in values
+        if isinstance(item, Path | LibraryUse)
     ]
 
 
 def _files(path: Path) -> Iterator[Path]:
-    """Return what is read where a path is named, which may be that of a folder or a ready-made constraint."""
-    with contextlib.suppress(UserError, OSError):  # told where it is read
+    """Return the files read for a path: of a folder, a file with its includes, or a ready-made constraint."""
+    with contextlib.suppress(UserError, OSError):  # reported when it is read
         if path.is_dir():
             for encoding in path.glob("*.lp"):
                 yield from _files(encoding)
             yield from network_files(path)
             return
-        found = path if path.exists() else find_constraint(path)
-        assert isinstance(found, Path)
-        yield found
-        if found.suffix == ".lp":
-            yield from included_files(found)
-        elif found.suffix == ".pddl":  # of a problem, the domain beside it is read
-            yield from found.parent.glob("*domain*.pddl")
+        file = path if path.exists() else find_constraint(path)
+        assert isinstance(file, Path)
+        yield file
+        if file.suffix == ".lp":
+            yield from included_files(file)
+        elif file.suffix == ".pddl":  # a problem may have its domain in its folder
+            yield from file.parent.glob("*domain*.pddl")
 
 
 def _same_file(file: Path, other: Path) -> bool:
-    """Whether two names are those of one file, also through links; pipes and terminals do not count."""
+    """Return whether two paths are one regular file, also through links."""
     return file.is_file() and other.is_file() and file.samefile(other)
 
 
 def _same_output(file: Path, other: Path) -> bool:
-    """Whether two names are those of one file, which need not be there yet."""
+    """Return whether two paths are one file, which need not exist."""
     return _same_file(file, other) or file.resolve() == other.resolve()

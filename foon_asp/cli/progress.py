@@ -1,4 +1,4 @@
-"""Progress on stderr, only at a terminal: how much was read, the best tree and the bound, the time left."""
+"""Progress at a terminal, on stderr: bytes read, the incumbent and the bound, the remaining time."""
 
 import contextlib
 import sys
@@ -22,27 +22,27 @@ from foon_asp.text.bytes_read import size_of, telling
 if TYPE_CHECKING:
     from rich.text import Text
 
-_LONG = 1.0  # seconds before anything is shown: most answers are there by then
+_DELAY_SECONDS = 1.0  # before anything is shown: most answers take less
 
 
 class Progress(Reporter):
-    """Shows one line while a question takes long: the best tree and the proved bound, or how many are done.
+    """A reporter that shows one line during a long search: incumbent and bound, or the number of steps done.
 
-    After them come the seconds so far, and those that are left: at most, where there is a ``deadline``; by
-    what was done so far, where that can be counted or the gap between tree and bound has become smaller.
+    The elapsed and the remaining seconds follow: up to the ``deadline``, or estimated from the steps done, or
+    from the speed at which the gap between incumbent and bound has closed.
     """
 
     def __init__(self, deadline: Deadline | None = None) -> None:
         self._deadline = deadline
         self._began = time.monotonic()
-        self._over: SimpleQueue[None] = SimpleQueue()
-        self._line: Aside | None = None
+        self._finished: SimpleQueue[None] = SimpleQueue()
+        self._thread: Aside | None = None
         self._warnings: set[str] = set()
         self._costs: Costs | None = None
         self._bound: tuple[Objective, int | Fraction] | None = None
-        self._first: tuple[int | Fraction, float] | None = None
+        self._first_bound: tuple[int | Fraction, float] | None = None
         self._step: tuple[str, int, int] | None = None
-        self._steps_before = 0
+        self._initial_steps = 0
 
     def __enter__(self) -> Self:
         return self
@@ -50,25 +50,25 @@ class Progress(Reporter):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._over.put(None)
-        if self._line is not None:
-            self._line.ended(_LONG)  # so that nothing is printed into it
+        self._finished.put(None)
+        if self._thread is not None:
+            self._thread.ended(_DELAY_SECONDS)  # so that the line does not overwrite the answer
 
     def begin(self) -> None:
-        """Note that everything is read, and show the line where the answer takes long."""
+        """Start the time of the search, and the thread that shows the line."""
         self._began = time.monotonic()
         if sys.stderr.isatty():
-            self._line = Aside(self._show)
+            self._thread = Aside(self._show)
 
     def _show(self) -> None:
         with contextlib.suppress(Empty):
-            self._over.get(timeout=_LONG)
+            self._finished.get(timeout=_DELAY_SECONDS)
             return
         with console(err=True).status(self):
-            self._over.get()
+            self._finished.get()
 
     def warning(self, message: str) -> None:
-        """Print a warning at once, the first time: a question may ask others, under the same rules."""
+        """Print a warning at once, unless a subquestion has printed it already."""
         if message not in self._warnings:
             self._warnings.add(message)
             say(message)
@@ -78,30 +78,30 @@ class Progress(Reporter):
         click.echo(text, err=True)
 
     def tree(self, costs: Costs) -> None:
-        """Note the best tree."""
+        """Store the costs of a new incumbent."""
         self._costs = costs
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Note the bound, and when the first one of this objective came."""
+        """Store a bound, and the time of the first bound of this objective."""
         if self._bound is None or self._bound[0] != objective:
-            self._first = (bound, time.monotonic())
+            self._first_bound = (bound, time.monotonic())
         self._bound = (objective, bound)
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Note how many are done."""
+        """Store the number of steps done, and their total."""
         if self._step is None:
-            self._steps_before = done
+            self._initial_steps = done
         self._step = (word, done, total)
 
     def line(self, now: float) -> str:
-        """Say how far it is at a time."""
-        from foon_asp.report.answer import bound_text, costs_text  # after a second
+        """Return the line at the time ``now`` of the monotonic clock."""
+        from foon_asp.report.answer import bound_text, costs_text  # slow to import: only for long searches
 
         seconds = f"{now - self._began:.0f} s"
         limit = None if self._deadline is None else self._deadline.left
-        left = self._left(now)
-        if left is not None and (limit is None or left < limit):
-            seconds += f", about {left:.0f} s left at this pace"
+        remaining = self._remaining(now)
+        if remaining is not None and (limit is None or remaining < limit):
+            seconds += f", about {remaining:.0f} s left at this pace"
         elif limit is not None:
             seconds += f", at most {limit:.0f} s left"
         if self._step is not None:
@@ -113,15 +113,15 @@ class Progress(Reporter):
         bound = "no bound yet" if self._bound is None else f"proved: {bound_text(*self._bound)}"
         return f"{tree}  |  {bound}  |  {seconds}  |  ctrl-C stops with the best"
 
-    def _left(self, now: float) -> float | None:
-        """Guess how many seconds are left, by the pace so far; ``None`` where nothing tells."""
+    def _remaining(self, now: float) -> float | None:
+        """Return the estimated remaining seconds; ``None`` without any progress to extrapolate."""
         if self._step is not None:
             _, done, total = self._step
-            new = done - self._steps_before
+            new = done - self._initial_steps
             return (now - self._began) / new * (total - done) if new else None
-        if self._costs is None or self._bound is None or self._first is None:
+        if self._costs is None or self._bound is None or self._first_bound is None:
             return None
-        (objective, bound), (first, since) = self._bound, self._first
+        (objective, bound), (first, since) = self._bound, self._first_bound
         closed, gap = abs(Fraction(bound - first)), abs(Fraction(self._costs.measure(objective) - bound))
         return float(gap / closed) * (now - since) if closed and gap else None
 
@@ -133,9 +133,9 @@ class Progress(Reporter):
 
 @contextlib.contextmanager
 def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
-    """Show at a terminal how many bytes of networks are read in a ``with`` block, and the time left.
+    """Show at a terminal the bytes of networks read in a ``with`` block, and the remaining time.
 
-    Most networks are read before anything is shown. Workers, which have no command, show nothing.
+    Nothing is shown for reading that takes less than a second, and in worker processes.
     """
     if not sys.stderr.isatty() or click.get_current_context(silent=True) is None:
         yield
@@ -145,15 +145,15 @@ def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
     advance: Callable[[int], None] | None = None
     with contextlib.ExitStack() as bars:
 
-        def tell(read: int) -> None:
+        def report(read: int) -> None:
             nonlocal advance, done
             done += read
             if advance is not None:
                 advance(read)
-            elif time.monotonic() - began >= _LONG:
+            elif time.monotonic() - began >= _DELAY_SECONDS:
                 advance = bars.enter_context(_bar(word, total, done))
 
-        with telling(tell):
+        with telling(report):
             yield
 
 

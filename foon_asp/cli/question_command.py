@@ -1,4 +1,4 @@
-"""A command for each question of the catalog, made from its description."""
+"""Commands of click for the questions of the catalog, made from their descriptions."""
 
 import contextlib
 import sys
@@ -29,12 +29,12 @@ from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, R
 
 _CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
 _LIMITS = frozenset({"time_limit", "memory_limit"})
-_FILES = {"png": "PNG", "pdf": "PDF", "html": "a page of HTML"}  # what a terminal cannot show
-_SHOWN = frozenset({"text", "json", "csv", "markdown", "steps"})  # what is data alone is written to the byte
+_NOT_FOR_TERMINALS = {"png": "PNG", "pdf": "PDF", "html": "a page of HTML"}
+_ESCAPED = frozenset({"text", "json", "csv", "markdown", "steps"})  # other formats are written unchanged
 
 
 def question_command(verb: str) -> click.Command:
-    """Give the command of a question; its module is imported only then."""
+    """Return the command of a question, whose module is imported only now."""
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answering(question)
     if verb == "view":
@@ -43,7 +43,7 @@ def question_command(verb: str) -> click.Command:
         command = serving(command, question)
     command = (options.debug_option if question.pose is no_data else options.data_options)(command)
     takes_all = any(option.positional and option.many for option in question.options)
-    if question.pose is not no_data and not takes_all:  # behind what is the question's own
+    if question.pose is not no_data and not takes_all:  # after the arguments of the question
         command = options.sources_argument(command)
     for option in _format_options(question):
         command = option(command)
@@ -53,14 +53,14 @@ def question_command(verb: str) -> click.Command:
     own = [o for o in question.options if not (o.name in _LIMITS and o.part is Part.COMMAND)]
     if len(own) < len(question.options):
         command = options.limit_options(command)
-    for each in reversed(own):
-        command = click_option(each)(command)
+    for declared in reversed(own):
+        command = click_option(declared)(command)
     help_ = f"{INDEX[verb].line}\n\n{textwrap.dedent(question.help).strip()}"
     return click.command(verb, help=help_)(command)
 
 
 def _without_used_up(verb: str) -> Callable[[Command], Command]:
-    """Make a hidden ``--items`` that says by the name of the verb that items cannot be used up."""
+    """Return a decorator that adds a hidden ``--items``, which refuses ``used-up`` for this verb."""
 
     def refuse(_: click.Context, __: click.Parameter, value: str) -> None:
         if value != "lasting":
@@ -77,13 +77,15 @@ def _without_used_up(verb: str) -> Callable[[Command], Command]:
 
 
 def _answering(question: Question) -> Callable[..., ExitCode]:
+    """Return the function of a command: it asks a question, and shows or writes the result."""
+
     def answer(
         format_: str | None = None,
         output: Path | None = None,
         deadline: Deadline | None = None,
-        **given: Any,
+        **values: Any,
     ) -> ExitCode:
-        charts = [file for files in parameters(question, given, Part.CHART).values() for file in files]
+        charts = [file for files in parameters(question, values, Part.CHART).values() for file in files]
         if charts:
             from foon_asp.pictures.chart import check_suffix
 
@@ -92,29 +94,29 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
         form = _form(question, format_, output)
         check_outputs()
         try:
-            found = ask(question, given, deadline, form)
-            keep(found)
-        except NoTreeError as nothing:
-            click.echo(str(nothing), err=True)
-            return _CODES[nothing.ending]
+            result = ask(question, values, deadline, form)
+            keep(result)
+        except NoTreeError as error:
+            click.echo(str(error), err=True)
+            return _CODES[error.ending]
         for chart in charts:
             try:
-                found.write_chart(chart)
+                result.write_chart(chart)
                 click.echo(f"wrote {chart}", err=True)
-            except NothingToDrawError as nothing:
-                click.echo(f"{chart} is not written: {nothing}", err=True)
+            except NothingToDrawError as error:
+                click.echo(f"{chart} is not written: {error}", err=True)
         with asked_by(Caller(Reporter(), deadline=deadline)):
             if output is None:
-                _show(found, form, parameters(question, given, Part.TEXT))
+                _show(result, form, parameters(question, values, Part.TEXT))
             else:
-                _write(found, form, output)
-        return _CODES[found.ending]
+                _write(result, form, output)
+        return _CODES[result.ending]
 
     return answer
 
 
 def _format_options(question: Question) -> list[Callable[[Command], Command]]:
-    """Make ``--format``, and ``--output`` for a question whose result can be written into a file."""
+    """Return decorators that add ``--format``, and ``--output`` for a result that can be a file."""
     if len(question.formats) == 1:
         return []
     if not question.suffixes:
@@ -138,33 +140,35 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
 
 
 def _form(question: Question, named: str | None, output: Path | None) -> str:
-    """Choose the format, before anything is read or solved."""
+    """Return the chosen format; raises :class:`UserError` for one that a terminal cannot show."""
     form = named or (question.formats[0] if output is None else question.format_of(output))
-    if form in _FILES and output is None and sys.stdout.isatty():
-        raise UserError(f"a terminal cannot show {_FILES[form]}: write it into a file with -o FILE")
+    if form in _NOT_FOR_TERMINALS and output is None and sys.stdout.isatty():
+        raise UserError(
+            f"a terminal cannot show {_NOT_FOR_TERMINALS[form]}: write it into a file with -o FILE"
+        )
     return form
 
 
-def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
-    """Write the result to standard output, and to stderr what its format cannot tell."""
+def _show(result: Result, format_: str, text_options: Mapping[str, Any]) -> None:
+    """Write the result to standard output, and its remark, which the format cannot hold, to stderr."""
     if format_ == "text":
-        write_parts(found.show(**how))
+        write_parts(result.show(**text_options))
     elif format_ == "json":
-        click.echo(found.json_text(), nl=False)
-    elif format_ in _SHOWN:
-        click.echo(getattr(found, format_)(), nl=False)
+        click.echo(result.json_text(), nl=False)
+    elif format_ in _ESCAPED:
+        click.echo(getattr(result, format_)(), nl=False)
     else:
-        with contextlib.suppress(NothingToDrawError):  # the remark says why
-            write_data(getattr(found, format_)())
-    remark = found.remark(format_)
+        with contextlib.suppress(NothingToDrawError):  # the remark has the reason
+            write_data(getattr(result, format_)())
+    remark = result.remark(format_)
     if remark and format_ != "text":
         click.echo(remark, err=True)
 
 
-def _write(found: Result, format_: str, output: Path) -> None:
-    """Write the result into a file, and report that."""
-    if remark := found.remark(format_):
+def _write(result: Result, format_: str, output: Path) -> None:
+    """Write the result into a file, and report it on stderr."""
+    if remark := result.remark(format_):
         click.echo(remark, err=True)
     with contextlib.suppress(NothingToDrawError):
-        found.write(output, format_)
+        result.write(output, format_)
         click.echo(f"wrote {output}", err=True)

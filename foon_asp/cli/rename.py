@@ -1,4 +1,4 @@
-"""``foon-asp rename``: one name written otherwise, everywhere in all files."""
+"""``foon-asp rename``: renaming of an object, a state or a motion in all files."""
 
 import difflib
 from codecs import BOM_UTF8
@@ -20,7 +20,7 @@ from foon_asp.text.plain_file import read_content, read_plain_text
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.renaming import TABLES, NameKind, Renaming, is_name, mentioned
 
-_A = {NameKind.OBJECT: "an object", NameKind.WORD: "a word of relations"}
+_WITH_ARTICLE = {NameKind.OBJECT: "an object", NameKind.WORD: "a word of relations"}
 
 
 @click.command("rename")
@@ -81,7 +81,7 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
-    """Return the files, and of folders the tables, too."""
+    """Return the FOON files of paths, and the tables in their folders."""
     files = [file for file, _ in foon_files(paths)]
     for folder in (path for path in paths if path.is_dir()):
         files += sorted(file for name in TABLES for file in folder.rglob(name) if file.is_file())
@@ -89,27 +89,27 @@ def _files(paths: Sequence[Path]) -> list[Path]:
 
 
 def _mark(file: Path) -> bytes:
-    """Return the byte order mark of a file, which is no part of its text and stays."""
+    """Return the byte order mark of a file, or nothing; a renaming keeps it."""
     return BOM_UTF8 if read_content(file).startswith(BOM_UTF8) else b""
 
 
 def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
-    """Return the kind of the old name; raise :class:`UserError` if it has none, or several."""
+    """Return the kind of the old name; raises :class:`UserError` if it is no name, or of several kinds."""
     reader = FoonReader()
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():
         counts.update((str(kind), name) for kind, name, _ in mentioned(text, str(file), reader))
-    kinds = [each for each in NameKind if counts[each, old]]
+    kinds = [possible for possible in NameKind if counts[possible, old]]
     if kind is not None and kind in kinds:
         return kind
     if kinds and kind is not None:
         raise UserError(f"{old!r} is no {kind}; it is {_a(kinds[0])}")
     if len(kinds) > 1:
-        of = " and ".join(f"{_a(each)} ({counts[each, old]} times)" for each in kinds)
-        raise UserError(f"{old!r} is {of}: choose one with --kind")
+        listed = " and ".join(f"{_a(kind)} ({counts[kind, old]} times)" for kind in kinds)
+        raise UserError(f"{old!r} is {listed}: choose one with --kind")
     if not kinds:
-        near = difflib.get_close_matches(old, sorted({name for _, name in counts}), n=3, cutoff=0.7)
-        hint = f"; there is {', '.join(map(repr, near))}" if near else ""
+        similar = difflib.get_close_matches(old, sorted({name for _, name in counts}), n=3, cutoff=0.7)
+        hint = f"; there is {', '.join(map(repr, similar))}" if similar else ""
         raise UserError(
             f"no object, state, relation or motion is called {old!r} in {counted(len(texts), 'file')}{hint}"
         )
@@ -117,7 +117,7 @@ def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
 
 
 def _a(kind: str) -> str:
-    return _A.get(NameKind(kind), f"a {kind}")
+    return _WITH_ARTICLE.get(NameKind(kind), f"a {kind}")
 
 
 def _summary(renaming: Renaming, files: int, written: bool) -> str:

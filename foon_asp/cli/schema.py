@@ -8,7 +8,7 @@ from foon_asp.document.schema import schema, schema_kinds
 from foon_asp.errors import UserError
 from foon_asp.text.json_value import json_text, schema_name
 
-_KINDS = {"solve": "answer"}  # of verbs that do not give it their name
+_KINDS = {"solve": "answer"}  # of verbs whose documents have another name
 
 
 @click.command("schema")
@@ -31,7 +31,7 @@ def command(verb: str | None) -> ExitCode:
         return ExitCode.DONE
     kind = _KINDS.get(verb, verb)
     if kind not in kinds:
-        known = ", ".join(sorted({*kinds, *_KINDS}))
-        raise UserError(f"found {verb!r}, expected a verb that has a schema: {known}")
+        names = ", ".join(sorted({*kinds, *_KINDS}))
+        raise UserError(f"found {verb!r}, expected a verb that has a schema: {names}")
     click.echo(json_text(schema(kind)), nl=False)
     return ExitCode.DONE

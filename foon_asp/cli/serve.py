@@ -1,4 +1,4 @@
-"""``view --serve``: the page that asks again, until ctrl-C."""
+"""``view --serve``: the interactive page, until ctrl-C."""
 
 import functools
 from collections.abc import Callable
@@ -17,29 +17,30 @@ from foon_asp.problem import parse_objectives
 from foon_asp.questions.arguments import settings
 from foon_asp.questions.contract import Question
 
-_OF_A_FILE = {"output": "-o", "format_": "--format"}
+_FILE_OPTIONS = {"output": "-o", "format_": "--format"}
 
 
 def serving(command: Callable[..., ExitCode], question: Question) -> Callable[..., ExitCode]:
-    """Add ``--serve`` to the command of a page."""
+    """Return the command of ``view`` with the option ``--serve``."""
     own = {option.name for option in question.options}
 
     @functools.wraps(command)
-    def served(serve: bool, **given: Any) -> ExitCode:
+    def served(serve: bool, **values: Any) -> ExitCode:
         if not serve:
-            return command(**given)
-        for name, flag in _OF_A_FILE.items():
-            if given.pop(name, None):
+            return command(**values)
+        for name, flag in _FILE_OPTIONS.items():
+            if values.pop(name, None):
                 raise UserError(f"found {flag} beside --serve: what the page shows is written into no file")
-        deadline: Deadline | None = given.pop("deadline", None)
-        asked = {name: given.pop(name) for name in own & given.keys()}
-        return _serve(asked, given, deadline or Deadline())
+        deadline: Deadline | None = values.pop("deadline", None)
+        question_options = {name: values.pop(name) for name in own & values.keys()}
+        return _serve(question_options, values, deadline or Deadline())
 
     help_ = "Serve a page on this machine that asks again, until ctrl-C; needs foon-asp[view]."
     return click.option("--serve", is_flag=True, help=help_)(served)
 
 
-def _serve(asked: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> ExitCode:
+def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> ExitCode:
+    """Serve the page until ctrl-C, with the options of a question and of data."""
     try:
         from foon_asp.serve.desk import Desk
         from foon_asp.serve.form import Form
@@ -48,17 +49,17 @@ def _serve(asked: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> E
         raise UserError(f"--serve needs more packages ({error}): pip install 'foon-asp[view]'") from None
     dataset = options.read_dataset(**data)
     first = Form(
-        goals=tuple(asked["goals_named"]),
-        objectives=tuple(map(str, parse_objectives(asked["objectives"], dataset.measures))),
-        containers=asked["containers"],
-        items=asked["items"],
-        beside=tuple(asked["beside"]),
+        goals=tuple(question["goals_named"]),
+        objectives=tuple(map(str, parse_objectives(question["objectives"], dataset.measures))),
+        containers=question["containers"],
+        items=question["items"],
+        beside=tuple(question["beside"]),
     )
-    how = settings(asked["constraints"], asked["constants"], asked["encodings"])
+    rules = settings(question["constraints"], question["constants"], question["encodings"])
     example = dataset.problem((0,), first.containers)
-    # what is wrong with files is said at once
-    assemble(how, functools.partial(click.echo, err=True), problem=example)
-    used_up = items_of(dataset, asked["items"], asked["stock"], asked["stays"])
-    desk = Desk(Foon(dataset, "the data"), first, deadline.seconds, deadline.memory, how, used_up)
+    # to report errors in files of rules before the page is opened
+    assemble(rules, functools.partial(click.echo, err=True), problem=example)
+    used_up = items_of(dataset, question["items"], question["stock"], question["stays"])
+    desk = Desk(Foon(dataset, "the data"), first, deadline.seconds, deadline.memory, rules, used_up)
     serve(desk, lambda address: click.echo(f"{address}\nopen this in a browser; ctrl-C ends it"))
     return ExitCode.DONE

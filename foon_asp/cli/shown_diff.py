@@ -1,4 +1,4 @@
-"""Showing what would change in a file."""
+"""Diffs of files on standard output."""
 
 import sys
 
@@ -11,7 +11,7 @@ from foon_asp.report.whole_file import utf_8
 
 
 def show_diff(file: str, before: str, after: str) -> None:
-    """Print a diff: for a program as it is, and on a terminal safely."""
+    """Print the diff of a file: escaped on a terminal, and otherwise unchanged, for programs."""
     text = line_diff(escaped(file), before, after)
     if sys.stdout.isatty():
         click.echo(text, nl=False)

@@ -1,4 +1,4 @@
-"""The beginning of a process, which imports the command line: ctrl-C may come before that is done."""
+"""Entry point of the process: it handles ctrl-C before it imports the command line."""
 
 from foon_asp.cli.ctrl_c import end_at_ctrl_c
 

@@ -1,4 +1,4 @@
-"""The verbs of the command line under headings: the questions of the catalog, and work with files."""
+"""Index of the verbs of the command line under headings: questions of the catalog, and work with files."""
 
 import importlib
 from collections.abc import Mapping, Sequence
@@ -10,10 +10,10 @@ from foon_asp.questions.index import INDEX, Entry
 
 FOR_PROGRAMS = "For programs"
 SHELL_REQUEST = "_FOON_ASP_COMPLETE"
-"""The environment variable by which a shell asks what a line may continue with; click chose its name."""
+"""The environment variable by which a shell asks for completions; click determines its name."""
 
-# Verbs that ask nothing, and those whose question is not in the catalog.
-_OTHERS: Final[Mapping[str, Entry]] = {
+# Verbs without a question, and those whose question is not in the catalog.
+_OTHER_VERBS: Final[Mapping[str, Entry]] = {
     "batch": Entry("Solve", "Answer every question of a file, thousands in one run."),
     "init": Entry("Data", "Write a data folder to start from: your recipe, or an example."),
     "lint": Entry("Data", "Find errors and doubtful places in FOON files."),
@@ -29,13 +29,13 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "completion": Entry(FOR_PROGRAMS, "Print a script by which a shell completes verbs, options and names."),
     "lsp": Entry(FOR_PROGRAMS, "Serve an editor: findings while typing, completion, renaming and more."),
 }
-VERBS: Final[Mapping[str, Entry]] = {**INDEX, **_OTHERS}
+VERBS: Final[Mapping[str, Entry]] = {**INDEX, **_OTHER_VERBS}
 GROUPS = ("Solve", "Explain", "Compare", "Data", "Prove", "Tools", FOR_PROGRAMS)
 FIRST = ("solve", "view", "compare", "why-not", "check", "alternatives", "schedule", "lint", "init")
 
 
 def verb_command(verb: str) -> click.Command:
-    """Return the command of a verb; its module is imported only then."""
+    """Return the command of a verb, whose module is imported only now."""
     if verb in INDEX:
         from foon_asp.cli.question_command import question_command
 
@@ -46,7 +46,7 @@ def verb_command(verb: str) -> click.Command:
 
 
 def verbs_of(group: str) -> Sequence[str]:
-    """Return the verbs of a group, in the order in which they are listed."""
+    """Return the verbs of a group, in the order of the help."""
     return [verb for verb, entry in VERBS.items() if entry.group == group]
 
 

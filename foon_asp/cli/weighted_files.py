@@ -1,4 +1,4 @@
-"""``FILE.lp=WEIGHT``: constraints with a weight."""
+"""Soft constraints on the command line: ``FILE.lp=WEIGHT``."""
 
 from collections.abc import Sequence
 
@@ -8,12 +8,14 @@ from foon_asp.rules.constraint import Constraint, find_constraint, given_constra
 
 
 def weighted_files(settings: Sequence[str], option: str) -> dict[Constraint, int]:
-    """Read ``FILE.lp=WEIGHT`` settings of an option; a weight is a whole number from 1 to a million.
+    """Return the constraints in ``FILE.lp=WEIGHT`` values of an option, with their weights.
 
-    In place of the file there may be a rule, or a ready-made constraint. Raises :class:`UserError` for a
-    setting of another form, and for a constraint with two weights.
+    A weight is a whole number from 1 to a million. Instead of a file, a value may have a rule or a ready-made
+    constraint.
+
+    Raises :class:`UserError` for a value of another form, and for a constraint with two weights.
     """
-    found: dict[Constraint, int] = {}
+    weights: dict[Constraint, int] = {}
     for setting in settings:
         file, equals, weight = setting.rpartition("=")
         if not equals or not file:
@@ -24,6 +26,6 @@ def weighted_files(settings: Sequence[str], option: str) -> dict[Constraint, int
                 f"expected a whole number from 1 to {GREATEST_WEIGHT}"
             )
         constraint = find_constraint(given_constraint(file))
-        if found.setdefault(constraint, int(weight)) != int(weight):
+        if weights.setdefault(constraint, int(weight)) != int(weight):
             raise UserError(f"{option}: {file} has two weights")
-    return found
+    return weights

@@ -1,4 +1,4 @@
-"""A process that answers one command: when it began, and its end, at which memory is not taken apart."""
+"""Start and end of a process that answers one command: its start time, and an exit that frees no objects."""
 
 import atexit
 import contextlib
@@ -8,21 +8,21 @@ import time
 from typing import NoReturn
 
 BEGAN = time.monotonic()
-"""When the command line was imported, which is near enough to the beginning of the process."""
+"""The time, of the monotonic clock, when the command line was imported: shortly after the process started."""
 
 _kept: list[object] = []
 
 
-def keep(*things: object) -> None:
-    """Keep what a command has found until the next one, instead of giving its memory back piece by piece.
+def keep(*objects: object) -> None:
+    """Keep objects until the next command, so that their memory is not freed after the answer.
 
-    Of a network of a million units, that takes seconds after the answer is there.
+    For a network of a million units, that takes seconds.
     """
-    _kept[:] = things
+    _kept[:] = objects
 
 
 def leave(code: int) -> NoReturn:
-    """End the process as it would end by itself, but the system takes back its memory as a whole."""
+    """Exit the process as at its normal end, but without freeing its objects one by one."""
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(OSError, ValueError, AttributeError):

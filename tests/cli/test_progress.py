@@ -56,7 +56,7 @@ def test_only_a_terminal_sees_what_takes_long(
     network: Path, monkeypatch: pytest.MonkeyPatch, terminal: bool, long: float, shown: bool
 ) -> None:
     screen = io.StringIO()
-    monkeypatch.setattr(progress, "_LONG", long)
+    monkeypatch.setattr(progress, "_DELAY_SECONDS", long)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
     monkeypatch.setattr(progress, "console", lambda err: Console(file=screen, force_terminal=True, width=100))
     with click.Context(click.Command("solve")), progress.bytes_bar("reading", [network]):
