@@ -1,1 +1,1 @@
-"""What other packages offer, searches and engines: found by entry points, run in processes of their own."""
+"""Searches and engines of other packages: found by entry points, and run in processes of their own."""

@@ -1,4 +1,4 @@
-"""What an installed package offers under an entry point, found without importing it."""
+"""Offers: the entry points of installed packages, found without importing them, and errors about them."""
 
 import re
 from collections.abc import Iterable
@@ -8,33 +8,32 @@ from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 
 _NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9])?", re.ASCII)
-_LONGEST = 300  # letters of what a package says
+_MAX_FAULT_LETTERS = 300  # of an error: a package may print any amount
 
 
 class Raised(NamedTuple):
-    """What a function of another package raised: the names of its classes, the first its own, and its words.
+    """An exception of another package: the names of its classes, the most specific first, and its message.
 
-    ``place`` is the line that raised it, ``trace`` all that led there.
+    ``raised_at`` is the file and line that raised it, or empty, and ``trace`` the traceback.
     """
 
     classes: tuple[str, ...]
     message: str
-    place: str
+    raised_at: str
     trace: str
 
     @property
     def text(self) -> str:
-        """Say it in a line."""
+        """The exception in one line."""
         name = self.classes[0].rpartition(".")[2]
-        return (
-            f"raised {name}{f': {self.message}' if self.message else ''}{self.place and f' ({self.place})'}"
-        )
+        message = f": {self.message}" if self.message else ""
+        return f"raised {name}{message}{self.raised_at and f' ({self.raised_at})'}"
 
 
 class Offer(NamedTuple):
-    """One entry point: ``group`` and ``name``, the function it names as ``module:function``, who offers it.
+    """An entry point: its ``group`` and ``name``, its ``function`` as ``module:function``, and its package.
 
-    ``package`` is a name with a version.
+    ``package`` is the name of a distribution with its version.
     """
 
     group: str
@@ -43,9 +42,9 @@ class Offer(NamedTuple):
     package: str
 
     def fault(self, what: str, trace: str = "") -> UserError:
-        """Make an error of what is wrong with it; ``--debug`` shows the trace."""
-        if len(what) > _LONGEST:
-            what = f"{what[:_LONGEST]}..."
+        """Return the error that an offer is at fault, with ``what`` it did; ``--debug`` shows the trace."""
+        if len(what) > _MAX_FAULT_LETTERS:
+            what = f"{what[:_MAX_FAULT_LETTERS]}..."
         error = UserError(
             f"{escaped(self.package)}: {escaped(self.name)} ({self.group}, {escaped(self.function)}): "
             f"{escaped(what)}\n"
@@ -55,40 +54,41 @@ class Offer(NamedTuple):
             error.add_note(trace)
         return error
 
-    def raised(self, what: Raised) -> UserError:
-        """Make an error of what it raised; what it says to users in our way is said as it is."""
-        by_us = f"{UserError.__module__}.{UserError.__name__}" in what.classes
-        return self.fault(what.message if by_us else what.text, what.trace)
+    def raised(self, exception: Raised) -> UserError:
+        """Return the error that an offer raised an exception; of a ``UserError`` it is the message alone."""
+        is_user_error = f"{UserError.__module__}.{UserError.__name__}" in exception.classes
+        return self.fault(exception.message if is_user_error else exception.text, exception.trace)
 
-    def units(self, given: object, number: int) -> tuple[int, ...]:
-        """Take the result as units of a tree, by id; the network has ``number`` units.
+    def units(self, reply: object, number: int) -> tuple[int, ...]:
+        """Return a reply as the units of a tree, by id; the network has ``number`` units.
 
-        Raises :class:`UserError` for anything else.
+        Raises :class:`UserError` for a reply that is not a list of distinct units.
         """
-        if not isinstance(given, list):
-            raise self.fault(f"gave {given!r}, expected the units of a tree")
-        for unit in given:
+        if not isinstance(reply, list):
+            raise self.fault(f"gave {reply!r}, expected the units of a tree")
+        for unit in reply:
             if type(unit) is not int or not 0 <= unit < number:
                 raise self.fault(f"gave a tree with the unit {unit!r}; units are 0 to {number - 1}")
-        if len(set(given)) < len(given):
+        if len(set(reply)) < len(reply):
             raise self.fault("gave a tree that lists a unit twice")
-        return tuple(given)
+        return tuple(reply)
 
 
 def find_offers(group: str) -> list[Offer]:
-    """List what installed packages offer under a group, by package and name; nothing of theirs is imported.
+    """Return the offers of installed packages in a group, sorted by package and name; none is imported.
 
-    Of a package that is there twice, the one that Python would import counts. Raises :class:`UserError` where
-    what a package says of the group cannot be read.
+    Of a package that is installed twice, the one that Python would import counts.
+
+    Raises :class:`UserError` where the entry points of a package that has the group cannot be read.
     """
     from importlib import metadata  # noqa: PLC0415 (slow to import, and seldom needed)
 
-    found: dict[str, list[Offer]] = {}
+    by_package: dict[str, list[Offer]] = {}
     for distribution in metadata.distributions():
         try:
             text = distribution.read_text("entry_points.txt")
         except UnicodeDecodeError as error:
-            text = error.object.decode(errors="replace")  # to see whether it is any matter of ours
+            text = error.object.decode(errors="replace")  # to see whether it mentions the group
         if not text or group not in text:
             continue
         try:
@@ -100,23 +100,23 @@ def find_offers(group: str) -> list[Offer]:
                 f"a package offers {group} and cannot be read: "
                 f"{escaped(str(distribution.locate_file('.')))}: {escaped(text.strip())}: {error}"
             ) from None
-        found.setdefault(str(package).lower().replace("_", "-"), offers)
-    return [offer for package in sorted(found) for offer in sorted(found[package])]
+        by_package.setdefault(str(package).lower().replace("_", "-"), offers)
+    return [offer for package in sorted(by_package) for offer in sorted(by_package[package])]
 
 
-def offers_by_name(offers: Iterable[Offer], taken: Iterable[str]) -> dict[str, Offer]:
-    """Give offers by name.
+def offers_by_name(offers: Iterable[Offer], reserved: Iterable[str]) -> dict[str, Offer]:
+    """Return offers by name.
 
-    Raises :class:`UserError` for a name that two of them have, or that is among those ``taken``, in whatever
-    case it is written; and for one that is not made of letters, digits, ``-``, ``_`` and ``.``.
+    Raises :class:`UserError` for a name that two offers have or that is ``reserved``, ignoring case; and for
+    one that is not made of letters, digits, ``-``, ``_`` and ``.``.
     """
-    known = {name.lower(): "foon-asp" for name in taken}
-    named: dict[str, Offer] = {}
+    owners = {name.lower(): "foon-asp" for name in reserved}
+    by_name: dict[str, Offer] = {}
     for offer in offers:
         if not _NAME.fullmatch(offer.name):
             raise offer.fault("expected a name of up to 40 letters and digits, with - _ . between them")
-        if offer.name.lower() in known:
-            raise offer.fault(f"the name is taken: {known[offer.name.lower()]} has one that is called so")
-        known[offer.name.lower()] = offer.package
-        named[offer.name] = offer
-    return named
+        if offer.name.lower() in owners:
+            raise offer.fault(f"the name is taken: {owners[offer.name.lower()]} has one that is called so")
+        owners[offer.name.lower()] = offer.package
+        by_name[offer.name] = offer
+    return by_name

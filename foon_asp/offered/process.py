@@ -1,7 +1,7 @@
-"""Asking what another package offers, in a process of its own: whatever it does, it does there.
+"""Calls of functions of other packages, each package in a process of its own.
 
-It cannot change our data, nor keep us past a limit, nor print among our answers. What it gives is JSON, and
-nothing of it is believed.
+So a package cannot change our data, exceed a limit, or print into our answers. Its reply is JSON, which
+callers validate.
 """
 
 import json
@@ -14,16 +14,17 @@ from foon_asp.offered.offer import Offer, Raised
 from foon_asp.processes.pipe import packed
 from foon_asp.processes.worker import DiedError, Worker, give_back, take
 
-_MOST = 64 * 2**20  # bytes of an answer
+_MAX_REPLY_BYTES = 64 * 2**20  # a tree of a million units has some megabytes; more would fill the memory
+_CHUNK_BYTES = 1 << 20  # read at once
 
 
 def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
-    """Call the function that is offered, and give what it gave as plain values; ``Raised`` if it raised.
+    """Call the function of an offer; return its reply as plain values, or ``Raised`` if it raised.
 
-    Raises :class:`~foon_asp.deadline.LimitError` at a limit, and :class:`UserError` where there is no such
-    function, or none that ends with plain values.
+    Raises :class:`~foon_asp.deadline.LimitError` at a limit, and :class:`UserError` where the function cannot
+    be imported, ends its process, or returns anything but plain values.
     """
-    key = (offer.package, *sys.path)  # and where it was found
+    key = (offer.package, *sys.path)  # with the path, another version of the package may be found
     worker = take(key, _start)
     try:
         kind, line = worker.ask(packed((offer, arguments)), deadline)
@@ -47,16 +48,19 @@ def _start() -> Worker:
 
 
 def _line(pipe: RawIOBase) -> tuple[str, bytes]:
-    """Read a line, or as much as is too long for one; raises ``EOFError`` where it is cut off."""
+    """Return a line of a pipe as a message; its kind is ``endless`` for a line that is too long.
+
+    Raises ``EOFError`` where the pipe ends within the line.
+    """
     line = bytearray()
     while not line.endswith(b"\n"):
-        if len(line) > _MOST:
+        if len(line) > _MAX_REPLY_BYTES:
             return "endless", b""
         try:
-            part = pipe.read(1 << 20)
+            chunk = pipe.read(_CHUNK_BYTES)
         except (OSError, ValueError):  # closed
-            part = None
-        if not part:
+            chunk = None
+        if not chunk:
             raise EOFError
-        line += part
+        line += chunk
     return "line", bytes(line)

@@ -1,4 +1,4 @@
-"""The other process: it calls functions of another package, until no more requests come."""
+"""The process that calls the functions of another package, until its parent ends."""
 
 import json
 import pickle
@@ -10,22 +10,22 @@ from typing import Any
 from foon_asp.offered.offer import Offer
 from foon_asp.processes.pipe import receive_packed, requests, write
 
-_LONGEST = 1000  # letters of a message
+_MAX_MESSAGE_LETTERS = 1000  # of an exception: some contain all data
 
 
 def serve() -> None:
-    """Call what standard input asks for, and answer on what was standard output, which is now stderr."""
-    asked, answers = requests(receive_packed)
+    """Call the functions that requests on standard input name, and send their replies."""
+    received, answers = requests(receive_packed)
     functions: dict[Offer, Callable[..., object]] = {}
     while True:
-        offer, arguments = pickle.loads(asked.get())
+        offer, arguments = pickle.loads(received.get())
         write(answers, _answer(offer, arguments, functions))
 
 
 def _answer(
     offer: Offer, arguments: tuple[object, ...], functions: dict[Offer, Callable[..., object]]
 ) -> bytes:
-    """Call the function, and give a line of JSON: what it gave, what it raised, or what is wrong with it."""
+    """Call a function, and return a line of JSON: its reply, its exception, or what is wrong with it."""
     if offer not in functions:
         try:
             function: Any = EntryPoint(offer.name, offer.function, offer.group).load()
@@ -35,10 +35,10 @@ def _answer(
             return _line("fault", [f"expected a function, found {_shown(function)}", ""])
         functions[offer] = function
     try:
-        given = functions[offer](*arguments)
+        reply = functions[offer](*arguments)
     except BaseException as error:
-        kinds = [f"{kind.__module__}.{kind.__qualname__}" for kind in type(error).__mro__]
-        place = next(
+        classes = [f"{kind.__module__}.{kind.__qualname__}" for kind in type(error).__mro__]
+        raised_at = next(
             (
                 f"{frame.filename}:{frame.lineno}"
                 for frame in reversed(traceback.extract_tb(error.__traceback__))
@@ -46,11 +46,11 @@ def _answer(
             ),
             "",
         )
-        return _line("raised", [kinds, _message(error), place, traceback.format_exc()])
+        return _line("raised", [classes, _message(error), raised_at, traceback.format_exc()])
     try:
-        return _line("given", given)
+        return _line("reply", reply)
     except Exception:
-        return _line("fault", [f"gave {_shown(given)}, which is no answer", ""])
+        return _line("fault", [f"gave {_shown(reply)}, which is no answer", ""])
 
 
 def _line(kind: str, value: object) -> bytes:
@@ -63,13 +63,13 @@ def _in_words(error: BaseException) -> str:
 
 def _message(error: BaseException) -> str:
     try:
-        return str(error)[:_LONGEST]
+        return str(error)[:_MAX_MESSAGE_LETTERS]
     except Exception:
         return ""
 
 
 def _shown(value: object) -> str:
     try:
-        return repr(value)[:_LONGEST]
+        return repr(value)[:_MAX_MESSAGE_LETTERS]
     except Exception:
         return f"a {type(value).__name__}"

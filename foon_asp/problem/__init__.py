@@ -1,4 +1,4 @@
-"""One question over a network, and its cut down to what can matter."""
+"""Problem: a question over a network, its costs and objectives, and reachability and relevance in it."""
 
 from foon_asp.problem.containers import ContainerRule as ContainerRule
 from foon_asp.problem.containers import conditions as conditions

@@ -1,4 +1,4 @@
-"""The two container rules: which inputs a unit asks for, and which outputs it makes."""
+"""The two container rules: which inputs of a unit are preconditions, and which outputs are add effects."""
 
 from collections.abc import Iterable
 from enum import StrEnum
@@ -11,12 +11,12 @@ Ids = tuple[tuple[int, ...], ...]
 
 
 class ContainerRule(StrEnum):
-    """Whether a unit needs all its inputs (``STRICT``), or not every container (``IMPLIED``).
+    """The container rule: a unit needs all its inputs (``STRICT``), or not every container (``IMPLIED``).
 
-    ``strict``: a unit needs every input. ``implied``, the rule of the published searches: a unit need not be
-    given a utensil that holds exactly one ingredient, if that ingredient, located in that utensil (by any
-    relation), is also an input of the unit. A unit does not make an input that it skipped: nothing comes
-    from nothing.
+    ``strict``: a unit needs every input. ``implied``, the rule of the published searches: a unit does not
+    need a utensil that holds exactly one ingredient, if that ingredient, located in that utensil (by any
+    relation), is also an input of the unit. A unit does not make a container that it skips, since nothing
+    would have made it before.
 
     Example:
         >>> [str(rule) for rule in foon_asp.ContainerRule]
@@ -27,32 +27,32 @@ class ContainerRule(StrEnum):
     IMPLIED = "implied"
 
 
-def container_rule(given: str) -> ContainerRule:
-    """Read the name of a container rule."""
+def container_rule(name: str) -> ContainerRule:
+    """Return the container rule of a name; raises :class:`UserError` for an unknown one."""
     try:
-        return ContainerRule(given)
+        return ContainerRule(name)
     except ValueError:
         raise UserError(
-            f"found the containers {given!r}, expected one of {', '.join(ContainerRule)}"
+            f"found the containers {name!r}, expected one of {', '.join(ContainerRule)}"
         ) from None
 
 
 def conditions(rule: ContainerRule, level: int, starting: bool = False) -> str:
-    """Say in a few words what a claim holds under: ``strict containers, level 2``; level 3 goes unsaid.
+    """Return the conditions of a claim in words: ``strict containers, level 2``, without the default level 3.
 
-    ``starting`` says that the kitchen was not given and is the starting one.
+    ``starting`` says that no kitchen is named, so that the starting kitchen is assumed.
     """
-    said = f"{rule} containers" + (f", level {level}" if level < 3 else "")
-    return said + (", starting kitchen" if starting else "")
+    text = f"{rule} containers" + (f", level {level}" if level < 3 else "")
+    return text + (", starting kitchen" if starting else "")
 
 
 def needed_inputs(
     unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str], network: Network | None = None
 ) -> tuple[ObjectNode, ...]:
-    """Give the inputs that the rule asks for, in the unit's order.
+    """Return the inputs that a unit needs under the rule (its preconditions), in the unit's order.
 
-    Below level 3 a node does not say what it holds. A unit of a ``network`` of such a level then needs what
-    all the level-3 units need that it stands for: what one of them takes as given, it takes as given.
+    Below level 3 a node does not include its contents. A unit of a ``network`` of such a level needs the
+    inputs that all of the level-3 units need for which it stands.
     """
     return _sides(unit, rule, utensils, network)[0]
 
@@ -60,9 +60,10 @@ def needed_inputs(
 def given_outputs(
     unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str], network: Network | None = None
 ) -> tuple[ObjectNode, ...]:
-    """Give the outputs that a unit makes under the rule, in its order: all but the inputs that it skips.
+    """Return the outputs that a unit makes under the rule (its add effects), in the unit's order.
 
-    A unit of a ``network`` below level 3 makes what any of the level-3 units makes that it stands for.
+    They are all outputs except inputs that it skips. A unit of a ``network`` below level 3 makes the outputs
+    that any of the level-3 units makes for which it stands.
     """
     return _sides(unit, rule, utensils, network)[1]
 
@@ -70,7 +71,7 @@ def given_outputs(
 def _sides(
     unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str], network: Network | None
 ) -> tuple[tuple[ObjectNode, ...], tuple[ObjectNode, ...]]:
-    """Give what a unit needs and what it makes."""
+    """Return the preconditions and the add effects of a unit."""
     if rule is ContainerRule.STRICT:
         return unit.inputs, unit.outputs
     if network is not None and network.detailed is not None:
@@ -81,20 +82,20 @@ def _sides(
             _sides(network.detailed.unit(d), rule, utensils, None) for d in network.stands_for[unit_id]
         ]
         needed = set.intersection(*(_at_level(needs, network.level) for needs, _ in details))
-        given = set.union(*(_at_level(gives, network.level) for _, gives in details))
+        added = set.union(*(_at_level(gives, network.level) for _, gives in details))
     else:
         skipped = {node for node in unit.inputs if _is_implied(node, unit.inputs, utensils)}
-        needed, given = set(unit.inputs) - skipped, set(unit.outputs) - skipped
-    return tuple(n for n in unit.inputs if n in needed), tuple(n for n in unit.outputs if n in given)
+        needed, added = set(unit.inputs) - skipped, set(unit.outputs) - skipped
+    return tuple(n for n in unit.inputs if n in needed), tuple(n for n in unit.outputs if n in added)
 
 
 def _at_level(nodes: Iterable[ObjectNode], level: int) -> set[ObjectNode]:
     return {node_at_level(node, level) for node in nodes}
 
 
-@lru_cache(maxsize=4)  # question after question is about the same network
+@lru_cache(maxsize=4)  # successive questions are mostly about the same network
 def network_sides(network: Network, rule: ContainerRule, utensils: frozenset[str]) -> tuple[Ids, Ids]:
-    """Give for each unit of a network, at its level, the ids of what it needs and of what it makes."""
+    """Return for each unit of a network, at its level, the ids of its preconditions and its add effects."""
     if rule is ContainerRule.STRICT:
         return network.inputs, network.outputs
     needs, gives = list(network.inputs), list(network.outputs)
@@ -105,27 +106,29 @@ def network_sides(network: Network, rule: ContainerRule, utensils: frozenset[str
     for unit in range(len(network)):
         details = network.stands_for[unit] if network.detailed else (unit,)
         if not all(vessels.isdisjoint(detailed.inputs[detail]) for detail in details):
-            needed, given = map(set, _sides(network.unit(unit), rule, utensils, network))
+            needed, added = map(set, _sides(network.unit(unit), rule, utensils, network))
             needs[unit] = tuple(o for o in needs[unit] if network.objects[o] in needed)
-            gives[unit] = tuple(o for o in gives[unit] if network.objects[o] in given)
+            gives[unit] = tuple(o for o in gives[unit] if network.objects[o] in added)
     return tuple(needs), tuple(gives)
 
 
 @lru_cache(maxsize=4)
 def network_makers(network: Network, rule: ContainerRule, utensils: frozenset[str]) -> Ids:
-    """Give for each object node the ids of the units that make it under the rule, in order."""
-    makers: dict[int, tuple[int, ...]] = {}
+    """Return for each object node its achievers under the rule, as ids of units, in order."""
+    achievers: dict[int, tuple[int, ...]] = {}  # of nodes for which they are not all producers
     _, gives = network_sides(network, rule, utensils)
-    for unit, (outputs, given) in enumerate(zip(network.outputs, gives, strict=True)):
-        if len(given) < len(outputs):
-            for o in set(outputs).difference(given):
-                makers[o] = tuple(other for other in makers.get(o, network.producers[o]) if other != unit)
-    if not makers:
+    for unit, (outputs, added) in enumerate(zip(network.outputs, gives, strict=True)):
+        if len(added) < len(outputs):
+            for o in set(outputs).difference(added):
+                earlier = achievers.get(o, network.producers[o])
+                achievers[o] = tuple(other for other in earlier if other != unit)
+    if not achievers:
         return network.producers
-    return tuple(makers.get(o, producers) for o, producers in enumerate(network.producers))
+    return tuple(achievers.get(o, producers) for o, producers in enumerate(network.producers))
 
 
 def _is_implied(node: ObjectNode, inputs: tuple[ObjectNode, ...], utensils: frozenset[str]) -> bool:
+    """Return whether an input is a container that the rule ``implied`` skips."""
     if node.label not in utensils or len(node.ingredients) != 1:
         return False
     ingredient = node.ingredients[0]

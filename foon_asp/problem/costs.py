@@ -1,4 +1,4 @@
-"""What a tree costs, computed exactly from its units."""
+"""Costs of a tree by all objectives, computed exactly from its units."""
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -10,7 +10,7 @@ _MEASURED = tuple(Objective)
 
 
 class Costs:
-    """What one tree costs, by objective; ``measures`` leaves out objectives whose data are missing.
+    """The costs of one tree, by objective; ``measures`` has no objective whose data are missing.
 
     ``inputs`` counts the input object nodes of every unit (once for each unit, under any container rule),
     ``kitchen`` the distinct kitchen items among the inputs needed.
@@ -65,7 +65,7 @@ class Costs:
         return None if success is None else Fraction(success)
 
     def measure(self, objective: Objective) -> int | Fraction:
-        """Give what the tree costs by an objective; for ``success`` more is better, for the others less.
+        """Return the cost of the tree by an objective; for ``success`` more is better, for the others less.
 
         Parameters:
             objective: The objective.
@@ -81,7 +81,7 @@ class Costs:
         return self.measures[objective]
 
     def key(self, objectives: Sequence[Objective]) -> tuple[int | Fraction, ...]:
-        """Give a tuple that is smaller for a better tree.
+        """Return a tuple that is smaller for a better tree, for lexicographic comparison.
 
         Parameters:
             objectives: The objectives, the most important first.
@@ -93,20 +93,24 @@ class Costs:
 
 
 def tree_costs(
-    units: Collection[Measured], items: int, known: Collection[Known], more: Iterable[Objective] = ()
+    units: Collection[Measured],
+    items: int,
+    available: Collection[Known],
+    user_objectives: Iterable[Objective] = (),
 ) -> Costs:
-    """Measure units that need a number of distinct kitchen items, by what is known of all of them.
+    """Return the costs of units that need a number of distinct kitchen ``items``.
 
-    ``more`` are objectives that are not built in.
+    Objectives that need data which are not ``available`` for all units are left out, and ``attempts`` where a
+    rate is 0. ``user_objectives`` are measured besides the built-in ones.
     """
     measures: dict[Objective, int | Fraction] = {}
-    for objective in (*_MEASURED, *more):
+    for objective in (*_MEASURED, *user_objectives):
         row = objective.row
-        if row.needs is not None and row.needs not in known:
+        if row.needs is not None and row.needs not in available:
             continue
         try:
             figures = list(map(row.unit, units))
-        except ZeroDivisionError:  # no number says how often what never succeeds is tried
+        except ZeroDivisionError:  # with a rate of 0, the expected number of attempts is infinite
             continue
         if row.multiplies:
             measures[objective] = math.prod(figures, start=Fraction(1))

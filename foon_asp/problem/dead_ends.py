@@ -1,4 +1,4 @@
-"""What cannot be made for some goals, what is at the root of it, and the way there."""
+"""Dead ends: the nodes that cannot be made for some goals, and the missing or cyclic nodes that are why."""
 
 import heapq
 from collections.abc import Collection, Mapping, Sequence
@@ -12,10 +12,11 @@ from foon_asp.problem.relevance import reach
 
 
 class Cause(StrEnum):
-    """Why an object node is at the root of a dead end.
+    """The cause of a dead end.
 
-    ``missing``: it is not in the kitchen, and no unit makes it (one that needs it only hands it on).
-    ``cycle``: every unit that makes it needs one of a set of nodes that can only be made from each other.
+    ``missing``: an object node is not in the kitchen, and no unit makes it (a unit that needs it as well only
+    passes it on). ``cycle``: every achiever of the node needs one of a set of nodes that can only be made
+    from each other.
     """
 
     MISSING = "missing"
@@ -23,10 +24,11 @@ class Cause(StrEnum):
 
 
 class Root(NamedTuple):
-    """An object node at the root of a dead end.
+    """An object node that causes a dead end.
 
-    ``stops`` are the units that lack it on the way to a goal, ``on_the_way`` says whether it is on the way
-    that takes the fewest things. ``cycle`` is the set of nodes that feeds only itself, for that cause.
+    ``stops`` are the units that lack it on a path to a goal. ``on_the_way`` says whether it is on the path
+    that lacks the fewest nodes. ``cycle`` is the set of nodes that can only be made from each other, ``None``
+    for the cause ``missing``.
     """
 
     object: int
@@ -37,19 +39,18 @@ class Root(NamedTuple):
 
 
 class Blocked(NamedTuple):
-    """A unit that cannot run, and those of its needed inputs that cannot be had."""
+    """A unit that cannot run, and its unreachable preconditions."""
 
     unit: int
     lacks: tuple[int, ...]
 
 
 class DeadEnds(NamedTuple):
-    """What cannot be made for some goals.
+    """The unreachable part of a network, for some goals.
 
-    ``goals`` are those that cannot. ``makers`` has every object node that is needed for one of them, on any
-    way, and cannot be had, with the units that would make it, those first that take the fewest things more.
-    ``roots`` are the causes, those on the easiest way first. ``available`` has a 1 for every node, by id,
-    that is at hand or can be made.
+    ``goals`` are the unreachable goals. ``makers`` maps every unreachable object node that is needed for one
+    of them, on any path, to its achievers, the ones that lack the fewest nodes first. ``roots`` are the
+    causes, the ones on the cheapest path first. ``available`` has a 1 for every reachable node, by id.
     """
 
     goals: tuple[int, ...]
@@ -59,121 +60,127 @@ class DeadEnds(NamedTuple):
 
 
 def dead_ends(problem: Problem) -> DeadEnds:
-    """Find which goals cannot be made from the kitchen and why, whatever constraints say.
+    """Return the goals that cannot be made from the kitchen, with the causes; constraints are ignored.
 
-    Where every goal can be made, nothing is listed. Takes time about linear in the network.
+    Without unreachable goals, nothing is listed. The time is about linear in the size of the network.
     """
     available = reach(problem).available
     goals = tuple(goal for goal in problem.goals if not available[goal])
-    makers = _makers(problem, goals, available)
+    achievers = _achievers(problem, goals, available)
     cycles: list[DeadCycle] = []
-    missing = dict.fromkeys((o for o, found in makers.items() if not found), 1)
-    things, easiest = h_add(makers, missing)
-    while len(things) < len(makers):  # the others wait for each other, also with all that is missing at hand
-        cycles += _cycles(problem, makers.keys() - things)
+    missing = dict.fromkeys((o for o, units in achievers.items() if not units), 1)
+    h_values, cheapest = h_add(achievers, missing)
+    while len(h_values) < len(achievers):  # nodes without a value are in cycles, or need nodes that are
+        cycles += _cycles(problem, achievers.keys() - h_values)
         in_cycles = dict.fromkeys((node for cycle in cycles for node in cycle.nodes), 1)
-        things, easiest = h_add(makers, missing | in_cycles)
+        h_values, cheapest = h_add(achievers, missing | in_cycles)
     cycle_of = {node: cycle for cycle in cycles for node in cycle.nodes}
-    ordered = {o: _in_order(found, things, easiest.get(o)) for o, found in makers.items()}
-    way = _way(goals, ordered, cycle_of)
-    users = _users(ordered)
-    roots = [Root(o, Cause.MISSING, tuple(sorted(users.get(o, ()))), o in way) for o in missing]
+    ordered = {o: _ordered(units, h_values, cheapest.get(o)) for o, units in achievers.items()}
+    path = _cheapest_path(goals, ordered, cycle_of)
+    consumers = _consumers(ordered)
+    roots = [Root(o, Cause.MISSING, tuple(sorted(consumers.get(o, ()))), o in path) for o in missing]
     for cycle in cycles:
-        entered = [o for o, _ in cycle.steps if o in way] + sorted(way & cycle.nodes)
+        entered = [o for o, _ in cycle.steps if o in path] + sorted(path & cycle.nodes)
         node = entered[0] if entered else cycle.steps[0][0]
-        stops = {unit for o in cycle.nodes for unit in users.get(o, ())}
+        stops = {unit for o in cycle.nodes for unit in consumers.get(o, ())}
         roots.append(Root(node, Cause.CYCLE, tuple(sorted(stops)), bool(entered), cycle))
     roots.sort(key=lambda root: not root.on_the_way)
     return DeadEnds(goals, ordered, tuple(roots), available)
 
 
-def _makers(problem: Problem, goals: Sequence[int], available: bytearray) -> dict[int, tuple[Blocked, ...]]:
-    """Go backwards from the goals through all that cannot be had."""
+def _achievers(
+    problem: Problem, goals: Sequence[int], available: bytearray
+) -> dict[int, tuple[Blocked, ...]]:
+    """Return the unreachable nodes backward from the goals, depth-first, each with its achievers."""
     needs = problem.needs
-    makers: dict[int, tuple[Blocked, ...]] = {}
+    achievers: dict[int, tuple[Blocked, ...]] = {}
     stack = list(reversed(goals))
     while stack:
         o = stack.pop()
-        if o in makers:
+        if o in achievers:
             continue
-        makers[o] = tuple(
+        achievers[o] = tuple(
             Blocked(unit, tuple(need for need in needs[unit] if not available[need]))
             for unit in problem.makers[o]
             if o not in needs[unit]
         )
-        stack += [lack for blocked in reversed(makers[o]) for lack in reversed(blocked.lacks)]
-    return makers
+        stack += [lack for blocked in reversed(achievers[o]) for lack in reversed(blocked.lacks)]
+    return achievers
 
 
-def _users(makers: Mapping[int, Sequence[Blocked]]) -> dict[int, list[int]]:
-    """Give for each dead end the units that lack it."""
-    users: dict[int, list[int]] = {}
-    for blocked in {b.unit: b for found in makers.values() for b in found}.values():
+def _consumers(achievers: Mapping[int, Sequence[Blocked]]) -> dict[int, list[int]]:
+    """Return for each unreachable node the units that lack it."""
+    consumers: dict[int, list[int]] = {}
+    for blocked in {unit.unit: unit for units in achievers.values() for unit in units}.values():
         for lack in blocked.lacks:
-            users.setdefault(lack, []).append(blocked.unit)
-    return users
+            consumers.setdefault(lack, []).append(blocked.unit)
+    return consumers
 
 
-def _in_order(found: tuple[Blocked, ...], things: dict[int, int], easiest: int | None) -> tuple[Blocked, ...]:
-    """Put the easiest unit first, and then those that take the fewest things more."""
-    return tuple(
-        sorted(found, key=lambda b: (b.unit != easiest, sum(things[lack] for lack in b.lacks), b.unit))
-    )
+def _ordered(
+    units: tuple[Blocked, ...], h_values: dict[int, int], cheapest: int | None
+) -> tuple[Blocked, ...]:
+    """Return the achievers of a node, the cheapest first, then by the h-values of what they lack."""
+
+    def key(blocked: Blocked) -> tuple[bool, int, int]:
+        return blocked.unit != cheapest, sum(h_values[lack] for lack in blocked.lacks), blocked.unit
+
+    return tuple(sorted(units, key=key))
 
 
-def _cycles(problem: Problem, waiting: Collection[int]) -> list[DeadCycle]:
-    """Find sets of nodes that can only be made from each other, among those given; all else is at hand."""
-    others = [o for o in range(len(problem.network.objects)) if o not in waiting]
+def _cycles(problem: Problem, unreachable: Collection[int]) -> list[DeadCycle]:
+    """Return sets of unreachable nodes that can only be made from each other; all others are available."""
+    others = [o for o in range(len(problem.network.objects)) if o not in unreachable]
     return dead_cycles(replace(problem.network, inputs=problem.needs, outputs=problem.gives), others)
 
 
 def h_add(
-    makers: Mapping[int, Sequence[Blocked]], sources: Mapping[int, int]
+    achievers: Mapping[int, Sequence[Blocked]], sources: Mapping[int, int]
 ) -> tuple[dict[int, int], dict[int, int]]:
-    """Estimate what each dead end costs, a shared source counted each time it is needed.
+    """Return the h_add value of each unreachable node (Bonet & Geffner 2001), and its cheapest achiever.
 
-    ``sources`` have costs above 0, other nodes cost as much as the inputs of their cheapest unit (Bonet and
-    Geffner, Planning as heuristic search, 2001, by Knuth, A generalization of Dijkstra's algorithm, 1977). A
-    node that the sources do not lead to has no estimate. The second dictionary has the cheapest unit of each
-    node for which it costs less than the node as a source; following these never leads in a circle.
+    ``sources`` are nodes with their costs, above 0; any other node costs the sum of the preconditions of its
+    cheapest achiever, computed by Knuth's generalization of Dijkstra's algorithm (1977). A node that the
+    sources do not lead to has no value. An achiever is in the second dictionary only where it is cheaper than
+    the node as a source; these achievers have no cycle.
     """
-    lacking = {blocked.unit: len(blocked.lacks) for found in makers.values() for blocked in found}
+    lacking = {blocked.unit: len(blocked.lacks) for units in achievers.values() for blocked in units}
     made_by: dict[int, list[int]] = {}
-    for o, found in makers.items():
-        for blocked in found:
+    for o, units in achievers.items():
+        for blocked in units:
             made_by.setdefault(blocked.unit, []).append(o)
-    users = _users(makers)
+    consumers = _consumers(achievers)
     sums = dict.fromkeys(lacking, 0)
-    settled: dict[int, int] = {}
-    easiest: dict[int, int] = {}
+    h_values: dict[int, int] = {}
+    cheapest: dict[int, int] = {}
     queue = [(cost, -1, o) for o, cost in sources.items()]
     heapq.heapify(queue)
     while queue:
-        count, maker, o = heapq.heappop(queue)
-        if o in settled:
+        cost, achiever, o = heapq.heappop(queue)
+        if o in h_values:
             continue
-        settled[o] = count
-        if maker >= 0:
-            easiest[o] = maker
-        for unit in users.get(o, ()):
-            sums[unit] += count
+        h_values[o] = cost
+        if achiever >= 0:
+            cheapest[o] = achiever
+        for unit in consumers.get(o, ()):
+            sums[unit] += cost
             lacking[unit] -= 1
             if not lacking[unit]:
                 for made in made_by[unit]:
                     heapq.heappush(queue, (sums[unit], unit, made))
-    return settled, easiest
+    return h_values, cheapest
 
 
-def _way(
-    goals: Sequence[int], makers: dict[int, tuple[Blocked, ...]], cycle_of: dict[int, DeadCycle]
+def _cheapest_path(
+    goals: Sequence[int], achievers: dict[int, tuple[Blocked, ...]], cycle_of: dict[int, DeadCycle]
 ) -> set[int]:
-    """Give the dead ends on the easiest way: through the first unit each time, and not around a cycle."""
-    way: set[int] = set()
+    """Return the unreachable nodes backward from the goals through first achievers, without cycles."""
+    path: set[int] = set()
     stack = list(goals)
     while stack:
         o = stack.pop()
-        if o not in way:
-            way.add(o)
-            if makers[o] and o not in cycle_of:
-                stack += makers[o][0].lacks
-    return way
+        if o not in path:
+            path.add(o)
+            if achievers[o] and o not in cycle_of:
+                stack += achievers[o][0].lacks
+    return path

@@ -1,4 +1,4 @@
-"""What a unit uses up: which of its inputs stay when it has run, and which are gone; docs/plans.md."""
+"""Consumption of items: which inputs of a unit stay after it, and which are used up (docs/plans.md)."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -9,18 +9,18 @@ from typing import NamedTuple
 from foon_asp.network import FunctionalUnit, Network, ObjectNode
 
 ITEMS = ("lasting", "used-up")
-"""How items are meant: what is there can be used again and again, or it is used up."""
+"""The two models of items: they last, and can be used any number of times, or they are used up."""
 
 Named = str | ObjectNode
-"""What somebody says stays or goes: all object nodes of a label, or one object node."""
+"""The items of a declaration: all object nodes of a label, or one object node."""
 
 
 class Fate(StrEnum):
-    """Why an input of a unit stays, or that it is ``USED_UP``.
+    """The reason why an input of a unit stays, or that it is ``USED_UP``.
 
-    ``OUTPUT``: the very same node is also an output. ``TOOL``: a utensil with no contents. ``VESSEL``: a
-    utensil that some output is in, on or at. ``INSIDE``: the ingredient of something that the unit has before
-    and after. ``TOLD_STAYS`` and ``TOLD_GOES``: a file says so.
+    ``OUTPUT``: the same node is also an output. ``TOOL``: a utensil with no contents. ``VESSEL``: a utensil
+    that some output is in, on or at. ``INSIDE``: the ingredient of an item that is both an input and an
+    output. ``TOLD_STAYS`` and ``TOLD_GOES``: a file of the user says so.
 
     Example:
         >>> str(foon_asp.Fate.TOOL)
@@ -37,7 +37,7 @@ class Fate(StrEnum):
 
     @property
     def stays(self) -> bool:
-        """Whether the input is still there when the unit has run."""
+        """Whether the input is still available after the unit."""
         return self not in {Fate.USED_UP, Fate.TOLD_GOES}
 
 
@@ -46,15 +46,15 @@ def fate(
     inputs: Iterable[ObjectNode],
     outputs: Iterable[ObjectNode],
     utensils: frozenset[str],
-    told: Mapping[Named, bool] = MappingProxyType({}),
+    declared: Mapping[Named, bool] = MappingProxyType({}),
 ) -> Fate:
-    """Say what becomes of an input of a unit.
+    """Return whether an input of a unit stays or is used up, and why.
 
-    ``inputs`` and ``outputs`` are all of the unit, also those that a container rule skips. ``told`` says of
-    labels and nodes whether they stay, before anything else is looked at; what it says of a node counts more
-    than what it says of its label.
+    ``inputs`` and ``outputs`` are all of the unit, also the ones that a container rule skips. ``declared``
+    maps labels and nodes to whether they stay; it precedes all other reasons, and a node in it precedes its
+    label.
     """
-    stays = told.get(node, told.get(node.label))
+    stays = declared.get(node, declared.get(node.label))
     if stays is not None:
         return Fate.TOLD_STAYS if stays else Fate.TOLD_GOES
     outputs = tuple(outputs)
@@ -66,16 +66,16 @@ def fate(
         return Fate.VESSEL
     holders = {output.label for output in outputs if node.label in output.ingredients}
     holders.intersection_update(relation.object for relation in node.relations)
-    if holders and any(each.label in holders for each in inputs):
+    if holders and any(holder.label in holders for holder in inputs):
         return Fate.INSIDE
     return Fate.USED_UP
 
 
 class Flow(NamedTuple):
-    """What a unit does with items, by id.
+    """The preconditions and effects of a unit on copies of items, as ids of object nodes.
 
-    It runs when a copy of each node that it ``asks`` for is there. One copy of each that it ``uses`` up is
-    gone then, and there is one more of each that it ``adds``.
+    A unit is applicable when a copy of each node that it ``asks`` for is available. It consumes one copy of
+    each node that it ``uses``, and makes one copy of each node that it ``adds``.
     """
 
     asks: tuple[int, ...]
@@ -85,10 +85,10 @@ class Flow(NamedTuple):
 
 @dataclass(frozen=True)
 class UsedUp:
-    """That items are used up: what is said of some of them, and the stock.
+    """The model in which items are used up: declarations of the user, and the stock.
 
-    ``told`` says of labels and of object nodes whether they stay, whatever the rule makes of them. ``stock``
-    counts the copies of kitchen nodes; those that it does not name never run out.
+    ``told`` maps labels and object nodes to whether they stay, in place of the rule (:func:`fate`). ``stock``
+    has the number of copies of kitchen nodes; nodes that are not in it never run out.
 
     Example:
         >>> foon_asp.UsedUp(stock={foon_asp.parse_node("egg"): 2}).told
@@ -103,7 +103,7 @@ class UsedUp:
     stock: Mapping[ObjectNode, int] = field(default_factory=dict)
 
     def fate(self, unit: FunctionalUnit, node: ObjectNode, utensils: frozenset[str]) -> Fate:
-        """Say what becomes of an input of a unit.
+        """Return whether an input of a unit stays or is used up, and why.
 
         Parameters:
             unit: The unit.
@@ -120,16 +120,16 @@ class UsedUp:
         gives: Iterable[int],
         utensils: frozenset[str],
     ) -> Flow:
-        """Say what a unit asks for, uses up and adds.
+        """Return the preconditions and effects of a unit on copies of items.
 
         Parameters:
             network: The network of the unit.
             unit: The id of the unit.
-            needs: The inputs that the container rule asks for, by id.
+            needs: The inputs that the unit needs under the container rule, by id.
             gives: The outputs that the unit makes under it, by id.
             utensils: The labels of utensils.
         """
-        value, needs = network.unit(unit), tuple(needs)
+        functional_unit, needs = network.unit(unit), tuple(needs)
         inputs = set(network.inputs[unit])
-        gone = [o for o in needs if not self.fate(value, network.objects[o], utensils).stays]
-        return Flow(needs, tuple(gone), tuple(o for o in gives if o not in inputs))
+        consumed = [o for o in needs if not self.fate(functional_unit, network.objects[o], utensils).stays]
+        return Flow(needs, tuple(consumed), tuple(o for o in gives if o not in inputs))

@@ -1,4 +1,4 @@
-"""Exact numbers that callers write."""
+"""Exact rational numbers from the numbers and texts that callers write."""
 
 import re
 from decimal import Decimal
@@ -7,40 +7,40 @@ from fractions import Fraction
 from foon_asp.errors import UserError
 
 Number = int | str | float | Decimal | Fraction
-"""An exact number; a float is taken as it is printed, so 0.9 is nine tenths."""
+"""An exact number; a float is the decimal that it is printed as, so that 0.9 is nine tenths."""
 
 
-_LONGEST = 3322  # bits of a price: a thousand digits
+_MAX_PRICE_BITS = 3322  # a thousand digits: sums of longer numbers take long
 _EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
-_LARGEST_EXPONENT = 1000  # 1e999999999 takes hours to write out
+_MAX_EXPONENT = 1000  # of 10: the digits of 1e999999999 take hours to compute
 
 
-def exact(given: Number, what: str) -> Fraction:
-    """Read an exact number; raises :class:`UserError` that says ``what`` it was to be."""
+def exact(number: Number, what: str) -> Fraction:
+    """Return a number as an exact fraction; raises :class:`UserError`, with ``what`` it is, for others."""
     try:
-        power = _EXPONENT.search(str(given)) if isinstance(given, str | Decimal) else None
-        if power and abs(int(power[1])) > _LARGEST_EXPONENT:
+        power = _EXPONENT.search(str(number)) if isinstance(number, str | Decimal) else None
+        if power and abs(int(power[1])) > _MAX_EXPONENT:
             raise UserError(
-                f"found {str(given)[:40]} for {what}, expected an exponent of at most {_LARGEST_EXPONENT:,}"
+                f"found {str(number)[:40]} for {what}, expected an exponent of at most {_MAX_EXPONENT:,}"
             )
-        return Fraction(repr(given) if isinstance(given, float) else given)
+        return Fraction(repr(number) if isinstance(number, float) else number)
     except (ValueError, ZeroDivisionError, OverflowError):
-        raise UserError(f"found {given!r} for {what}, expected a number such as '0.85'") from None
+        raise UserError(f"found {number!r} for {what}, expected a number such as '0.85'") from None
 
 
-def unit_price(given: Number, what: str) -> Fraction:
-    """Read the exact price of a unit; raises :class:`UserError` that says ``what`` it was to be."""
-    price = exact(given, what)
-    if price < 0 or max(price.numerator, price.denominator).bit_length() > _LONGEST:
+def unit_price(number: Number, what: str) -> Fraction:
+    """Return an exact price, from 0; raises :class:`UserError`, with ``what`` it is, for other values."""
+    price = exact(number, what)
+    if price < 0 or max(price.numerator, price.denominator).bit_length() > _MAX_PRICE_BITS:
         raise UserError(
-            f"found {str(given)[:40]} for {what}, expected a price from 0, of at most 1,000 digits"
+            f"found {str(number)[:40]} for {what}, expected a price from 0, of at most 1,000 digits"
         )
     return price
 
 
-def success_rate(given: Number, what: str) -> Fraction:
-    """Read an exact success rate; raises :class:`UserError` that says ``what`` it was to be."""
-    rate = exact(given, what)
+def success_rate(number: Number, what: str) -> Fraction:
+    """Return an exact success rate, above 0 and at most 1; raises :class:`UserError` for other values."""
+    rate = exact(number, what)
     if not 0 < rate <= 1:
-        raise UserError(f"found {given} for {what}, expected a number above 0 and at most 1")
+        raise UserError(f"found {number} for {what}, expected a number above 0 and at most 1")
     return rate

@@ -1,4 +1,4 @@
-"""What is best: one row for each objective, and lexicographic lists of them."""
+"""Objectives: a row for each of them, which says how it is measured, and lexicographic lists."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator
 from enum import StrEnum
@@ -11,7 +11,7 @@ from foon_asp.network import ObjectNode
 
 
 class Known(StrEnum):
-    """What objectives look at that not all data have."""
+    """The data that an objective needs, and that are optional."""
 
     RATES = "rates"
     PRICES = "prices"
@@ -19,33 +19,33 @@ class Known(StrEnum):
 
 
 class Measured(Protocol):
-    """What an objective may look at in a unit."""
+    """A unit with the properties by which objectives measure it."""
 
     @property
     def inputs(self) -> Iterable[ObjectNode]:
-        """Its input object nodes."""
+        """The input object nodes."""
 
     @property
     def rate(self) -> Fraction:
-        """Its success rate, above 0 and at most 1; raises ``ValueError`` where it is not known."""
+        """The success rate, above 0 and at most 1; raises ``ValueError`` where it is not known."""
 
     @property
     def price(self) -> Fraction:
-        """Its price, from 0; raises ``ValueError`` where it is not known."""
+        """The price, from 0; raises ``ValueError`` where it is not known."""
 
     def measure(self, name: str) -> int | Fraction:
-        """What it costs by a measure of the user's, from 0; raises ``ValueError`` for one not known."""
+        """Return the cost by a user measure, from 0; raises ``ValueError`` for an unknown measure."""
 
 
 class Row(NamedTuple):
-    """How an objective is measured.
+    """The definition of an objective: a linear row over units and kitchen items, or a product.
 
-    ``unit`` is what a unit costs by it, an exact number, and ``item`` what each distinct kitchen item costs
-    that the units need. What units cost is added up, and less is better; or, where it ``multiplies``, it is
-    a factor, and more is better. ``term`` is the objective's name in the encodings, ``words`` are what a
-    chart has on its axis. ``is_fact`` says that the encodings read what each unit costs from
-    ``cost/3``, since they have no other predicate for it. ``whole`` says that all costs are whole numbers,
-    and ``needs`` what has to be known for it.
+    ``unit`` is the function that returns the cost of a unit, an exact number, and ``item`` the cost of each
+    distinct kitchen item that the units need. Costs are added up, and less is better; where the objective
+    ``multiplies``, the values of units are factors, and more is better. ``term`` is the objective's name in
+    the encodings, ``words`` are the label of an axis. ``is_fact`` says that the encodings read the costs of
+    units from ``cost/3``, since they have no other predicate for them. ``whole`` says that all costs are
+    whole numbers, and ``needs`` is the optional data that the objective needs.
     """
 
     term: str
@@ -59,7 +59,7 @@ class Row(NamedTuple):
 
 
 class _Listed(type):
-    """Makes the class of objectives list those built in."""
+    """A metaclass by which iteration over the class of objectives yields the built-in ones."""
 
     def __iter__(cls) -> Iterator["Objective"]:
         return iter(_BUILT_IN.values())
@@ -72,16 +72,16 @@ class _Listed(type):
 
 
 class Objective(str, metaclass=_Listed):
-    """What makes a tree the best: a name, with the row that says how it is measured.
+    """An objective by which trees are optimized: a name, with the row that defines how it is measured.
 
     ``UNITS``: fewest functional units. ``INPUTS``: fewest input object nodes, summed over the units.
-    ``INPUTS_AND_INGREDIENTS``: the same plus the ingredients of these nodes (the measure of a published
+    ``INPUTS_AND_INGREDIENTS``: fewest input object nodes and ingredients in them (the measure of a published
     heuristic). ``SUCCESS``: greatest product of success rates. ``KITCHEN``: fewest distinct kitchen items
     among the inputs needed. ``ATTEMPTS``: fewest expected executions of units, if a failed unit is repeated
     until it succeeds. ``PRICE``: least sum of the prices of units.
 
-    These are the objectives that are built in; the class lists them. :meth:`of_measure` gives that of a
-    measure of your own. There is one object for each.
+    Iteration over the class yields these built-in objectives. :meth:`of_measure` returns the objective of a
+    user measure. Each objective is a single object.
 
     Example:
         >>> [str(objective) for objective in foon_asp.Objective][:3]
@@ -103,18 +103,18 @@ class Objective(str, metaclass=_Listed):
     PRICE: ClassVar["Objective"]
 
     def __new__(cls, name: str) -> "Objective":
-        """Give the objective of a name that is built in; raises ``ValueError`` for others."""
+        """Return the built-in objective of a name; raises ``ValueError`` for other names."""
         if name not in _BUILT_IN:
             raise ValueError(f"{name!r} is no objective")
         return _BUILT_IN[name]
 
     @classmethod
     def of_row(cls, name: str, row: Row) -> "Objective":
-        """Make an objective of a name and a row.
+        """Return a new objective.
 
         Parameters:
             name: The name.
-            row: How it is measured.
+            row: The definition of how it is measured.
         """
         objective = str.__new__(cls, name)
         objective.__dict__["row"] = row
@@ -123,7 +123,7 @@ class Objective(str, metaclass=_Listed):
     @staticmethod
     @cache
     def of_measure(name: str) -> "Objective":
-        """Give the objective of a measure of the user's own: the least sum of what it says of the units.
+        """Return the objective of a user measure: the least sum of the costs that it assigns to units.
 
         Parameters:
             name: The name of the measure.
@@ -136,7 +136,7 @@ class Objective(str, metaclass=_Listed):
         raise AttributeError(f"an objective does not change, and cannot be given {name!r}")
 
     def __reduce__(self) -> tuple[Callable[[str], "Objective"], tuple[str]]:
-        """Pickle the name: another process has the same objectives."""
+        """Pickle an objective as its name, since each process has the same objectives."""
         return Objective.of_measure if self.row.needs is Known.MEASURES else Objective, (str(self),)
 
     def __repr__(self) -> str:
@@ -196,21 +196,24 @@ for _objective in _BUILT_IN.values():
 
 
 def multiplies(objective: Objective) -> bool:
-    """Whether an objective multiplies what units cost, and more is better; the others add, and less is."""
+    """Return whether an objective is a product, and more is better; others are sums, and less is better."""
     return objective.row.multiplies
 
 
 def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tuple[Objective, ...]:
-    """Read a lexicographic list, first the most important; raises :class:`UserError` for unknown names.
+    """Return a lexicographic list of objectives, the most important first.
 
-    Each name may itself be a comma-separated list. ``measures`` are the names of the user's own.
+    Each of the ``names`` may be a comma-separated list. ``measures`` are the names of user measures.
+
+    Raises :class:`UserError` for an unknown name, and for an objective that is listed twice.
     """
     objectives: list[Objective] = []
-    for name in (part.strip() for item in names for part in item.split(",")):
+    for name in (word.strip() for item in names for word in item.split(",")):
         if name not in _BUILT_IN and name not in measures:
-            known = ", ".join((*_BUILT_IN, *measures))
+            expected = ", ".join((*_BUILT_IN, *measures))
             raise UserError(
-                f"found the objective {name!r}, expected one of {known}, or a measure whose rules are given"
+                f"found the objective {name!r}, expected one of {expected}, "
+                "or a measure whose rules are given"
             )
         objective = Objective.of_measure(name) if name in measures else Objective(name)
         if objective in objectives:
@@ -220,5 +223,5 @@ def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tu
 
 
 def levels(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:
-    """Give the list that is optimized: ``units`` comes last, so that no tree carries a spare unit."""
+    """Return the list that is optimized: ``units`` is added as the last, so that trees are irredundant."""
     return objectives if Objective.UNITS in objectives else (*objectives, Objective.UNITS)

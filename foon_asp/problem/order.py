@@ -1,4 +1,4 @@
-"""Putting the units of a tree into an order that executes and that a person can follow."""
+"""Executable orders of the units of a tree, in which a person can follow them."""
 
 from collections.abc import Iterable
 
@@ -6,26 +6,26 @@ from foon_asp.problem.problem import Problem
 
 
 def executable_order(problem: Problem, units: Iterable[int]) -> tuple[int, ...] | None:
-    """Order units so that each finds its needed inputs made before it; ``None`` when no order does.
+    """Return units in a topological order, in which preconditions are made before; ``None`` without one.
 
-    What a step needs is made just before it (depth first from the goals), as a cook would read it.
-    Linear in the size of the units.
+    The preconditions of a step are made directly before it (depth-first from the goals), as in a recipe. The
+    time is linear in the size of the units.
     """
     needs, gives, kitchen = problem.needs, problem.gives, problem.kitchen
     chosen = sorted(set(units))
     missing = {unit: sum(o not in kitchen for o in needs[unit]) for unit in chosen}
-    waiting: dict[int, list[int]] = {}
+    consumers: dict[int, list[int]] = {}
     for unit in chosen:
         for o in needs[unit]:
             if o not in kitchen:
-                waiting.setdefault(o, []).append(unit)
-    makers: dict[int, int] = {}  # first maker in one order that executes: following them never circles
+                consumers.setdefault(o, []).append(unit)
+    achievers: dict[int, int] = {}  # the first achiever in one executable order: they have no cycle
     ready = [unit for unit in chosen if not missing[unit]]
     for unit in ready:
         for o in gives[unit]:
-            if o not in kitchen and o not in makers:
-                makers[o] = unit
-                for consumer in waiting.get(o, ()):
+            if o not in kitchen and o not in achievers:
+                achievers[o] = unit
+                for consumer in consumers.get(o, ()):
                     missing[consumer] -= 1
                     if not missing[consumer]:
                         ready.append(consumer)
@@ -33,7 +33,7 @@ def executable_order(problem: Problem, units: Iterable[int]) -> tuple[int, ...] 
         return None
 
     order: dict[int, None] = {}
-    roots = [makers[goal] for goal in problem.goals if goal in makers]
+    roots = [achievers[goal] for goal in problem.goals if goal in achievers]
     for root in (*roots, *ready):
         stack = [(root, False)]
         while stack:
@@ -44,5 +44,5 @@ def executable_order(problem: Problem, units: Iterable[int]) -> tuple[int, ...] 
                 order[unit] = None
             else:
                 stack.append((unit, True))
-                stack += [(makers[o], False) for o in reversed(needs[unit]) if o in makers]
+                stack += [(achievers[o], False) for o in reversed(needs[unit]) if o in achievers]
     return tuple(order)

@@ -1,4 +1,4 @@
-"""One question: a network, a kitchen, goals, rates, prices and the container rule."""
+"""Problem: a network, a kitchen, goals, rates, prices and the container rule."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -24,7 +24,8 @@ from foon_asp.problem.objective import Known, Measured, Objective
 from foon_asp.problem.restriction import Restriction
 from foon_asp.typed import typed
 
-_NAMED = 4  # motions that a remark names
+_MAX_MOTIONS_NAMED = 4  # in a remark, which should be short
+_MAX_LINES = 10  # of an error that lists motions
 
 Names = str | ObjectNode | Iterable[str | ObjectNode]
 """One object node or several: labels, one-line notation (``ice; crushed; in [drinking glass]``), or nodes."""
@@ -34,7 +35,7 @@ UnitPricesNamed = Mapping[str | FunctionalUnit, Number]
 
 
 class Unpriced(NamedTuple):
-    """Units of one motion that have no price: how many, and where the first was read."""
+    """Units of one motion that have no price: their number, and the source of the first."""
 
     motion: str
     units: int
@@ -42,7 +43,7 @@ class Unpriced(NamedTuple):
 
 
 class Measure(Protocol):
-    """A measure of the user's own: rules that say what each unit costs."""
+    """A user measure: rules that assign a cost to each unit."""
 
     @property
     def name(self) -> str:
@@ -54,17 +55,17 @@ class Measure(Protocol):
 
     @property
     def place(self) -> str:
-        """The file of the rules, or what messages call them."""
+        """The file of the rules, or their name in messages."""
 
     def costs(self, problem: "Problem", deadline: Deadline | None = None) -> Sequence[int | Fraction]:
-        """Give what each unit of a problem costs, exactly and never below 0.
+        """Return the exact cost of each unit of a problem, from 0.
 
-        Raises :class:`UserError` for rules that give a unit two costs, or none that is a number.
+        Raises :class:`UserError` for rules that assign two costs to a unit, or one that is no number.
         """
 
 
 class Changes(NamedTuple):
-    """What varies of the data that a problem was posed of; see :meth:`foon_asp.Foon.vary`."""
+    """Changes of the data of a problem; see :meth:`foon_asp.Foon.vary`."""
 
     kitchen: Names | Path | None = None
     adding: Names = ()
@@ -75,45 +76,46 @@ class Changes(NamedTuple):
 
 
 class Origin(Protocol):
-    """The data that a problem was posed of."""
+    """The data from which a problem was made."""
 
     def posed_anew(
         self, problem: "Problem", goals: Names | None, containers: str | None, changes: Changes
     ) -> "Problem":
-        """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
+        """Return a variation of a problem over the changed data; see :meth:`Problem.vary`."""
 
     @property
     def whole_network(self) -> Network:
-        """The whole network; of a store, units and nodes are read when they are looked at."""
+        """The whole network; of a store, units and nodes are read at their first access."""
 
     def unpriced(self) -> Sequence[Unpriced]:
-        """Give the units of the whole network that have no price."""
+        """Return the units of the whole network that have no price, by motion."""
 
     def posed_whole(self, problem: "Problem") -> "Problem":
-        """Pose a problem of these data over the whole network."""
+        """Return a problem over the whole network."""
 
     def posed_about(self, problem: "Problem", units: Iterable[FunctionalUnit]) -> "Problem":
-        """Pose a problem of these data over what its goals and these units are made of."""
+        """Return a problem over a network that is relevant to its goals, and has these units."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Problem:
-    """A question to ask: goals, a kitchen and a container rule, over a network.
+    """A planning problem: goals, a kitchen and a container rule, over a network.
 
     :meth:`foon_asp.Foon.problem` makes one from names. ``kitchen`` and ``goals`` are object node ids,
-    positions in ``network.objects``; one tree has to make all goals. ``rates`` has the success rate of every
-    motion, or is ``None`` if none are known. ``utensils`` are the labels that the rule ``implied`` of
-    ``containers`` is about. ``own_rates`` has, by id, the rates of units that differ from that of their
-    motion; :meth:`rate` gives the rate of any unit. ``unit_prices`` are the prices of units, or ``None``;
-    :meth:`price` gives that of a unit. For a store, ``network`` is the part that can matter for the goals.
-    ``measures`` are those of the user's own, by the name of the objective; :meth:`measure` gives what a unit
-    costs by one. ``origin`` is the data that it was made from, or ``None`` for a problem made by hand.
-    ``as_seen`` is the problem whose rates the user's rules look at, if others are used, and whose kitchen, if
-    there is more in this one. ``restriction`` is
-    what rules leave of the network, for this question only: a variation of it has to find its own.
-    ``items`` says that items are used up, and which; ``None`` if they last. ``starting`` says that no kitchen
-    was given, so that what no unit makes out of others is at hand. Rates that lack a motion of the network
-    are set aside, and ``unrated`` says which they lack.
+    positions in ``network.objects``; one tree has to make all goals. For a store, ``network`` is the part
+    that is relevant to the goals. ``rates`` has the success rate of every motion, or is ``None`` if none are
+    known; ``own_rates`` has, by id, the rates of units that differ from that of their motion, and
+    :meth:`rate` returns the rate of any unit. ``utensils`` are the labels of utensils, for the rule
+    ``implied`` of ``containers``. ``unit_prices`` are the prices of units, or ``None``; :meth:`price` returns
+    the price of any unit. ``measures`` are the user measures by name; :meth:`measure` returns the cost of a
+    unit by one.
+    ``origin`` is the data from which the problem was made, or ``None`` for a problem made by hand.
+    ``as_seen`` is the problem whose rates and kitchen the user's rules see, where this one has other rates or
+    a larger kitchen. ``restriction`` is the effect of rules on the network, for this question only: each
+    variation needs its own. ``items`` is the model in which items are used up; ``None`` if they last.
+    ``starting`` says that no kitchen is named, so that all nodes are available that no unit makes out of
+    others. Rates that lack a motion of the network are ignored, and ``unrated`` is the error that lists the
+    missing ones.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -165,7 +167,7 @@ class Problem:
         return tuple(self.network.objects[goal] for goal in self.goals)
 
     def at_hand(self, node: ObjectNode) -> bool:
-        """Whether an object node is in the kitchen.
+        """Return whether an object node is in the kitchen.
 
         Parameters:
             node: The object node.
@@ -175,26 +177,26 @@ class Problem:
     @cached_property
     def whole(self) -> "Problem":
         """The same problem over the whole network: of a store, all of it is read."""
-        part = self.origin is not None and self.network.object_numbers
-        return self.origin.posed_whole(self) if self.origin is not None and part else self
+        is_part = self.origin is not None and self.network.object_numbers
+        return self.origin.posed_whole(self) if self.origin is not None and is_part else self
 
     @property
     def plain(self) -> "Problem":
-        """The same problem without the data it was posed of, as another process can be handed it."""
+        """The same problem without ``origin``, in a form that can be sent to another process."""
         rates = None if self.rates is None else dict(self.rates)
         own_rates, measures = dict(self.own_rates), dict(self.measures)
         return replace(self, origin=None, rates=rates, own_rates=own_rates, measures=measures)
 
     def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
-        """Give the same problem over a network that has some units, as far as the data has them.
+        """Return this problem over a network that has some units, as far as the data have them.
 
-        For a store, what the units consist of is read.
+        For a store, these units are read.
 
         Parameters:
             units: The units.
         """
-        part = self.origin is not None and self.network.object_numbers
-        return self.origin.posed_about(self, units) if self.origin is not None and part else self
+        is_part = self.origin is not None and self.network.object_numbers
+        return self.origin.posed_about(self, units) if self.origin is not None and is_part else self
 
     @typed
     def vary(
@@ -209,20 +211,20 @@ class Problem:
         unit_prices: UnitPricesNamed | None = None,
         measures: str | PathLike[str] | Iterable[str | PathLike[str]] | None = None,
     ) -> "Problem":
-        """Give the same problem with other goals, container rule, kitchen, rates, prices or measures.
+        """Return a variation of this problem: with other goals, container rule, kitchen, rates or prices.
 
-        Nothing is read or indexed again, except that a store is read as far as the new problem needs more.
-        Whether items are used up stays as it is.
+        Nothing is read or indexed again, except the part of a store that the new problem needs in addition.
+        Whether items are used up does not change.
 
         Parameters:
             goals: The new goals: one object node or several, by name or as :class:`ObjectNode`.
             containers: The new container rule, ``strict`` or ``implied``.
-            kitchen: Everything at hand: names, or a kitchen file as a :class:`~pathlib.Path`.
+            kitchen: All available items: names, or a kitchen file as a :class:`~pathlib.Path`.
             adding: Names of object nodes to add to the kitchen.
             without: Names of object nodes to remove from the kitchen.
             rates: New success rates of some motions, above 0 and at most 1.
             unit_prices: New prices, from 0, of motions by name and of single units.
-            measures: All measures of your own: files with rules for what units cost, or the rules themselves.
+            measures: All user measures: files with rules for the costs of units, or the rules themselves.
 
         Raises:
             UserError: for a name that means no object node or several, a value out of range, or a problem
@@ -234,7 +236,7 @@ class Problem:
         return self.origin.posed_anew(self, goals, containers, changes)
 
     def place(self, unit: FunctionalUnit) -> Source:
-        """Give the first place where a unit was read, or a place in no file if the network does not have it.
+        """Return the source of the first copy of a unit; its file is ``-`` if the network lacks the unit.
 
         Parameters:
             unit: The unit.
@@ -244,32 +246,32 @@ class Problem:
 
     @property
     def conditions(self) -> str:
-        """What every claim about this question holds under, in a few words: ``strict containers``."""
-        said = conditions(self.containers, self.network.level, self.starting)
-        return said if self.items is None else f"{said}, items used up"
+        """The conditions of every claim about this problem, in words: ``strict containers``."""
+        text = conditions(self.containers, self.network.level, self.starting)
+        return text if self.items is None else f"{text}, items used up"
 
     @cached_property
     def needs(self) -> tuple[tuple[int, ...], ...]:
-        """For each unit, the ids of the inputs that the container rule asks for."""
+        """The preconditions of each unit: the ids of the inputs that it needs under the container rule."""
         return network_sides(self.network, self.containers, self.utensils)[0]
 
     @cached_property
     def gives(self) -> tuple[tuple[int, ...], ...]:
-        """For each unit, the ids of the outputs that it makes: all but the inputs it may skip."""
+        """The add effects of each unit: the ids of its outputs, except inputs that it may skip."""
         return network_sides(self.network, self.containers, self.utensils)[1]
 
     @cached_property
     def makers(self) -> Sequence[tuple[int, ...]]:
-        """For each object node, the units that make it under the container rule, in order.
+        """The achievers of each object node: the units that make it under the container rule, in order.
 
-        A restriction removes units, and adds the units of each required set, as if they made one node more.
+        A restriction removes units, and appends each required set as the achievers of one additional node.
         """
         makers = network_makers(self.network, self.containers, self.utensils)
         return makers if self.restriction is None else self.restriction.makers(makers)
 
     @cached_property
     def flows(self) -> tuple[Flow, ...]:
-        """For each unit, what it asks for, uses up and adds; where items last, it uses up nothing."""
+        """The effects of each unit on copies of items; where items last, no unit uses up any."""
         items, network = self.items, self.network
         if items is None:
             return tuple(Flow(needs, (), gives) for needs, gives in zip(self.needs, self.gives, strict=True))
@@ -279,7 +281,7 @@ class Problem:
         )
 
     def stock_of(self, o: int) -> int | None:
-        """Give how many copies of a kitchen item there are, ``None`` where it never runs out.
+        """Return the number of copies of a kitchen item; ``None`` where it never runs out.
 
         Parameters:
             o: The id of the object node.
@@ -288,46 +290,46 @@ class Problem:
 
     @cached_property
     def kitchen_seen(self) -> frozenset[int]:
-        """What is at hand as the user's rules see it: what is only taken to be there is not part of it."""
+        """The kitchen that the user's rules see: without items that a relaxation adds."""
         return self.kitchen if self.as_seen is None else self.kitchen & self.as_seen.kitchen
 
     @cached_property
     def endless(self) -> frozenset[int]:
-        """The ids of the object nodes that never run out: where items last, all of the kitchen."""
+        """The ids of the kitchen items that are not consumable: where items last, all of them."""
         return frozenset(o for o in self.kitchen if self.stock_of(o) is None)
 
     def copies_taken(self, plan: Iterable[int]) -> dict[int, int]:
-        """Give how many copies of each kitchen item that may run out a plan cannot do without.
+        """Return the least number of copies of each consumable kitchen item with which a plan runs, by id.
 
         Parameters:
             plan: The ids of the units, in the order of execution.
         """
-        taken = dict.fromkeys(self.kitchen - self.endless, 0)
-        made = dict.fromkeys(taken, 0)
+        required = dict.fromkeys(self.kitchen - self.endless, 0)
+        net_effects = dict.fromkeys(required, 0)
         for unit in plan:
             asks, uses, adds = self.flows[unit]
-            for o in taken.keys() & asks:
-                taken[o] = max(taken[o], 1 - made[o])
-            for o in made.keys() & uses:
-                made[o] -= 1
-            for o in made.keys() & adds:
-                made[o] += 1
-        for o in taken.keys() & self.goals:
-            taken[o] = max(taken[o], 1 - made[o])
-        return taken
+            for o in required.keys() & asks:
+                required[o] = max(required[o], 1 - net_effects[o])
+            for o in net_effects.keys() & uses:
+                net_effects[o] -= 1
+            for o in net_effects.keys() & adds:
+                net_effects[o] += 1
+        for o in required.keys() & self.goals:
+            required[o] = max(required[o], 1 - net_effects[o])
+        return required
 
     @property
     def targets(self) -> tuple[int, ...]:
-        """What a tree has to make: the goals, and one node more for each set that a restriction requires."""
+        """The nodes that a tree has to make: the goals, and an additional node for each required set."""
         size, restriction = len(self.network.objects), self.restriction
         return (*self.goals, *range(size, size + (len(restriction.required) if restriction else 0)))
 
     def __eq__(self, other: object) -> bool:
-        """Whether the same is asked: of an equal network, whichever file was read or built first."""
+        """Return whether two problems are equal; networks are, whatever the order of their files."""
         if not isinstance(other, Problem):
             return NotImplemented
         return self is other or (
-            self._asked == other._asked
+            self._question == other._question
             and self.network.is_like(other.network)
             and self.restriction is other.restriction
         )
@@ -336,8 +338,8 @@ class Problem:
         return hash((self.kitchen, self.goals, self.containers, len(self.network)))
 
     @property
-    def _asked(self) -> tuple[object, ...]:
-        """All that is asked, but for the network."""
+    def _question(self) -> tuple[object, ...]:
+        """All properties that are compared for equality, except the network."""
         measures = {name: measure.text for name, measure in self.measures.items()}
         rules = self.containers, self.utensils, self.items, self.starting
         values = self.rates, self.own_rates, self.unit_prices, measures, self.as_seen
@@ -347,7 +349,7 @@ class Problem:
         return f"<Problem: {' + '.join(map(str, self.goal_nodes))} ({self.conditions})>"
 
     def require_known_for(self, objectives: Collection[Objective]) -> None:
-        """Require the rates and prices that objectives need.
+        """Raise :class:`UserError` where data that objectives need are missing.
 
         Parameters:
             objectives: The objectives.
@@ -356,14 +358,14 @@ class Problem:
             UserError: if rates, prices or the rules of a measure are missing, or if a rate is 0 and an
                 objective has no value then.
         """
-        for each in objectives:
-            if each.row.needs is Known.MEASURES and each not in self.measures:
+        for objective in objectives:
+            if objective.row.needs is Known.MEASURES and objective not in self.measures:
                 raise UserError(
-                    f"the objective {each} needs the rules of its measure: "
+                    f"the objective {objective} needs the rules of its measure: "
                     "give them with --measure FILE or in Python load(..., measures=FILE)"
                 )
-        by_rates = [each for each in objectives if each.row.needs is Known.RATES]
-        sums = [str(each) for each in by_rates if not each.row.multiplies]
+        by_rates = [objective for objective in objectives if objective.row.needs is Known.RATES]
+        sums = [str(objective) for objective in by_rates if not objective.row.multiplies]
         if sums and 0 in {*(self.rates or {}).values(), *self.own_rates.values()}:
             raise UserError(
                 f"a success rate is 0, for which the objective {sums[0]} has no value: leave it out"
@@ -374,7 +376,7 @@ class Problem:
                 or "the objective success needs the success rates of the motions: "
                 "give a rates file, with --rates FILE or in Python load(..., rates=FILE)"
             )
-        by_prices = [str(each) for each in objectives if each.row.needs is Known.PRICES]
+        by_prices = [str(objective) for objective in objectives if objective.row.needs is Known.PRICES]
         if by_prices and self.unit_prices is None:
             raise UserError(
                 f"the objective {by_prices[0]} needs the prices of the units: "
@@ -384,7 +386,7 @@ class Problem:
             raise UserError(_unpriced_text(self.unpriced))
 
     def rate(self, unit: int) -> Fraction:
-        """Give the success rate of a unit: its own, or that of its motion.
+        """Return the success rate of a unit: its own, or that of its motion.
 
         Parameters:
             unit: The id of the unit.
@@ -400,13 +402,13 @@ class Problem:
 
     @cached_property
     def prices(self) -> tuple[Fraction | None, ...]:
-        """The price of each unit, ``None`` where it has none."""
+        """The price of each unit; ``None`` where it has none."""
         return (
             (None,) * len(self.network) if self.unit_prices is None else self.unit_prices.each(self.network)
         )
 
     def price(self, unit: int) -> Fraction:
-        """Give the price of a unit.
+        """Return the price of a unit.
 
         Parameters:
             unit: The id of the unit.
@@ -420,14 +422,14 @@ class Problem:
         return price
 
     def measure(self, name: str, unit: int) -> int | Fraction:
-        """Give what a unit costs by a measure of the user's own.
+        """Return the cost of a unit by a user measure.
 
         Parameters:
             name: The name of the measure.
             unit: The id of the unit.
 
         Raises:
-            ValueError: if there is no such measure.
+            ValueError: if the measure is unknown.
             UserError: if its rules are wrong.
         """
         return self._costs_by(name)[unit]
@@ -437,14 +439,14 @@ class Problem:
         return {}  # by measure
 
     def _costs_by(self, name: str) -> Sequence[int | Fraction]:
-        """Give what each unit costs by a measure, worked out when it is first asked for."""
+        """Return the cost of each unit by a measure, computed at the first access."""
         if name not in self.measures:
             raise ValueError(f"no measure {name} is known")
         self.apply_measures()
         return self._known_costs[name]
 
     def apply_measures(self, deadline: Deadline | None = None) -> None:
-        """Work out what units cost by the measures, unless it is known.
+        """Compute the costs of all units by the measures, unless they are known.
 
         Parameters:
             deadline: The limits.
@@ -458,15 +460,15 @@ class Problem:
 
     @cached_property
     def unpriced(self) -> Sequence[Unpriced]:
-        """The units that have no price, by motion: of a store, those of all of it."""
+        """The units that have no price, by motion: of a store, of its whole network."""
         network = self.network
         lacking = (unit for unit, price in enumerate(self.prices) if price is None)
-        found = count_unpriced((network.motions[unit], network.sources[unit]) for unit in lacking)
-        part = self.origin is not None and network.object_numbers
-        return (self.origin.unpriced() if self.origin is not None and part else ()) or found
+        in_network = count_unpriced((network.motions[unit], network.sources[unit]) for unit in lacking)
+        is_part = self.origin is not None and network.object_numbers
+        return (self.origin.unpriced() if self.origin is not None and is_part else ()) or in_network
 
     def different_rates(self, units: Iterable[int]) -> set[Fraction]:
-        """Give the success rates of some units, each once.
+        """Return the set of success rates of some units.
 
         Parameters:
             units: The ids of the units.
@@ -480,7 +482,7 @@ class Problem:
         return {self.rate(unit) for unit in (*first.values(), *(unit for unit in units if unit in own))}
 
     def tree(self, units: Iterable[int]) -> TaskTree:
-        """Make a tree from units.
+        """Return the tree of units.
 
         Parameters:
             units: The ids of the units, in the order of the tree.
@@ -488,26 +490,26 @@ class Problem:
         return TaskTree(tuple(self.network.unit(unit) for unit in units))
 
     def costs(self, units: Iterable[int]) -> Costs:
-        """Compute what a tree or a plan costs.
+        """Return the costs of a tree or a plan.
 
-        Each unit of a tree counts once. Where items are used up, each execution counts, and so does each copy
-        that cannot be done without of kitchen items that may run out.
+        Each unit of a tree counts once. Where items are used up, each execution counts, and each copy of a
+        consumable kitchen item that the plan requires.
 
         Parameters:
             units: The ids of the units; of a plan in the order of execution, with repeats.
         """
-        chosen = sorted(set(units)) if self.items is None else list(units)
-        taken = len({o for unit in chosen for o in self.needs[unit] if o in self.endless})
+        executed = sorted(set(units)) if self.items is None else list(units)
+        items = len({o for unit in executed for o in self.needs[unit] if o in self.endless})
         if self.items is not None:
-            taken += sum(self.copies_taken(chosen).values())
-        known = {Known.MEASURES} | ({Known.RATES} if self.rates is not None else set())
-        if self.unit_prices is not None and all(self.prices[unit] is not None for unit in chosen):
-            known.add(Known.PRICES)
-        more = map(Objective.of_measure, self.measures)
-        return tree_costs(list(map(self.measured, chosen)), taken, known, more)
+            items += sum(self.copies_taken(executed).values())
+        available = {Known.MEASURES} | ({Known.RATES} if self.rates is not None else set())
+        if self.unit_prices is not None and all(self.prices[unit] is not None for unit in executed):
+            available.add(Known.PRICES)
+        user_objectives = map(Objective.of_measure, self.measures)
+        return tree_costs(list(map(self.measured, executed)), items, available, user_objectives)
 
     def measured(self, unit: int) -> Measured:
-        """Give a unit as objectives look at it.
+        """Return a unit with the properties by which objectives measure it.
 
         Parameters:
             unit: The id of the unit.
@@ -515,7 +517,7 @@ class Problem:
         return _MeasuredUnit(self, unit)
 
     def figure(self, objective: Objective, unit: int) -> int | Fraction:
-        """Give what a unit alone costs by an objective that adds up or multiplies costs of units.
+        """Return the cost of one unit by an objective, or its factor where the objective multiplies.
 
         Parameters:
             objective: The objective.
@@ -527,7 +529,7 @@ class Problem:
         return objective.row.unit(_MeasuredUnit(self, unit))
 
     def figures(self, objective: Objective, units: Iterable[int]) -> Iterable[int | Fraction]:
-        """Give what each of some units costs, as :meth:`figure` does.
+        """Return the cost of each of some units, as :meth:`figure` does.
 
         Parameters:
             objective: The objective.
@@ -542,49 +544,49 @@ class Problem:
 
 
 class _MeasuredUnit(NamedTuple):
-    """A unit of a problem, as objectives look at it."""
+    """A unit of a problem, with the properties by which objectives measure it."""
 
     problem: Problem
     unit: int
 
     @property
     def inputs(self) -> Iterable[ObjectNode]:
-        """Its input object nodes."""
+        """The input object nodes."""
         network = self.problem.network
         return map(network.objects.__getitem__, network.inputs[self.unit])
 
     @property
     def rate(self) -> Fraction:
-        """Its success rate."""
+        """The success rate."""
         return self.problem.rate(self.unit)
 
     @property
     def price(self) -> Fraction:
-        """Its price."""
+        """The price."""
         return self.problem.price(self.unit)
 
     def measure(self, name: str) -> int | Fraction:
-        """What it costs by a measure of the user's."""
+        """Return the cost by a user measure."""
         return self.problem.measure(name, self.unit)
 
 
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:
-    """Count units, of each the motion and the places of its copies, by motion."""
-    found: dict[str, Unpriced] = {}
+    """Return the number of units of each motion; ``units`` are motions and the sources of their copies."""
+    by_motion: dict[str, Unpriced] = {}
     for motion, sources in units:
-        before = found.get(motion) or Unpriced(motion, 0, sources[0] if sources else Source("-", 0))
-        found[motion] = before._replace(units=before.units + 1)
-    return list(found.values())
+        counted = by_motion.get(motion) or Unpriced(motion, 0, sources[0] if sources else Source("-", 0))
+        by_motion[motion] = counted._replace(units=counted.units + 1)
+    return list(by_motion.values())
 
 
 def _unpriced_text(lacking: Sequence[Unpriced]) -> str:
-    """Say which units have no price, and what to do."""
+    """Return the message that units have no price, with advice."""
     lines = []
-    for motion, units, source in lacking[:10]:
-        more = "" if units == 1 else f", nor have {units - 1} more with this motion"
-        lines.append(f"{source}:1: error: the unit {motion!r} has no price{more}")
-    if len(lacking) > 10:
-        lines.append(f"... and units of {len(lacking) - 10} more motions")
+    for motion, units, source in lacking[:_MAX_LINES]:
+        others = "" if units == 1 else f", nor have {units - 1} more with this motion"
+        lines.append(f"{source}:1: error: the unit {motion!r} has no price{others}")
+    if len(lacking) > _MAX_LINES:
+        lines.append(f"... and units of {len(lacking) - _MAX_LINES} more motions")
     lines.append(
         "add a line with the motion, a tab and its price to the file of prices (unit_prices.txt), or one for "
         "the single unit (docs/formats.md)"
@@ -593,15 +595,15 @@ def _unpriced_text(lacking: Sequence[Unpriced]) -> str:
 
 
 def first_places(network: Network) -> Iterable[tuple[str, Source]]:
-    """Give the motion of each unit, and where it was first read."""
+    """Return the motion of each unit, and the source of its first copy."""
     for motion, copies in zip(network.motions, network.sources, strict=True):
         yield motion, copies[0] if copies else Source("-", 0)
 
 
 def unrated_text(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> str:
-    """Name every motion without a success rate and where it was first read; empty where all have one.
+    """Return the message that lists every motion without a success rate, with its source; empty without any.
 
-    ``motions`` may name a motion again; what counts is its first place.
+    ``motions`` may have a motion several times; its first source is shown.
     """
     missing: dict[str, Source] = {}
     for motion, source in motions:
@@ -611,21 +613,22 @@ def unrated_text(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Frac
         return ""
     lines = [
         f"{source}:1: error: the motion {motion!r} has no success rate"
-        for motion, source in list(missing.items())[:10]
+        for motion, source in list(missing.items())[:_MAX_LINES]
     ]
-    if len(missing) > 10:
-        lines.append(f"... and {len(missing) - 10} more motions")
+    if len(missing) > _MAX_LINES:
+        lines.append(f"... and {len(missing) - _MAX_LINES} more motions")
     lines.append("add a line with the motion, a tab and its rate to the rates file (motion.txt)")
     return "\n".join(lines)
 
 
 def unrated_remarks(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> list[str]:
-    """Say that some motions have no success rate, so that no success is known."""
+    """Return the warning, if any, that motions have no success rate, so that no success is known."""
     lacking = [
         repr(motion) for motion in dict.fromkeys(motion for motion, _ in motions) if motion not in rates
     ]
     if not lacking:
         return []
-    more = f" and {len(lacking) - _NAMED} more" if len(lacking) > _NAMED else ""
-    named = f"{', '.join(lacking[:_NAMED])}{more}"
+    named = ", ".join(lacking[:_MAX_MOTIONS_NAMED])
+    if len(lacking) > _MAX_MOTIONS_NAMED:
+        named += f" and {len(lacking) - _MAX_MOTIONS_NAMED} more"
     return [f"warning: no success is known, since the rates file has no rate for {named}"]

@@ -1,4 +1,4 @@
-"""How far a question is, for whoever wants to hear of it."""
+"""Progress of a question, which callers can receive."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -9,15 +9,16 @@ from foon_asp.problem.objective import Objective
 
 
 class Progress(NamedTuple):
-    """How far a question is: the ``costs`` of the best tree so far, and the proved ``bounds`` by objective.
+    """The progress of a question: the ``costs`` of the incumbent, and the proved ``bounds`` by objective.
 
-    Where several answers are asked for, ``done`` of ``total`` are found; while networks are read, these are
-    bytes, and while one is built, units. ``total`` is 0 where there is nothing to count.
+    Of questions with several answers, ``done`` of ``total`` answers are finished; while networks are read,
+    they are bytes, and while one is built, units. ``total`` is 0 where nothing is counted. ``costs`` are
+    ``None`` before the first tree.
 
     Example:
-        >>> heard = []
-        >>> answer = foon_asp.solve(foon_asp.load().problem("ice"), on_progress=heard.append)
-        >>> heard[-1].costs.units
+        >>> reports = []
+        >>> answer = foon_asp.solve(foon_asp.load().problem("ice"), on_progress=reports.append)
+        >>> reports[-1].costs.units
         2
     """
 

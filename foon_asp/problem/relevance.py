@@ -1,4 +1,4 @@
-"""What can be made from the kitchen, and what of it can matter for the goals; both in linear time."""
+"""Forward reachability from the kitchen, and backward relevance to the goals; both in linear time."""
 
 from collections import deque
 from collections.abc import Container, Iterable, Mapping, Sequence
@@ -10,10 +10,10 @@ from foon_asp.problem.problem import Problem
 class Reached(NamedTuple):
     """The forward closure of the kitchen.
 
-    ``units`` are all units that some tree can contain, in an order in which they execute.
-    ``makers[o]`` is the first of them to make object ``o`` (kitchen items have none), so following the
-    makers back never runs in a circle. ``available`` has a 1 for every object at hand or made. A restriction
-    leaves its units out, and each set that it requires has a maker like an object (``Problem.targets``).
+    ``units`` are all reachable units, in an executable order. ``makers[o]`` is the first achiever of object
+    ``o`` in this order (kitchen items have none), so that the achievers have no cycle. ``available`` has a 1
+    for every reachable object, by id. Units that a restriction removes are left out, and each set that it
+    requires has an achiever like an object (``Problem.targets``).
     """
 
     units: tuple[int, ...]
@@ -22,20 +22,20 @@ class Reached(NamedTuple):
 
 
 def reach(problem: Problem) -> Reached:
-    """Close the kitchen under the units: the counting algorithm, linear in the size of the network."""
+    """Return the objects and units reachable from the kitchen (Dowling & Gallier 1984), in linear time."""
     network, needs, gives = problem.network, problem.needs, problem.gives
     restriction = problem.restriction
     removed = restriction.removed if restriction else None
     available = bytearray(len(network.objects))
     missing = [len(needed) for needed in needs]
-    waiting: list[list[int]] = [[] for _ in network.objects]
+    consumers: list[list[int]] = [[] for _ in network.objects]
     for unit, needed in enumerate(needs):
         for o in needed:
-            waiting[o].append(unit)
+            consumers[o].append(unit)
     order: list[int] = []
     makers: dict[int, int] = {}
-    found = deque(sorted(problem.kitchen))
-    for o in found:
+    queue = deque(sorted(problem.kitchen))
+    for o in queue:
         available[o] = 1
 
     def execute(unit: int) -> None:
@@ -46,28 +46,28 @@ def reach(problem: Problem) -> Reached:
             if not available[o]:
                 available[o] = 1
                 makers[o] = unit
-                found.append(o)
+                queue.append(o)
 
     for unit, count in enumerate(missing):
-        if not count:  # possible where the container rule takes every input as given
+        if not count:  # under a container rule that skips every input
             execute(unit)
-    while found:
-        for unit in waiting[found.popleft()]:
+    while queue:
+        for unit in consumers[queue.popleft()]:
             missing[unit] -= 1
             if not missing[unit]:
                 execute(unit)
     if restriction and restriction.required:
-        places = {unit: place for place, unit in enumerate(order)}
+        positions = {unit: position for position, unit in enumerate(order)}
         for o, units in enumerate(restriction.required, start=len(network.objects)):
-            if able := [place for unit in units if (place := places.get(unit)) is not None]:
-                makers[o] = order[min(able)]
+            if reached := [positions[unit] for unit in units if unit in positions]:
+                makers[o] = order[min(reached)]
     return Reached(tuple(order), makers, available)
 
 
 def relevant(problem: Problem, reached: Reached) -> tuple[int, ...]:
-    """Give the reached units that some tree without spare units can contain, in order of id.
+    """Return the reached units that some irredundant tree can contain, in order of id.
 
-    Goes backwards from the goals through all reached makers and stops at the kitchen.
+    They are found backward from the goals through all reached achievers, down to the kitchen.
     """
     units, _ = backwards(
         problem.targets, problem.makers, problem.needs, problem.kitchen, frozenset(reached.units)
@@ -82,48 +82,48 @@ def backwards(
     start: Container[int],
     allowed: Container[int] | None = None,
 ) -> tuple[set[int], set[int]]:
-    """Go backwards from the goals through all (allowed) makers, and stop at the start.
+    """Search backward from the goals through all (allowed) achievers, down to the start.
 
-    Gives the makers that something wanted can come from, and the objects that are wanted.
+    Returns the achievers, and the objects that are relevant to the goals and not in the start.
     """
-    wanted = {o for o in goals if o not in start}
-    stack = list(wanted)
-    chosen: set[int] = set()
+    objects = {o for o in goals if o not in start}
+    stack = list(objects)
+    achievers: set[int] = set()
     while stack:
-        for maker in makers[stack.pop()]:
-            if maker not in chosen and (allowed is None or maker in allowed):
-                chosen.add(maker)
-                for o in needs[maker]:
-                    if o not in wanted and o not in start:
-                        wanted.add(o)
+        for unit in makers[stack.pop()]:
+            if unit not in achievers and (allowed is None or unit in allowed):
+                achievers.add(unit)
+                for o in needs[unit]:
+                    if o not in objects and o not in start:
+                        objects.add(o)
                         stack.append(o)
-    return chosen, wanted
+    return achievers, objects
 
 
 def relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
-    """Give the reached units that some plan without spare units can contain, where items are used up.
+    """Return the reached units that some irredundant plan can contain, where items are used up.
 
-    They make what a goal or another of them asks for and what may run out.
+    They are found backward from the goals through achievers, down to items that are not consumable.
     """
-    makers: list[list[int]] = [[] for _ in problem.network.objects]
+    achievers: list[list[int]] = [[] for _ in problem.network.objects]
     for unit in reached.units:
         for o in problem.flows[unit].adds:
-            makers[o].append(unit)
-    units, _ = backwards(problem.goals, makers, [flow.asks for flow in problem.flows], problem.endless)
+            achievers[o].append(unit)
+    units, _ = backwards(problem.goals, achievers, [flow.asks for flow in problem.flows], problem.endless)
     return units
 
 
 def kitchen_needed(problem: Problem) -> list[int]:
-    """Give the kitchen items that a tree for the goals can take, in order of id; goals at hand among them."""
+    """Return the kitchen items that a tree for the goals can need, also goals among them, in order of id."""
     units, _ = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen)
     needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
     return sorted(needed & problem.kitchen)
 
 
 def first_tree(problem: Problem, reached: Reached) -> tuple[int, ...] | None:
-    """Give some tree, in an executable order, by following the makers; ``None`` when there is none.
+    """Return a feasible tree, in an executable order, by the first achievers; ``None`` where none exists.
 
-    It promises nothing about costs: it is what a search stopped at once still has in hand.
+    Its costs may be far from optimal: it is the first incumbent of a search.
     """
     chosen = follow(problem.targets, reached.makers, problem.needs, problem.kitchen)
     return None if chosen is None else tuple(unit for unit in reached.units if unit in chosen)
@@ -135,17 +135,20 @@ def follow(
     needs: Sequence[Iterable[int]],
     start: Container[int],
 ) -> set[int] | None:
-    """Give all that makes the objects, by one maker each, down to the start; ``None`` where one has none."""
-    chosen: set[int] = set()
+    """Return the units that make objects, by one achiever for each, down to the start.
+
+    ``None`` where an object has no achiever.
+    """
+    units: set[int] = set()
     stack = list(objects)
     while stack:
         o = stack.pop()
         if o in start:
             continue
-        found = maker.get(o)
-        if found is None:
+        unit = maker.get(o)
+        if unit is None:
             return None
-        if found not in chosen:
-            chosen.add(found)
-            stack.extend(needs[found])
-    return chosen
+        if unit not in units:
+            units.add(unit)
+            stack.extend(needs[unit])
+    return units

@@ -1,4 +1,4 @@
-"""What rules leave of a problem, in the words of its network."""
+"""Restriction: the effect of rules on the units of a network, as removed units and required sets."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,11 +8,11 @@ from typing import NamedTuple, overload
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Restriction:
-    """Units that no tree may have, and sets of units of each of which a tree has to have one.
+    """Units that no tree may contain, and disjunctive action landmarks that rules add.
 
-    ``removed`` says of a unit, by id, whether no tree may have it; it is asked once of a unit, and only of
-    those that are looked at. Of each set of ``required`` some unit has to be in the tree, and to execute. It
-    need not lead to a goal: a required set is one more goal, which each of its units makes.
+    ``removed`` returns whether no tree may contain a unit, by id; it is called at most once for each unit,
+    when the unit is accessed. Of each set in ``required``, a tree has to contain and execute a unit, which
+    need not lead to a goal: a required set is an additional goal, of which its units are the achievers.
     """
 
     removed: Callable[[int], bool]
@@ -22,39 +22,39 @@ class Restriction:
         object.__setattr__(self, "removed", cache(self.removed))
 
     def makers(self, makers: Sequence[tuple[int, ...]]) -> Sequence[tuple[int, ...]]:
-        """Give the units left that make each object node, and then those left of each required set."""
+        """Return the achievers of each object node, then the required sets, all without removed units."""
         return Left((*makers, *(tuple(sorted(units)) for units in self.required)), self.removed)
 
 
 class Contradiction(NamedTuple):
-    """That no tree keeps to the rules, found before any search."""
+    """The proof, before any search, that no tree satisfies the rules."""
 
 
 class Left(Sequence[tuple[int, ...]]):
-    """What is left of sets of units, found when it is first asked for."""
+    """Sets of units without removed ones; each is filtered at its first access."""
 
     def __init__(self, sets: Sequence[tuple[int, ...]], removed: Callable[[int], bool]) -> None:
         self._sets, self._removed = sets, removed
-        self._known: dict[int, tuple[int, ...]] = {}
+        self._filtered: dict[int, tuple[int, ...]] = {}
 
     def instead(self, others: Mapping[int, tuple[int, ...]]) -> "Left":
-        """Give the same with other sets in some places."""
-        left = Left(self._sets, self._removed)
-        left._known.update(others)
-        return left
+        """Return a copy in which the sets at some positions are replaced by ``others``, unfiltered."""
+        copy = Left(self._sets, self._removed)
+        copy._filtered.update(others)
+        return copy
 
     def __len__(self) -> int:
         return len(self._sets)
 
     @overload
-    def __getitem__(self, place: int) -> tuple[int, ...]: ...
+    def __getitem__(self, index: int) -> tuple[int, ...]: ...
     @overload
-    def __getitem__(self, place: slice) -> Sequence[tuple[int, ...]]: ...
-    def __getitem__(self, place: int | slice) -> tuple[int, ...] | Sequence[tuple[int, ...]]:
-        if isinstance(place, slice):
-            return Left(self._sets[place], self._removed)
-        left = self._known.get(place)
-        if left is None:
+    def __getitem__(self, index: slice) -> Sequence[tuple[int, ...]]: ...
+    def __getitem__(self, index: int | slice) -> tuple[int, ...] | Sequence[tuple[int, ...]]:
+        if isinstance(index, slice):
+            return Left(self._sets[index], self._removed)
+        units = self._filtered.get(index)
+        if units is None:
             removed = self._removed
-            left = self._known[place] = tuple([u for u in self._sets[place] if not removed(u)])
-        return left
+            units = self._filtered[index] = tuple([u for u in self._sets[index] if not removed(u)])
+        return units

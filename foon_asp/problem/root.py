@@ -1,4 +1,4 @@
-"""Roots of rational numbers, exact: where products of rates in which one rate varies are equal."""
+"""Exact roots of rational numbers, at which two products are equal whose common rate varies."""
 
 import functools
 import math
@@ -9,9 +9,9 @@ from fractions import Fraction
 @functools.total_ordering
 @dataclass(frozen=True)
 class Root:
-    """The positive root of a positive rational number: that of ``of``, of a degree as small as it can be.
+    """The positive root of a positive rational number ``of``, with the least possible ``degree``.
 
-    :meth:`taken` makes one. Roots are compared by powers, which are rational numbers.
+    :meth:`taken` makes one. Roots are compared exactly, by their powers, which are rational numbers.
     """
 
     degree: int
@@ -19,10 +19,11 @@ class Root:
 
     @classmethod
     def taken(cls, degree: int, of: Fraction) -> "Root":
-        """Take a root; raises ``ValueError`` for numbers that are not positive.
+        """Return the root of a degree; raises ``ValueError`` for numbers that are not positive.
 
-        If a root is the root of two degrees it is that of their greatest common divisor, too. So dividing the
-        degree by one number after another, as long as what is left is a rational number, ends with the least.
+        If a number is a root of rational numbers for two degrees, it is one for their greatest common divisor
+        as well. So the degree is divided by each divisor as long as the radicand stays rational, which ends
+        with the least degree.
         """
         if degree < 1 or of <= 0:
             raise ValueError("expected a positive degree, and a positive number under the root")
@@ -36,32 +37,32 @@ class Root:
 
     @property
     def rational(self) -> Fraction | None:
-        """The number itself where it is rational, else ``None``."""
+        """The value of the root where it is rational, else ``None``."""
         return self.of if self.degree == 1 else None
 
     def over(self, number: Fraction) -> "Root":
-        """Divide by a positive rational number."""
+        """Return the quotient of the root and a positive rational number."""
         return Root(self.degree, self.of / number**self.degree)
 
     def __lt__(self, other: "Root") -> bool:
         return self.of**other.degree < other.of**self.degree
 
     def below(self, digits: int) -> Fraction:
-        """Give the greatest decimal with ``digits`` significant digits that is not greater."""
+        """Return the greatest decimal with ``digits`` significant digits that is at most the root."""
         places = self._places(digits)
         return self._scaled(places) / Fraction(10) ** places
 
     def above(self, digits: int) -> Fraction:
-        """Give the least decimal with ``digits`` significant digits that is not less."""
+        """Return the least decimal with ``digits`` significant digits that is at least the root."""
         places = self._places(digits)
         scaled = self._scaled(places)
         exact = scaled**self.degree == self.of * Fraction(10) ** (places * self.degree)
         return (scaled + (not exact)) / Fraction(10) ** places
 
     def _places(self, digits: int) -> int:
-        """Give the number of places after the point that leaves ``digits`` significant digits."""
+        """Return the number of decimal places with which the root has ``digits`` significant digits."""
         bits = self.of.numerator.bit_length() - self.of.denominator.bit_length()
-        places = digits - bits * 3 // (10 * self.degree)  # about: three tenths of a digit a bit
+        places = digits - bits * 3 // (10 * self.degree)  # an estimate: a bit is about 0.3 digits
         while self._scaled(places) >= 10**digits:
             places -= 1
         while self._scaled(places) < 10 ** (digits - 1):
@@ -69,18 +70,18 @@ class Root:
         return places
 
     def _scaled(self, places: int) -> int:
-        """Give the whole part of the number times ten to the ``places``."""
+        """Return the integer part of the root times ten to the ``places``."""
         return whole_root(self.degree, math.floor(self.of * Fraction(10) ** (places * self.degree)))
 
 
 def whole_root(degree: int, number: int) -> int:
-    """Give the whole part of a root of a whole number that is not negative.
+    """Return the integer part of a root of a nonnegative integer.
 
-    Newton's method from above on whole numbers falls until it is there.
+    Newton's method on integers, started above the root, decreases until it reaches the result.
     """
     if number < 2:
         return number
-    root = 1 << -(-number.bit_length() // degree)  # no less than the root
+    root = 1 << -(-number.bit_length() // degree)  # at least the root
     while True:
         lower = ((degree - 1) * root + number // root ** (degree - 1)) // degree
         if lower >= root:

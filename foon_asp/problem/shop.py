@@ -1,4 +1,4 @@
-"""What of a problem's object nodes one can buy, where no prices say otherwise."""
+"""Shop: a model of which object nodes can be bought, for shopping lists without a price list."""
 
 from collections.abc import Collection, Iterator, Sequence
 from enum import StrEnum
@@ -7,12 +7,12 @@ from foon_asp.network import ObjectNode, starting_nodes
 from foon_asp.problem.dead_ends import Blocked, DeadEnds, Root, h_add
 from foon_asp.problem.problem import Problem
 
-_FRESH = frozenset({"empty", "clean"})
-_ITEM = 2**20  # the cost of an item on a short list, more than all second choices on it
+_FRESH_STATES = frozenset({"empty", "clean"})
+_ITEM_COST = 2**20  # of an item on a short list, in second choices: more than a list can have of them
 
 
 class Offer(StrEnum):
-    """What shopping lists are made of. The first offer from which any list can be made is taken.
+    """The set of nodes that shopping lists may contain; the first offer that suffices for the goals is used.
 
     ``for sale``: what :class:`Shop` sells, without the dish. ``cycle``: also nodes that can only be made from
     each other. ``processed``: everything but the dish. ``dish``: everything but the goals. ``goal``:
@@ -28,45 +28,44 @@ class Offer(StrEnum):
 
 
 class Shop:
-    """Tells what of a problem's object nodes can be bought.
+    """A model of which object nodes of a problem can be bought.
 
-    For sale is a node that no unit makes (one that needs it only hands it on, and so does one that the
-    container rule lets skip it), what the starting kitchen has, and a node without any state that contains at
-    most one ingredient and is not put on something, where what it is or holds is nobody's product. A
-    *product* is a name that some unit makes out of things that neither bear nor hold it: whipped cream,
-    dough, lemon juice. States are how a FOON says that something was done, so what has none is taken to be
-    unprocessed. What is empty or clean, and nothing else, is a vessel or a tool as shops have it, and for
-    sale although washing up makes it too.
+    For sale is a node that no unit makes (a unit that needs it, or may skip it by the container rule, only
+    passes it on), a node of the starting kitchen, and a node without any state that contains at most one
+    ingredient and is not on anything, if its label or ingredient is not a product. A *product* is a name that
+    some unit makes out of nodes without this name: whipped cream, dough, lemon juice. States are how a FOON
+    says that something was done, so that a node without states is assumed to be unprocessed. A node that is
+    only empty or clean is a vessel or a tool as shops have it, and for sale although washing up makes it too.
 
-    A goal is not for sale, nor is any node that bears or holds the name of the *dish*: the label of a goal
-    (or, where that is a utensil, the one ingredient in it), if that is a product.
+    A goal is not for sale, nor is any node that has or contains the name of the *dish*: the label of a goal
+    (or, where that is a utensil, its one ingredient), if it is a product.
     """
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
         self._starting = starting_nodes(problem.network, problem.goals)
         self._products = _products(problem)
-        self._ingredients = {item for each in problem.network.objects for item in each.ingredients}
+        self._ingredients = {item for node in problem.network.objects for item in node.ingredients}
         names = {_substance(problem.network.objects[goal], problem.utensils) for goal in problem.goals}
         self._dishes = {name for name in names if name in self._products}
 
     def sells(self, o: int) -> bool:
-        """Whether a node, by id, can be bought, dish or not."""
+        """Return whether a node, by id, can be bought, whether or not it is the dish."""
         node = self._problem.network.objects[o]
         if self._is_plain(o):
             return True
         return (
             not node.states
             and all(relation.word == "in" for relation in node.relations)
-            and all(each.word == "contains" for each in node.contents)
+            and all(contents.word == "contains" for contents in node.contents)
             and len(node.ingredients) <= 1
             and (node.ingredients or (node.label,))[0] not in self._products
         )
 
     def offers(self, roots: Sequence[Root]) -> Iterator[tuple[Offer, list[int]]]:
-        """Yield what shopping lists can be made of, by id, each offer with more than the one before.
+        """Yield the offers with their nodes, by id, each larger than the one before.
 
-        ``roots`` are those of the problem's dead ends.
+        ``roots`` are the causes of the problem's dead ends.
         """
         problem = self._problem
         others = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
@@ -80,15 +79,15 @@ class Shop:
         yield Offer.GOAL, others
 
     def short_list(self, ends: DeadEnds) -> list[int]:
-        """Return a few object nodes that lead to all goals once they are in the kitchen, by id.
+        """Return a few object nodes that make all goals reachable once they are in the kitchen, by id.
 
-        The list is what the relaxed plan of ``h_add`` needs of the first offer that is enough, without what
-        other units of the plan make. Of two nodes, one that is no second choice is preferred. A shorter list
-        may exist. It is empty where all goals can be made.
+        The list has the nodes of the first sufficient offer in the relaxed plan of ``h_add``, without those
+        that units of the plan make. Second choices are avoided. A shorter list may exist. The list is empty
+        where all goals are reachable.
         """
         for _, offer in self.offers(ends.roots):
-            sources = {o: _ITEM + self.is_second_choice(o) for o in offer if o in ends.makers}
-            costs, easiest = h_add(ends.makers, sources)
+            sources = {o: _ITEM_COST + self.is_second_choice(o) for o in offer if o in ends.makers}
+            costs, cheapest = h_add(ends.makers, sources)
             if costs.keys() >= set(ends.goals):
                 break
         plan: dict[int, Sequence[Blocked]] = {}
@@ -97,54 +96,55 @@ class Shop:
             o = open_preconditions.pop()
             if o not in plan:
                 plan[o] = ends.makers[o]
-                open_preconditions += next((b.lacks for b in plan[o] if b.unit == easiest.get(o)), ())
-        units = {easiest[o] for o in plan if o in easiest}
+                open_preconditions += next((b.lacks for b in plan[o] if b.unit == cheapest.get(o)), ())
+        units = {cheapest[o] for o in plan if o in cheapest}
         plan = {o: [blocked for blocked in makers if blocked.unit in units] for o, makers in plan.items()}
-        listed = plan.keys() - easiest
+        listed = plan.keys() - cheapest
         for o in sorted(o for o in listed if plan[o]):  # a unit of the plan makes it
             if h_add(plan, dict.fromkeys(listed - {o}, 1))[0].keys() >= set(ends.goals):
                 listed.remove(o)
         return sorted(listed)
 
     def is_raw(self, o: int) -> bool:
-        """Whether no unit makes a node out of others."""
+        """Return whether no unit makes a node out of others."""
         needs = self._problem.needs
         return all(o in needs[unit] for unit in self._problem.makers[o])
 
     def is_dish(self, o: int) -> bool:
-        """Whether a node is a goal, or bears or holds the name of the dish."""
+        """Return whether a node is a goal, or has or contains the name of the dish."""
         node = self._problem.network.objects[o]
         names = {node.label, *node.ingredients}
         return o in self._problem.goals or not names.isdisjoint(self._dishes)
 
     def is_second_choice(self, o: int) -> bool:
-        """Whether another node is better: units make this one, no bare vessel; or it is a mixture."""
+        """Return whether lists should avoid a node: one that units make, except vessels, or a mixture."""
         return not self._is_plain(o) or len(self._problem.network.objects[o].ingredients) > 1
 
     def _is_plain(self, o: int) -> bool:
-        """Whether a node is raw, a bare vessel or tool, or what units give back and cannot run without."""
+        """Return whether a node is raw, an empty vessel or tool, or one that units need and give back."""
         node = self._problem.network.objects[o]
         given_back = o in self._starting and not node.contents and node.label not in self._ingredients
         return self.is_raw(o) or _is_fresh(node) or given_back
 
 
 def _is_fresh(node: ObjectNode) -> bool:
-    """Whether a node is an empty or clean vessel or tool."""
-    return bool(node.states) and node.states <= _FRESH and not node.contents and not node.relations
+    """Return whether a node is an empty or clean vessel or tool."""
+    return bool(node.states) and node.states <= _FRESH_STATES and not node.contents and not node.relations
 
 
 def _substance(node: ObjectNode, utensils: Collection[str]) -> str | None:
-    """Give the name of what a node is about: its label, or the one ingredient in a utensil."""
+    """Return the substance of a node: its label, or the one ingredient in a utensil; ``None`` without one."""
     if node.label not in utensils:
         return node.label
     return node.ingredients[0] if len(set(node.ingredients)) == 1 else None
 
 
 def _products(problem: Problem) -> set[str]:
+    """Return the labels that units make out of nodes which neither have nor contain them."""
     network = problem.network
     objects = network.objects
-    found: set[str] = set()
+    products: set[str] = set()
     for inputs, outputs in zip(network.inputs, network.outputs, strict=True):
         before = {name for o in inputs for name in (objects[o].label, *objects[o].ingredients)}
-        found |= {objects[o].label for o in outputs} - before
-    return found
+        products |= {objects[o].label for o in outputs} - before
+    return products

@@ -1,4 +1,4 @@
-"""What rules may ask of a unit, as far as a word says it."""
+"""Traits of units that rules require: a name as motion, input or output."""
 
 from collections.abc import Sequence
 from enum import Enum, auto
@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 
 class Having(Enum):
-    """As what a unit has a word: as its motion, or as label or ingredient of one of its inputs or outputs.
+    """The role of a name in a unit: its motion, or a label or ingredient of one of its inputs or outputs.
 
-    ``MADE`` stands for an input that is not in the kitchen.
+    ``MADE`` is an input that is not in the kitchen.
     """
 
     MOTION = auto()
@@ -18,16 +18,16 @@ class Having(Enum):
 
 
 class Trait(NamedTuple):
-    """That a unit has a word in some way."""
+    """The property of a unit to have a name in a role."""
 
     having: Having
     word: str
 
 
 class Wanted(NamedTuple):
-    """A unit that rules ask for: it has all traits of one of some rows.
+    """A unit that rules require, in disjunctive normal form: it has all traits of at least one row.
 
-    ``always`` says that they do so in every network.
+    ``always`` says that the rules require it in every network.
     """
 
     rows: Sequence[Sequence[Trait]]
