@@ -12,7 +12,7 @@ docs/api.md has a function for each question, with examples.
 
 __version__ = "0.1.0"
 
-# Where each public name besides the questions lives; a room is imported when a name of it is first asked for.
+# The modules of all public names except questions; each is imported at the first access to one of its names.
 _ROOMS = {
     "questions.all_goals": ("Optima", "solve_all_goals"),
     "questions.answer": ("Answer",),
@@ -38,18 +38,18 @@ _ROOMS = {
     "text.reader": ("FoonReader",),
     "text.writer": ("write_units",),
 }
-_names: dict[str, str] = {}  # filled when a name is first asked for
+_names: dict[str, str] = {}  # the modules of all public names, filled at the first access
 
 
 def modules_of_names() -> dict[str, str]:
     """Return the module of each public name."""
     if not _names:
-        from foon_asp.questions.index import INDEX, module_name  # noqa: PLC0415 (ctrl-C waits for none of it)
+        from foon_asp.questions.index import INDEX, module_name  # noqa: PLC0415 (importing it delays ctrl-C)
 
-        found = {name: room for room, names in _ROOMS.items() for name in names}
+        modules = {name: room for room, names in _ROOMS.items() for name in names}
         for verb, entry in INDEX.items():
-            found |= dict.fromkeys(entry.python, f"questions.{module_name(verb)}")
-        _names.update(found)  # at once: an interrupt leaves none or all
+            modules |= dict.fromkeys(entry.python, f"questions.{module_name(verb)}")
+        _names.update(modules)  # in one operation: an interrupt leaves it empty or complete
     return _names
 
 

@@ -1,4 +1,4 @@
-"""``python -m foon_asp``."""
+"""Entry point of ``python -m foon_asp``."""
 
 from foon_asp.cli.start import main
 

@@ -1,7 +1,7 @@
-"""A thread beside this one, without the locks of :mod:`threading`.
+"""Background threads without the locks of :mod:`threading`.
 
-An interrupt may land in the middle of taking one of those, and whoever wants it next waits for ever. Queues
-of the kind used here are told and asked in one step each, in which none lands.
+An interrupt while such a lock is taken leaves it locked, and the next thread that takes it waits forever.
+Operations of ``SimpleQueue`` are atomic, and cannot be interrupted.
 """
 
 import _thread
@@ -11,23 +11,23 @@ from queue import Empty, SimpleQueue
 
 
 class Aside:
-    """Calls a function in a thread that this process does not wait for at its end."""
+    """A daemon thread that calls a function: the process does not wait for it at exit."""
 
     def __init__(self, function: Callable[..., object], *arguments: object) -> None:
-        self._over = False
+        self._finished = False
         self._wake: SimpleQueue[None] = SimpleQueue()
         _thread.start_new_thread(self._call, (function, arguments))
 
     def ended(self, seconds: float) -> bool:
-        """Whether it has come to its end, for which this waits so long."""
-        if not self._over:
+        """Wait at most ``seconds`` for the end of the thread; return whether it has ended."""
+        if not self._finished:
             with contextlib.suppress(Empty):
                 self._wake.get(timeout=seconds)
-        return self._over
+        return self._finished
 
     def _call(self, function: Callable[..., object], arguments: tuple[object, ...]) -> None:
         try:
             function(*arguments)
         finally:
-            self._over = True
+            self._finished = True
             self._wake.put(None)

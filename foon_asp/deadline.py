@@ -1,4 +1,4 @@
-"""When to stop: at a time limit, at a memory limit, at ctrl-C, or where a token says so."""
+"""Deadlines: time and memory limits, ctrl-C and cancellation, and interrupts of code that ignores them."""
 
 import contextlib
 import math
@@ -20,26 +20,28 @@ from foon_asp.aside import Aside
 from foon_asp.errors import UserError
 
 _STATM = Path("/proc/self/statm")
-_PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
+_PAGE_BYTES = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 _ADVICE = {
     "reading": "raise the limit, or if the network is text, make a store of it once: foon-asp merge --store",
     "grounding": "rules that were added may be endless, as in p(f(X)) :- p(X), or have too many instances: "
     "check them, or raise the limit",
 }
-_LATE = 0.5  # seconds, and half of it after a cancel
-_MEMORY_LATE = 0.1  # seconds
-_GRACE = 0.25  # seconds
+# Seconds after a limit until work is overdue and interrupted; half of it after a cancel. More lets work end
+# with an answer, less ends sooner. Memory is short, and so is its tolerance.
+_TOLERANCE_SECONDS = 0.5
+_MEMORY_TOLERANCE_SECONDS = 0.1
+_GRACE_SECONDS = 0.25  # the least time for a last piece of work that begins at a limit
 _CANCELLED = "a cancel"
 _PROVED, _INTERRUPTED = "a proof", "ctrl-C"
-_STRIKES, _BETWEEN = 5, 3.0  # interrupts, and seconds between them
-_WAITS = 50  # looks until an interrupt is taken for lost
-_LOOKS = 0.02  # seconds between two looks at the memory
-_MOMENT = 0.001  # seconds, in which who is about to strike does so
+_MAX_INTERRUPTS, _INTERRUPT_SECONDS = 5, 3.0  # since destructors lose some, and seconds between them
+_MAX_WAITS = 50  # polls until a sent interrupt counts as lost: a second
+_POLL_SECONDS = 0.02  # between two looks at the memory: longer ones overshoot the limit, shorter cost time
+_INTERRUPT_DELAY_SECONDS = 0.001  # between two checks whether another thread has sent its interrupt
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 
 
 class StoppedError(Exception):
-    """A question was stopped, by its token or at a limit, before there was anything to give.
+    """A question was stopped, by its token or at a limit, before it had any answer.
 
     Example:
         >>> token = foon_asp.Cancel()
@@ -51,10 +53,9 @@ class StoppedError(Exception):
 
 
 class Cancel:
-    """A token that ends every question it was given to, within a second, from any thread.
+    """A token that cancels the questions called with it, within a second, from any thread.
 
-    A question that knows something by then gives that, as at a time limit; any other raises
-    :class:`StoppedError`.
+    A question with an incumbent returns it, as at a time limit; any other raises :class:`StoppedError`.
 
     Example:
         >>> token = foon_asp.Cancel()
@@ -66,25 +67,25 @@ class Cancel:
     """
 
     def __init__(self) -> None:
-        self._at: float | None = None
+        self._cancelled_at: float | None = None
 
     def cancel(self) -> None:
-        """End the questions; those asked with this token later end at once."""
-        if self._at is None:
-            self._at = time.monotonic()
+        """Cancel the questions; later questions with this token end at once."""
+        if self._cancelled_at is None:
+            self._cancelled_at = time.monotonic()
 
     @property
     def cancelled(self) -> bool:
-        """Whether it ends questions."""
-        return self._at is not None
+        """Whether the token was cancelled."""
+        return self._cancelled_at is not None
 
     def since(self, late: float) -> bool:
-        """Whether it has ended questions for so long that they should have ended by themselves.
+        """Return whether the token was cancelled at least ``late`` seconds ago.
 
         Parameters:
-            late: How long that is, in seconds.
+            late: The seconds in which questions should end by themselves.
         """
-        return self._at is not None and time.monotonic() >= self._at + late
+        return self._cancelled_at is not None and time.monotonic() >= self._cancelled_at + late
 
 
 _CANCEL: ContextVar[Cancel | None] = ContextVar("cancel", default=None)
@@ -92,29 +93,29 @@ _CANCEL: ContextVar[Cancel | None] = ContextVar("cancel", default=None)
 
 @contextlib.contextmanager
 def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterator["Deadline"]:
-    """Stop what is in a ``with`` block in time, or where a token says so, which deadlines made in it obey.
+    """Limit the time of a ``with`` block, and cancel it by a token, which deadlines made in it obey as well.
 
-    Who looks at deadlines has time to end with what is known; then the block is interrupted, and
-    :class:`StoppedError` is raised.
+    Code that checks its deadline may end with its incumbent; then the block is interrupted, and
+    :class:`StoppedError` is raised. ``doing`` describes the work, as in "while reading".
     """
     if token is not None and token.cancelled:
         raise StoppedError("cancelled")
-    before = _CANCEL.set(_CANCEL.get() if token is None else token)
+    reset_token = _CANCEL.set(_CANCEL.get() if token is None else token)
     try:
         deadline = Deadline(seconds)
-        deadline._late *= 3  # for what all ends that are looked at, and all watches, left running
+        deadline._tolerance *= 3  # the last resort, after the checks and the watches within the block
         try:
             with deadline.watched(doing, late=seconds is None):
                 yield deadline
         except KeyboardInterrupt as stop:
             if isinstance(stop, LimitError) or (deadline.passed and not deadline.interrupted):
-                raise StoppedError(_said(stop, deadline)) from None
+                raise StoppedError(_reason(stop, deadline)) from None
             raise
     finally:
-        _CANCEL.reset(before)
+        _CANCEL.reset(reset_token)
 
 
-def _said(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
+def _reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
     token = _CANCEL.get()
     if token is not None and token.cancelled:
         return "cancelled"
@@ -122,10 +123,10 @@ def _said(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
 
 
 class LimitError(KeyboardInterrupt):
-    """A limit was reached, or ctrl-C pressed, where there is nothing to give yet.
+    """A limit was reached, or ctrl-C pressed, before any answer.
 
-    What holds at ctrl-C holds at a limit: so it is one, and no handler of other errors takes it for a fault.
-    ``stopped`` says at what and while doing what, ``advice`` what to do.
+    It is a ``KeyboardInterrupt``, since code handles a limit like ctrl-C, and so that handlers of
+    ``Exception`` do not catch it. ``stopped`` is the limit and the work in words, ``advice`` what to do.
     """
 
     def __init__(self, deadline: "Deadline") -> None:
@@ -134,12 +135,14 @@ class LimitError(KeyboardInterrupt):
 
 
 class Deadline:
-    """When to stop, shared by all that is done for one question, and at what it stopped.
+    """The limits of one question, shared by all its work, and the limit that stopped it.
 
-    ``seconds`` count from the beginning, ``memory`` is in bytes; ``None`` is never. The memory is that of
-    this process together with those that work for it. It is over at the latest ``within`` another one, and
-    ctrl-C ends both. ``doing`` says what is being done, as it follows on
-    "while". Raises :class:`UserError` for a memory limit where the system does not tell how much is in use.
+    ``seconds`` count from ``began``, a time of the monotonic clock (``None`` is now), ``memory`` is in bytes;
+    ``None`` is no limit. The memory includes that of processes that work for this one. A deadline ``within``
+    another one has the smaller limits of both, and ctrl-C ends both. ``doing`` describes the current work, as
+    in "while reading".
+
+    Raises :class:`UserError` for a memory limit where the system does not report the memory in use.
     """
 
     def __init__(
@@ -165,78 +168,78 @@ class Deadline:
                 self.memory = within.memory
         self._time_words = "" if self.seconds is None else f"the time limit of {self.seconds:g} s"
         self._workers: set[int] = set()
-        self._looked = 0.0
-        self._by: str | None = None
+        self._memory_polled = 0.0
+        self._stopped_by: str | None = None
         self._token = _CANCEL.get()
-        self._late = _LATE
-        self._noticed: float | None = None  # when somebody saw that it was over
+        self._tolerance = _TOLERANCE_SECONDS
+        self._noticed: float | None = None  # when ``overdue`` first saw that the deadline has passed
 
     @property
     def doing(self) -> str:
-        """What is being done, or was when it stopped."""
+        """The current work, or the work at which the question was stopped."""
         return self._doing
 
     @doing.setter
-    def doing(self, what: str) -> None:
-        """Note what is being done, unless it has stopped before."""
-        if self._by is None:
-            self._doing = what
+    def doing(self, work: str) -> None:
+        """Set the current work, unless the question was stopped."""
+        if self._stopped_by is None:
+            self._doing = work
 
     @property
     def passed(self) -> bool:
-        """Whether to stop."""
-        if self._by is not None:
+        """Whether a limit is reached, or the question was interrupted or cancelled."""
+        if self._stopped_by is not None:
             return True
         if self._within is not None and self._within.interrupted:
-            self._by = self._within._by
+            self._stopped_by = self._within._stopped_by
             return True
         if self._token is not None and self._token.cancelled:
-            self._by = _CANCELLED
+            self._stopped_by = _CANCELLED
             return True
         if self._end is None and self.memory is None:
             return False
         now = time.monotonic()
         if self._end is not None and now >= self._end:
-            self._by = self._time_words
-        elif self.memory is not None and now >= self._looked + _LOOKS:
-            self._looked = now
+            self._stopped_by = self._time_words
+        elif self.memory is not None and now >= self._memory_polled + _POLL_SECONDS:
+            self._memory_polled = now
             if self.memory_in_use() > self.memory:
                 self.out_of_memory()
-        return self._by is not None
+        return self._stopped_by is not None
 
     @property
     def interrupted(self) -> bool:
         """Whether ctrl-C was pressed."""
-        return self._by == _INTERRUPTED
+        return self._stopped_by == _INTERRUPTED
 
     @property
     def left(self) -> float | None:
-        """The seconds that are left, ``None`` where time is not limited."""
+        """The remaining seconds; ``None`` without a time limit."""
         return None if self._end is None else max(0.0, self._end - time.monotonic())
 
     @property
     def limited(self) -> bool:
-        """Whether anything but ctrl-C can end it."""
+        """Whether there is a limit or a token."""
         return self.seconds is not None or self.memory is not None or self._token is not None
 
     @property
     def overdue(self) -> bool:
-        """Whether to stop even where nothing is known yet, which may still come half a second late."""
+        """Whether to stop even without an answer: half a second after a limit."""
         if not self.passed:
             return False
-        if self._by == _CANCELLED:
-            return self._token is None or self._token.since(self._late / 2)
+        if self._stopped_by == _CANCELLED:
+            return self._token is None or self._token.since(self._tolerance / 2)
         now = time.monotonic()
-        if self._end is not None and self._by == self._time_words:
-            return now >= self._end + self._late
+        if self._end is not None and self._stopped_by == self._time_words:
+            return now >= self._end + self._tolerance
         if self._noticed is None:
             self._noticed = now
-        return now >= self._noticed + (_MEMORY_LATE if self.full else self._late)
+        return now >= self._noticed + (_MEMORY_TOLERANCE_SECONDS if self.full else self._tolerance)
 
     @property
     def full(self) -> bool:
-        """Whether there was no more memory: what comes to an end may, but nothing else is begun."""
-        return self._by is not None and self._by not in {
+        """Whether the memory limit is reached: current work may finish, but no other work is begun."""
+        return self._stopped_by is not None and self._stopped_by not in {
             self._time_words,
             _CANCELLED,
             _PROVED,
@@ -244,144 +247,145 @@ class Deadline:
         }
 
     def interrupt(self) -> None:
-        """Note that ctrl-C was pressed, unless a limit came before."""
-        if self._by is None:
-            self._by = _INTERRUPTED
+        """Stop the question because of ctrl-C, unless it was stopped before."""
+        if self._stopped_by is None:
+            self._stopped_by = _INTERRUPTED
             if self._within is not None:
                 self._within.interrupt()
 
     def enough(self) -> None:
-        """Note that all that was asked for is known; what this is within goes on."""
-        self._by = self._by or _PROVED
+        """Stop the question because its answer is proved; a deadline that this is within continues."""
+        self._stopped_by = self._stopped_by or _PROVED
 
     def out_of_memory(self) -> None:
-        """Note that there is no more memory."""
+        """Stop the question because of the memory, unless it was stopped before."""
         limit = "" if self.memory is None else f"the memory limit of {size_text(self.memory)}"
-        self._by = self._by or limit or "the end of memory"
+        self._stopped_by = self._stopped_by or limit or "the end of memory"
 
     @property
     def stopped(self) -> str | None:
-        """The limit that stopped the work, and what was being done, as a text; ``None`` before."""
-        return None if self._by is None else f"{self._by} while {self._doing}"
+        """The limit that stopped the question, and the work at that time, in words; ``None`` before."""
+        return None if self._stopped_by is None else f"{self._stopped_by} while {self._doing}"
 
     @property
     def advice(self) -> str:
-        """What to do about it, as a text."""
+        """Advice for the user about the limit."""
         return _ADVICE.get(self._doing, "raise the limit")
 
     def check(self) -> None:
-        """Raise :class:`LimitError` where it is time to stop."""
+        """Raise :class:`LimitError` if the deadline has passed."""
         if self.passed:
             raise LimitError(self)
 
     def slice(self, longest: float = 0.2) -> float:
-        """Give how long to wait before looking again."""
+        """Return the seconds to wait until the next check of the deadline, at most ``longest``."""
         if self.memory is not None:
-            longest = min(longest, 2 * _LOOKS)
-        left = self.left
-        return longest if left is None else min(longest, left)
+            longest = min(longest, 2 * _POLL_SECONDS)
+        remaining = self.left
+        return longest if remaining is None else min(longest, remaining)
 
     def memory_in_use(self) -> int:
-        """Give how many bytes this process and those that work for it have in memory."""
+        """Return the resident memory of this process and of the counted ones, in bytes."""
         return sum(_resident(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._workers))
 
     def count(self, process: int) -> None:
-        """Count the memory of another process, too."""
+        """Count the memory of another process, by its id, as well."""
         self._workers.add(process)
 
     def uncount(self, process: int) -> None:
-        """Leave a process out again."""
+        """Stop counting the memory of a process."""
         self._workers.discard(process)
 
     def watched(self, doing: str, late: bool = False, grace: bool = False) -> "Watch":
-        """Stop what is in a ``with`` block at the limits: for work that does not look at them itself.
+        """Return a context that interrupts work at the limits, for code that does not check the deadline.
 
-        Raises :class:`LimitError` in the middle of it. So there may be nothing to lose in the block, and
-        nothing that continues after ctrl-C. With ``late`` it is stopped only when overdue, and with ``grace``
-        never before a quarter of a second, to come to an end with what is known already.
+        It raises :class:`LimitError` anywhere in the block, which therefore must not have state to lose, nor
+        handle ctrl-C itself. With ``late`` the block is interrupted only when overdue; with ``grace`` it has
+        at least a quarter of a second, to finish an answer.
         """
         return Watch(self, doing, late, grace)
 
 
 @contextlib.contextmanager
 def none_lost() -> Iterator[None]:
-    """Let no interrupt be lost in a ``with`` block of the main thread, nor a word said of it.
+    """Repeat interrupts that Python loses in a ``with`` block of the main thread.
 
-    Nothing comes out of a destructor, so what strikes in one strikes again a moment later.
+    An exception in a destructor is not raised but reported, so an interrupt in one is sent again.
     """
-    before = sys.unraisablehook
+    previous_hook = sys.unraisablehook
     main = threading.main_thread().ident or 0
 
-    def strike_again() -> None:
-        time.sleep(_LOOKS)
+    def send_again() -> None:
+        time.sleep(_POLL_SECONDS)
         signal.pthread_kill(main, signal.SIGINT)
 
-    def again(lost: "sys.UnraisableHookArgs") -> None:
+    def hook(lost: "sys.UnraisableHookArgs") -> None:
         destroyed = getattr(lost.object, "__name__", "") == "__del__"
         if destroyed and issubclass(lost.exc_type, AttributeError):
-            return  # an interrupt left the object half made
+            return  # an interrupt in its constructor left the object incomplete
         if not issubclass(lost.exc_type, KeyboardInterrupt):
-            before(lost)
+            previous_hook(lost)
         elif threading.get_ident() == main and hasattr(signal, "pthread_kill"):
-            Aside(strike_again)
+            Aside(send_again)
 
-    sys.unraisablehook = again
+    sys.unraisablehook = hook
     try:
         yield
     finally:
-        sys.unraisablehook = before
+        sys.unraisablehook = previous_hook
 
 
 @contextlib.contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Let neither ctrl-C nor a watch of any thread strike in a ``with`` block, but right after it.
+    """Defer ctrl-C and interrupts of watches in a ``with`` block until its end.
 
-    C libraries make an ``ImportError`` of one that strikes while they are imported, and stay broken.
+    C libraries turn an interrupt during their import into an ``ImportError``, and stay broken.
     """
-    came: list[int] = []
-    shield, here = object(), threading.get_ident()
-    before = signal.getsignal(signal.SIGINT)
-    is_main = threading.current_thread() is threading.main_thread() and callable(before)
+    deferred: list[int] = []
+    shield, thread = object(), threading.get_ident()
+    handler = signal.getsignal(signal.SIGINT)
+    is_main = threading.current_thread() is threading.main_thread() and callable(handler)
     try:
         if is_main:
-            signal.signal(signal.SIGINT, lambda number, _: came.append(number))
-        _shields[shield] = here
-        while here in _aims:  # one is on its way
-            time.sleep(_MOMENT)
+            signal.signal(signal.SIGINT, lambda number, _: deferred.append(number))
+        _shields[shield] = thread
+        while thread in _targets:  # a watch is sending an interrupt
+            time.sleep(_INTERRUPT_DELAY_SECONDS)
         yield
     finally:
-        while True:  # ctrl-C may strike as soon as it is let through again
+        while True:  # ctrl-C may interrupt as soon as the handler is restored
             try:
                 if is_main:
-                    signal.signal(signal.SIGINT, before)
+                    signal.signal(signal.SIGINT, handler)
                 _shields.pop(shield, None)
                 break
             except KeyboardInterrupt:
-                came.append(signal.SIGINT)
-        if came:
+                deferred.append(signal.SIGINT)
+        if deferred:
             signal.raise_signal(signal.SIGINT)
 
 
-# Who strikes first says at whom, and then looks whether it may; who may not be struck first says so, and then
-# looks whether somebody is about to. So neither needs a lock, in which an interrupt could land.
-_aims: list[int] = []  # threads about to be struck
-_shields: dict[object, int] = {}  # threads that may not be
+# A watch first announces its target, and then checks whether it is shielded; a thread first announces that it
+# is shielded, and then checks whether it is a target. So neither needs a lock, which an interrupt could leave
+# locked.
+_targets: list[int] = []  # threads to which an interrupt is being sent
+_shields: dict[object, int] = {}  # threads that must not be interrupted
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_aims.clear)  # those who were about to are not here
+    os.register_at_fork(after_in_child=_targets.clear)  # the watches are threads of the parent
 
 
 class Watch:
-    """A thread that looks at a deadline while another one works, and interrupts it as ctrl-C does.
+    """A context in which a background thread polls a deadline, and interrupts this thread as ctrl-C does.
 
-    An interrupt that strikes in the very moment in which the block ends leaves it as ``KeyboardInterrupt``.
+    An interrupt at the very end of the block leaves it as ``KeyboardInterrupt``.
     """
 
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
         self._deadline, self._doing, self._late = deadline, doing, late
-        self._earliest = time.monotonic() + _GRACE if grace else -math.inf
-        self._begins = grace  # whatever has passed
+        self._earliest = time.monotonic() + _GRACE_SECONDS if grace else -math.inf
+        self._begins = grace  # also at a deadline that has passed
         self._thread = threading.get_ident()
-        self._over = self._struck = False
+        self._finished = self._interrupted = False
         self._wake: SimpleQueue[None] = SimpleQueue()
 
     def __enter__(self) -> Self:
@@ -392,7 +396,7 @@ class Watch:
         if deadline.limited:
             try:
                 if not self._is_woken_by_signals:
-                    import ctypes  # noqa: F401, PLC0415 (to have it when it strikes)
+                    import ctypes  # noqa: F401, PLC0415 (imported before it is needed for an interrupt)
                 Aside(_watch, weakref.ref(self), self._wake)
             except BaseException:
                 self._end()
@@ -402,55 +406,55 @@ class Watch:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        came = kind is not None and issubclass(kind, KeyboardInterrupt)
-        while True:  # an interrupt may strike in the middle of this, which can be done again
+        received = kind is not None and issubclass(kind, KeyboardInterrupt)
+        while True:  # an interrupt may come within this loop, which can be repeated
             try:
                 self._end()
-                if self._struck and not came:
-                    for _ in range(_WAITS):
-                        time.sleep(_LOOKS)
+                if self._interrupted and not received:
+                    for _ in range(_MAX_WAITS):
+                        time.sleep(_POLL_SECONDS)
                 break
             except KeyboardInterrupt:
-                came = True
-        if self._struck:
+                received = True
+        if self._interrupted:
             raise LimitError(self._deadline) from None
-        if came:
+        if received:
             self._deadline.interrupt()
             if kind is None:
                 raise KeyboardInterrupt
 
     def _end(self) -> None:
-        """Let nothing strike any more."""
-        self._over = True
+        """Stop the watch, and wait until it is not sending an interrupt."""
+        self._finished = True
         self._wake.put(None)
-        while self._thread in _aims:  # who is about to strike does so now
-            time.sleep(_MOMENT)
+        while self._thread in _targets:  # an interrupt is being sent
+            time.sleep(_INTERRUPT_DELAY_SECONDS)
 
     @property
     def _due(self) -> bool:
         due = self._deadline.overdue if self._late else self._deadline.passed
         return due and time.monotonic() >= self._earliest
 
-    def next_look(self, strikes: int) -> tuple[float, int] | None:
-        """Strike when it is time, again and again, for one in a destructor is lost; ``None`` after the last.
+    def poll(self, interrupts: int) -> tuple[float, int] | None:
+        """Poll the deadline, and interrupt the thread if it has passed, repeatedly, since some are lost.
 
-        Returns the seconds until the next look, and how often it has struck.
+        Returns the seconds until the next poll and the number of interrupts sent, or ``None`` after the last.
         """
-        if self._over or strikes == _STRIKES:
+        if self._finished or interrupts == _MAX_INTERRUPTS:
             return None
         if not self._due:
-            return max(_LOOKS, self._deadline.slice()), strikes
-        _aims.append(self._thread)
+            return max(_POLL_SECONDS, self._deadline.slice()), interrupts
+        _targets.append(self._thread)
         try:
-            if self._over:
+            if self._finished:
                 return None
             if self._thread in _shields.values():
-                return _LOOKS, strikes
-            self._struck = True
-            self._strike()
+                return _POLL_SECONDS, interrupts
+            self._interrupted = True
+            self._interrupt()
         finally:
-            _aims.remove(self._thread)
-        return _BETWEEN, strikes + 1
+            _targets.remove(self._thread)
+        return _INTERRUPT_SECONDS, interrupts + 1
 
     @property
     def _is_woken_by_signals(self) -> bool:
@@ -460,9 +464,9 @@ class Watch:
             and signal.getsignal(signal.SIGINT) is signal.default_int_handler
         )
 
-    def _strike(self) -> None:
+    def _interrupt(self) -> None:
         if self._is_woken_by_signals:
-            signal.pthread_kill(self._thread, signal.SIGINT)  # wakes it from waiting for a file, too
+            signal.pthread_kill(self._thread, signal.SIGINT)  # also wakes it from blocking reads
             return
         import ctypes  # noqa: PLC0415 (seldom needed)
 
@@ -472,51 +476,57 @@ class Watch:
 
 
 def _watch(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
-    """Look at a watch until it is over, or was left by an interrupt that came before it could be ended."""
-    pause, strikes = _LOOKS, 0
+    """Poll a watch until its end, or until it is garbage because an interrupt prevented its end."""
+    pause, interrupts = _POLL_SECONDS, 0
     while True:
         with contextlib.suppress(Empty):
             wake.get(timeout=pause)
             return
         watch = watching()
-        told = None if watch is None else watch.next_look(strikes)
+        following = None if watch is None else watch.poll(interrupts)
         del watch
-        if told is None:
+        if following is None:
             return
-        pause, strikes = told
+        pause, interrupts = following
 
 
 def _resident(statm: Path) -> int:
+    """Return the resident memory of a process, in bytes, from its file in /proc; 0 after its end."""
     try:
-        return int(statm.read_bytes().split()[1]) * _PAGE
+        return int(statm.read_bytes().split()[1]) * _PAGE_BYTES
     except (OSError, IndexError):  # the process has ended
         return 0
 
 
-def seconds(given: float | str, what: str = "the time limit") -> float:
-    """Read a number of seconds from 0 on; raises :class:`UserError` for others."""
+def seconds(number: float | str, quantity: str = "the time limit") -> float:
+    """Return a number of seconds, from 0; raises :class:`UserError` about the ``quantity`` for others."""
     try:
-        value = float(given)
+        value = float(number)
     except (TypeError, ValueError, OverflowError):
         value = math.nan
-    if isinstance(given, bool) or not 0 <= value < math.inf:
-        raise UserError(f"found {what} {given!r}, expected a number of seconds from 0")
+    if isinstance(number, bool) or not 0 <= value < math.inf:
+        raise UserError(f"found {quantity} {number!r}, expected a number of seconds from 0")
     return value
 
 
-def memory_size(given: int | str, what: str = "the memory limit") -> int:
-    """Read a size in bytes, a whole number or one with K, M, G or T; raises :class:`UserError` for others."""
-    if isinstance(given, int) and not isinstance(given, bool) and given > 0:
-        return given
-    found = re.fullmatch(r"(\d{1,15}(?:\.\d{1,6})?)\s*([KMGT]?)(?:i?B)?", str(given).strip(), re.I | re.ASCII)
-    size = int(float(found[1]) * _UNITS[found[2].upper()]) if found and isinstance(given, str) else 0
+def memory_size(number: int | str, quantity: str = "the memory limit") -> int:
+    """Return a size in bytes: an integer, or a text with K, M, G or T.
+
+    Raises :class:`UserError` about the ``quantity`` for other values.
+    """
+    if isinstance(number, int) and not isinstance(number, bool) and number > 0:
+        return number
+    match = re.fullmatch(
+        r"(\d{1,15}(?:\.\d{1,6})?)\s*([KMGT]?)(?:i?B)?", str(number).strip(), re.I | re.ASCII
+    )
+    size = int(float(match[1]) * _UNITS[match[2].upper()]) if match and isinstance(number, str) else 0
     if size <= 0:
-        raise UserError(f"found {what} {given!r}, expected a size such as 500M or 2G, or bytes")
+        raise UserError(f"found {quantity} {number!r}, expected a size such as 500M or 2G, or bytes")
     return size
 
 
 def size_text(size: int) -> str:
-    """Say a size, in the greatest unit in which it is a whole number."""
+    """Return a size in words, in the largest unit in which it is a whole number."""
     for letter in "TGMK":
         if size % _UNITS[letter] == 0:
             return f"{size // _UNITS[letter]}{letter}"

@@ -1,8 +1,8 @@
-"""The two kinds of failure: the user's, with advice, and ours, with an apology. And warnings."""
+"""Errors in the input, bugs of foon-asp, and warnings."""
 
 
 class UserError(Exception):
-    """Something in the input cannot be used; the message says what, and often what to do.
+    """An error in the input; the message says what is wrong, and often what to do.
 
     Example:
         >>> foon_asp.load(level=4)
@@ -21,7 +21,7 @@ class BugError(Exception):
 
 
 class FoonWarning(UserWarning):
-    """Something in the data or in a constraint that the user should know, but that stops nothing.
+    """A warning about the data or a constraint, which the program uses nevertheless.
 
     Example:
         >>> import warnings

@@ -1,19 +1,19 @@
-"""Python's garbage collection where very many objects are made that stay: it walks over them in vain."""
+"""Suspension of Python's garbage collection while many objects are made that stay: it would free none."""
 
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-_VERY_MANY = 1_000_000  # new objects, to walk over which takes a tenth of a second or more
-_FEW = 10_000  # frozen objects, to walk over which is nothing: Python 3.12 itself begins with some hundreds
+_MANY_OBJECTS = 1_000_000  # new ones, of which a collection takes a tenth of a second or more
+_MAX_FROZEN = 10_000  # objects that may be unfrozen at no cost: Python 3.12 itself starts with some hundreds
 
 
 @contextmanager
 def uncollected() -> Iterator[None]:
-    """Do without collecting; so nothing that is done there may leave circular garbage behind often.
+    """Disable garbage collection in a ``with`` block, which should create little cyclic garbage.
 
-    Where very many objects were made, they are old ones afterwards: the next collection does not begin with
-    walking over them, which takes seconds, also where a limit ended the work.
+    If the block made very many objects, they are moved to the oldest generation, so that the next collection
+    does not traverse them, which would take seconds.
     """
     collecting = gc.isenabled()
     gc.disable()
@@ -21,7 +21,7 @@ def uncollected() -> Iterator[None]:
         yield
     finally:
         if collecting:
-            if gc.get_count()[0] > _VERY_MANY and gc.get_freeze_count() < _FEW:
+            if gc.get_count()[0] > _MANY_OBJECTS and gc.get_freeze_count() < _MAX_FROZEN:
                 gc.freeze()
-                gc.unfreeze()  # to the oldest generation
+                gc.unfreeze()  # moves all objects to the oldest generation
             gc.enable()

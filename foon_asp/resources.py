@@ -1,4 +1,4 @@
-"""Where the encodings and the bundled data are: in the installed package, or beside it in a checkout."""
+"""Paths of the encodings and the bundled data: in the installed package, or next to it in a checkout."""
 
 from functools import cache
 from pathlib import Path
@@ -9,33 +9,34 @@ _PACKAGE = Path(__file__).resolve().parent
 
 
 @cache
-def _folder(name: str, witness: str) -> Path:
+def _folder(name: str, expected_file: str) -> Path:
+    """Return the folder of a name that has a file; raises :class:`BugError` where none has."""
     for parent in (_PACKAGE, _PACKAGE.parent):
-        if (parent / name / witness).is_file():
+        if (parent / name / expected_file).is_file():
             return parent / name
     raise BugError(f"the folder {name!r} is missing from this installation; please reinstall foon-asp")
 
 
 def encodings_folder() -> Path:
-    """Give the folder of the answer-set encodings."""
+    """Return the folder of the answer-set encodings."""
     return _folder("encodings", "task_tree.lp")
 
 
 def published_table() -> Path:
-    """Give the file with the published figures of the literature."""
+    """Return the file with the published figures of searches."""
     return _folder("data", "published/table1.json") / "published" / "table1.json"
 
 
 def starter_recipe() -> Path:
-    """Give the folder of the recipe that a new data folder begins with, and of its success rates."""
+    """Return the folder of the example recipe for a new data folder, with its success rates."""
     return _folder("data", "starter/FOON.txt") / "starter"
 
 
 def bundled_vocabulary() -> Path:
-    """Give the file of the names that linting knows."""
+    """Return the file of the names that lint knows."""
     return _folder("data", "vocabulary.txt") / "vocabulary.txt"
 
 
 def bundled_kitchen() -> Path:
-    """Give the folder of the bundled universal FOON and its kitchen."""
+    """Return the folder of the bundled universal FOON and its kitchen."""
     return _folder("data", "kitchen/FOON.txt") / "kitchen"

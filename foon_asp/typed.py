@@ -1,4 +1,4 @@
-"""Values of the wrong type are refused in words, by the annotations of a function."""
+"""Runtime checks of arguments against the annotations of a function, with errors in words."""
 
 import functools
 import inspect
@@ -30,55 +30,57 @@ _WORDS = {
 }
 
 
-def typed(ask: Callable[P, T]) -> Callable[P, T]:
-    """Make a function refuse values that its annotations do not allow; see :func:`checker`."""
-    check = checker(ask)
+def typed(function: Callable[P, T]) -> Callable[P, T]:
+    """Return a function that raises for arguments which its annotations do not allow; see :func:`checker`."""
+    check = checker(function)
 
-    @functools.wraps(ask)
-    def checked(*given: P.args, **named: P.kwargs) -> T:
-        check(given, named)
-        return ask(*given, **named)
+    @functools.wraps(function)
+    def checked(*arguments: P.args, **named: P.kwargs) -> T:
+        check(arguments, named)
+        return function(*arguments, **named)
 
     return checked
 
 
 def checker(
-    ask: Callable[..., object], signature: inspect.Signature | None = None
+    function: Callable[..., object], signature: inspect.Signature | None = None
 ) -> Callable[[tuple[object, ...], Mapping[str, object]], None]:
-    """Make what raises :class:`UserError` for arguments that the annotations of a function do not allow.
+    """Return a function of arguments and named arguments that checks them against annotations.
 
-    What can be read only once is not looked into, and annotations that are texts allow everything. The
-    ``signature`` is by default that of the function.
+    It raises :class:`UserError` for a value that its annotation does not allow, and ``TypeError`` for
+    arguments that the ``signature`` (by default that of the function) does not have. Items of iterators are
+    not checked, since they can be read only once; annotations that are strings allow all values.
     """
-    asked = signature or inspect.signature(ask)
-    kinds = {name: parameter.annotation for name, parameter in asked.parameters.items()}
+    allowed = signature or inspect.signature(function)
+    annotations = {name: parameter.annotation for name, parameter in allowed.parameters.items()}
 
-    def check(given: tuple[object, ...], named: Mapping[str, object]) -> None:
+    def check(arguments: tuple[object, ...], named: Mapping[str, object]) -> None:
         try:
-            bound = asked.bind(*given, **named)
+            bound = allowed.bind(*arguments, **named)
         except TypeError as error:
-            raise TypeError(f"{ask.__name__}: {error}; it takes {', '.join(kinds)}") from None
-        for name, value in bound.arguments.items():
-            many = asked.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL
-            for each in value if many else (value,):
-                if not _fits(kinds[name], each):
-                    expected = " or ".join(dict.fromkeys(_words(kinds[name]))) or "something else"
-                    raise UserError(f"found {name}={each!r}, expected {expected}")
+            raise TypeError(f"{function.__name__}: {error}; it takes {', '.join(annotations)}") from None
+        for name, argument in bound.arguments.items():
+            is_variadic = allowed.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL
+            for value in argument if is_variadic else (argument,):
+                if not _fits(annotations[name], value):
+                    words = _words(annotations[name])
+                    expected = " or ".join(dict.fromkeys(words)) or "something else"
+                    raise UserError(f"found {name}={value!r}, expected {expected}")
 
     return check
 
 
 def _fits(kind: Any, value: object) -> bool:
-    """Whether an annotation allows a value, as far as it says something that can be told."""
+    """Return whether an annotation allows a value, as far as that can be checked at runtime."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if origin in {typing.Union, types.UnionType, typing.Annotated}:
-        several = arguments[:1] if origin is typing.Annotated else arguments
-        return any(_fits(each, value) for each in several)
-    if _is_several(origin):
+        alternatives = arguments[:1] if origin is typing.Annotated else arguments
+        return any(_fits(alternative, value) for alternative in alternatives)
+    if _is_iterable(origin):
         if isinstance(value, str | bytes) or not isinstance(value, Iterable):
             return False
-        known = isinstance(value, list | tuple | set | frozenset) and len(arguments) == 1
-        return not known or all(_fits(arguments[0], each) for each in value)
+        is_checkable = isinstance(value, list | tuple | set | frozenset) and len(arguments) == 1
+        return not is_checkable or all(_fits(arguments[0], item) for item in value)
     expected = origin or (types.NoneType if kind is None else kind)
     if not isinstance(expected, type) or expected is inspect.Parameter.empty:
         return True
@@ -87,19 +89,20 @@ def _fits(kind: Any, value: object) -> bool:
     return isinstance(value, expected)
 
 
-def _is_several(origin: Any) -> bool:
+def _is_iterable(origin: Any) -> bool:
+    """Return whether an annotation is of several values; a mapping counts as one."""
     return isinstance(origin, type) and issubclass(origin, Iterable) and not issubclass(origin, Mapping)
 
 
 def _words(kind: Any) -> Iterator[str]:
-    """Say what an annotation allows."""
+    """Return the values that an annotation allows, in words."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if origin is typing.Annotated:
         yield from _words(arguments[0])
     elif origin in {typing.Union, types.UnionType}:
-        for each in arguments:
-            yield from _words(each)
-    elif _is_several(origin):
+        for alternative in arguments:
+            yield from _words(alternative)
+    elif _is_iterable(origin):
         yield f"several such as [{', '.join(dict.fromkeys(_words(arguments[0])))}]"
     elif kind is not types.NoneType:
         name = (origin or kind).__name__ if isinstance(origin or kind, type) else ""

@@ -1,4 +1,4 @@
-"""Warnings in Python's own way, as if the line of the caller had raised them."""
+"""Warnings of Python, attributed to the line of the caller."""
 
 import inspect
 import warnings
@@ -7,7 +7,7 @@ from foon_asp.errors import FoonWarning
 
 
 def warn(message: str) -> None:
-    """Warn of something in the data or in a constraint, at the first line outside the package."""
+    """Issue a :class:`FoonWarning`, attributed to the first frame outside the package."""
     frame = inspect.currentframe()
     level = 0
     while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == "foon_asp":

@@ -48,18 +48,18 @@ def ask(
     ``form`` is the chosen format of the result; ``None`` is the default. Several assumed goals give an
     :class:`Each` of results.
     """
-    own = {option.name for option in question.options}
-    command = _Command({name: value for name, value in values.items() if name not in own})
+    option_names = {option.name for option in question.options}
+    command = _Command({name: value for name, value in values.items() if name not in option_names})
     with Progress(deadline) as progress:
         caller = Caller(progress, deadline=deadline, lenient=bool(values.get("lenient")), form=form)
         with asked_by(caller):
-            posed = _posed(question, command, values)
+            subjects = _subjects(question, command, values)
         _warn_of_measures(command, values)
-        if question.pose is not no_data or "time_limit" in own:
+        if question.pose is not no_data or "time_limit" in option_names:
             progress.begin()  # a search follows
         with asked_by(caller._replace(read_seconds=command.read_seconds)):
             options_ = parameters(question, values, Part.QUESTION | Part.COMMAND)
-            results = [question.command(*subject, **options_) for subject in posed]
+            results = [question.command(*subject, **options_) for subject in subjects]
     if len(results) == 1:
         return results[0]
     return Each(results)
@@ -82,7 +82,7 @@ def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
             )
 
 
-def _posed(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
+def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """Return the subjects of a question (problems, trees): one, or one for each of several assumed goals.
 
     Assumed goals and kitchen items are reported to the user.
@@ -99,11 +99,11 @@ def _posed(question: Question, command: "_Command", values: Mapping[str, Any]) -
     one_goal = question.pose in {one_problem, one_problem_or_each} and not problem_options.get("all_goals")
     goals = command.unnamed_goals() if unnamed and one_goal else []
     if len(goals) < 2:
-        posed = [question.pose(command, **problem_options)]
+        subjects = [question.pose(command, **problem_options)]
     else:
         _refuse_one_file(question, values)
-        posed = [question.pose(command, **problem_options | {"goals_named": [goal]}) for goal in goals]
-    problems = [value for subject in posed for value in subject if isinstance(value, Problem)]
+        subjects = [question.pose(command, **problem_options | {"goals_named": [goal]}) for goal in goals]
+    problems = [value for subject in subjects for value in subject if isinstance(value, Problem)]
     if problems and unnamed:  # without a problem, the data may not be needed, and are not read
         goals = goals or command.dataset.assumed_goals()
     if {goal for problem in problems for goal in problem.goal_nodes} != set(goals):
@@ -116,7 +116,7 @@ def _posed(question: Question, command: "_Command", values: Mapping[str, Any]) -
             lines += kitchen_lines(command.dataset, problems, options.is_verbose())
         if lines:
             say("\n".join(lines))
-    return posed
+    return subjects
 
 
 def _refuse_one_file(question: Question, values: Mapping[str, Any]) -> None:

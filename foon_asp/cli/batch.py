@@ -115,10 +115,10 @@ def command(
     with RowsFile(rows_file, ANSWERS, common) as results:
         for text in results.twice:
             warn(text)
-        before = [results.done[question] for question in distinct if question in results.done]
+        answered_before = [results.done[question] for question in distinct if question in results.done]
         open_questions = [question for question in distinct if question not in results.done]
         with Progress() as progress:
-            progress.step("answering", len(before), len(distinct))
+            progress.step("answering", len(answered_before), len(distinct))
             progress.begin()
             processes = min(jobs, max(1, len(open_questions)))
             try:
@@ -130,13 +130,13 @@ def command(
                 for row in rows:
                     results.add(row)
                     answered.append(row)
-                    progress.step("answering", len(before) + len(answered), len(distinct))
+                    progress.step("answering", len(answered_before) + len(answered), len(distinct))
             except KeyboardInterrupt:
                 interrupted = True
         if rows_file is not results_file:
             objectives = (*Objective, *map(Objective.of_measure, measures))
             write_table(results_file, results.done.values(), objectives)
-    summary = _summary(distinct, before, answered) | {"seconds": round(time.monotonic() - began, 3)}
+    summary = _summary(distinct, answered_before, answered) | {"seconds": round(time.monotonic() - began, 3)}
     if format_ == "json":
         click.echo(json_text(summary), nl=False)
     else:
@@ -148,15 +148,17 @@ def command(
     return _exit_code(summary["statuses"], interrupted)
 
 
-def _summary(questions: Sequence[Asked], before: Sequence[AnswerRow], answered: Sequence[AnswerRow]) -> Json:
+def _summary(
+    questions: Sequence[Asked], answered_before: Sequence[AnswerRow], answered: Sequence[AnswerRow]
+) -> Json:
     """Return the JSON of a run: numbers of rows by status and by proof, and the seconds of new answers."""
     seconds = [row.seconds for row in answered if row.seconds is not None]
     return document(
         "batch",
         questions=len(questions),
-        answered_before=len(before),
+        answered_before=len(answered_before),
         answered=len(answered),
-        statuses=dict(sorted(Counter(row.status for row in (*before, *answered)).items())),
+        statuses=dict(sorted(Counter(row.status for row in (*answered_before, *answered)).items())),
         proofs=dict(sorted(Counter(row.proof for row in answered if row.proof is not None).items())),
         seconds_median=statistics.median(seconds) if seconds else None,
         seconds_worst=max(seconds, default=None),
@@ -165,9 +167,9 @@ def _summary(questions: Sequence[Asked], before: Sequence[AnswerRow], answered: 
 
 def _in_words(summary: Json, without_answer: Sequence[AnswerRow]) -> Iterator[str]:
     """Return the lines of a summary, with the errors of the first rows ``without_answer``."""
-    before, answered = summary["answered_before"], summary["answered"]
+    answered_before, answered = summary["answered_before"], summary["answered"]
     yield counted(summary["questions"], "question", ",") + (
-        f", {before:,} of them answered before" if before else ""
+        f", {answered_before:,} of them answered before" if answered_before else ""
     )
     yield f"in total: {_counts(summary['statuses'], '') or 'none'}"
     if answered:
@@ -182,8 +184,8 @@ def _in_words(summary: Json, without_answer: Sequence[AnswerRow]) -> Iterator[st
         yield f"... and {failed - len(reported)} more failed: see their rows"
 
 
-def _counts(counts: dict[str, int], by: str) -> str:
-    return ", ".join(f"{count:,} {by}{name}" for name, count in counts.items())
+def _counts(counts: dict[str, int], preposition: str) -> str:
+    return ", ".join(f"{count:,} {preposition}{name}" for name, count in counts.items())
 
 
 def _exit_code(statuses: Json, interrupted: bool) -> ExitCode:

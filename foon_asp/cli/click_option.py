@@ -51,11 +51,11 @@ def _options_alone(
     return value[len(words) :]
 
 
-def _complete(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
+def _complete(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """Return the completions of a name from the data."""
     from foon_asp.cli.completed_words import completed_words
 
-    return completed_words(context, parameter, begun)
+    return completed_words(context, parameter, incomplete)
 
 
 _NAMED_IN_DATA = frozenset({"goals_named", "objectives", "constraints", "constants"})

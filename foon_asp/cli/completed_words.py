@@ -18,9 +18,9 @@ _MAX_NAMES = 200  # of a completion: shells list no more readably
 _MOTIONS, _LABELS = "_motion", ("_object", "_intermediate", "_ingredient")
 
 
-def completed_words(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
-    """Return the values of an option from the data that begin with the typed word ``begun``."""
-    return [*_COMPLETED[str(parameter.name)](context, begun)]
+def completed_words(context: click.Context, parameter: click.Parameter, prefix: str) -> list[str]:
+    """Return the values of an option from the data that begin with the typed word ``prefix``."""
+    return [*_COMPLETED[str(parameter.name)](context, prefix)]
 
 
 def _dataset(context: click.Context) -> Dataset:
@@ -35,44 +35,44 @@ def _dataset(context: click.Context) -> Dataset:
     return load(source, **tables, measures=measures, level=level, lenient=True).dataset
 
 
-def _goals(context: click.Context, begun: str) -> Iterable[str]:
+def _goals(context: click.Context, prefix: str) -> Iterable[str]:
     """Return the labels of the goals file, then all other nodes."""
     dataset = _dataset(context)
     names = dataset.names
-    listed = _beginning(entry_names(dataset.listed, names), begun)
-    return chain(listed, (str(names.node(o)) for o in nodes_beginning(begun, names, _MAX_NAMES)))
+    listed = _beginning(entry_names(dataset.listed, names), prefix)
+    return chain(listed, (str(names.node(o)) for o in nodes_beginning(prefix, names, _MAX_NAMES)))
 
 
-def _objectives(context: click.Context, begun: str) -> Iterable[str]:
+def _objectives(context: click.Context, prefix: str) -> Iterable[str]:
     """Return completions of a list of objectives, each with one more objective at its end."""
-    done, comma, last = begun.rpartition(",")
+    done, comma, last = prefix.rpartition(",")
     others = [name for name in (*Objective, *_dataset(context).measures) if name not in done.split(",")]
     return (f"{done}{comma}{objective}" for objective in _beginning(others, last))
 
 
-def _constraints(context: click.Context, begun: str) -> Iterable[str]:
+def _constraints(context: click.Context, prefix: str) -> Iterable[str]:
     """Return the names of ready-made constraints, or after a name and a colon its constants."""
-    name, colon, settings = begun.partition(":")
+    name, colon, settings = prefix.partition(":")
     if not colon:
-        return _beginning((constraint.name for constraint in library_constraints()), begun)
+        return _beginning((constraint.name for constraint in library_constraints()), prefix)
     done, comma, last = settings.rpartition(",")
     return (f"{name}:{done}{comma}{constant}" for constant in _constants_of(name, context, last))
 
 
-def _constants(context: click.Context, begun: str) -> Iterable[str]:
+def _constants(context: click.Context, prefix: str) -> Iterable[str]:
     """Return the constants of the constraints on the line."""
     constraints = context.params.get("constraints") or ()
     names = [constraint.name.partition(":")[0] for constraint in constraints]
-    return chain.from_iterable(_constants_of(name, context, begun) for name in names)
+    return chain.from_iterable(_constants_of(name, context, prefix) for name in names)
 
 
-def _constants_of(constraint: str, context: click.Context, begun: str) -> Iterable[str]:
+def _constants_of(constraint: str, context: click.Context, prefix: str) -> Iterable[str]:
     """Return the constants of a ready-made constraint, or the values of a constant for motions or labels."""
-    name, equals, value = begun.partition("=")
+    name, equals, value = prefix.partition("=")
     if not equals:
         parameters = {entry.name: entry.parameters for entry in library_constraints()}
         names = (f"{parameter.name}=" for parameter in parameters.get(constraint, ()))
-        return _beginning(names, begun)
+        return _beginning(names, prefix)
     values: Iterable[str] = ()
     if name.endswith(_MOTIONS):
         values = _beginning(_dataset(context).motions, value)
@@ -81,8 +81,8 @@ def _constants_of(constraint: str, context: click.Context, begun: str) -> Iterab
     return (f"{name}={value}" for value in values)
 
 
-def _beginning(words: Iterable[str], begun: str) -> Iterable[str]:
-    return (word for word in words if word.startswith(begun))
+def _beginning(words: Iterable[str], prefix: str) -> Iterable[str]:
+    return (word for word in words if word.startswith(prefix))
 
 
 _COMPLETED: Mapping[str, Callable[[click.Context, str], Iterable[str]]] = {

@@ -70,9 +70,9 @@ complete -o default -o filenames -F _foon_asp %(prog_name)s
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
         """Return the completions without the text up to the last ``:`` or ``=``."""
         is_quoted = os.environ[_LINE].removesuffix(incomplete).endswith(("'", '"'))
-        begun = None if is_quoted else re.match(r".*[:=]", incomplete)
+        completed = None if is_quoted else re.match(r".*[:=]", incomplete)
         items = super().get_completions(args, incomplete)
-        return [CompletionItem(item.value[begun.end() :]) for item in items] if begun else items
+        return [CompletionItem(item.value[completed.end() :]) for item in items] if completed else items
 
 
 @add_completion_class

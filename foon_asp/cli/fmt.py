@@ -74,7 +74,7 @@ def _report(files: int, changed: int, refused: int, check: bool) -> None:
     if files < 2:
         return
     verb = "would change" if check else "changed"
-    parts = [f"{changed} {verb}", f"{files - changed - refused} in canonical form"]
+    counts = [f"{changed} {verb}", f"{files - changed - refused} in canonical form"]
     if refused:
-        parts.append(f"{refused} not understood")
-    click.echo(f"{files} files: {', '.join(parts)}", err=True)
+        counts.append(f"{refused} not understood")
+    click.echo(f"{files} files: {', '.join(counts)}", err=True)

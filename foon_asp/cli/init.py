@@ -29,7 +29,7 @@ from foon_asp.text.writer import write_units
     "recipe",
     type=click.Path(path_type=NamedPath),
     metavar="RECIPE",
-    help="A recipe of yours, FOON text or JSON; without one, a small recipe shows how they are written.",
+    help="Your recipe, FOON text or JSON; without one, a small recipe shows how they are written.",
 )
 @options.debug_option
 def command(folder: Path, recipe: Path | None) -> ExitCode:
@@ -37,7 +37,7 @@ def command(folder: Path, recipe: Path | None) -> ExitCode:
 
     \b
     foon-asp init my_foon                       a small recipe, to be replaced by yours
-    foon-asp init my_foon --from recipe.txt     a recipe of yours
+    foon-asp init my_foon --from recipe.txt     your recipe
     foon-asp solve --all-goals --data my_foon
 
     Every file says in comments what it is for and how its lines are written. The kitchen has what makes

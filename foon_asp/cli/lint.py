@@ -31,9 +31,9 @@ from foon_asp.text.json_value import json_text
 from foon_asp.text.plain_file import plain_text, read_content
 
 
-def _codes(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
+def _codes(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
     """Return the completions of a rule's code."""
-    return [code for code in CATALOG if code.startswith(begun)]
+    return [code for code in CATALOG if code.startswith(incomplete)]
 
 
 _STDIN = "-"

@@ -12,9 +12,9 @@ from foon_asp.editor.language_server import serve
 def command() -> ExitCode:
     """Serve an editor that edits FOON text, over standard input and output (the Language Server Protocol).
 
-    Findings of `lint` while typing, with quick fixes; completion of objects, states, motions and ids; which
-    units make and need a node, and whether it is at hand; the way to the unit that makes it; renaming; an
-    outline of the units; folding and formatting. docs/editor.md says how to set up an editor.
+    Findings of `lint` while typing, with quick fixes; completion of objects, states, motions and ids; hovers
+    with the units that make and need a node, and whether it is available; jumps to the unit that makes it;
+    renaming; an outline of the units; folding and formatting. docs/editor.md says how to set up an editor.
 
     Exits with 0 when the editor ends it.
     """

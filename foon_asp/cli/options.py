@@ -37,7 +37,7 @@ _DATA_OPTIONS = (
         help="FOON text or JSON, repeatable; or a single store.",
     ),
     click.option(
-        "--kitchen", type=_PATH, metavar="FILE", help="Object nodes at hand: JSON, or FOON objects."
+        "--kitchen", type=_PATH, metavar="FILE", help="Available object nodes: JSON, or FOON objects."
     ),
     click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
     click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),
@@ -57,7 +57,7 @@ _MEASURE_OPTION = click.option(
     type=_PATH,
     multiple=True,
     metavar="FILE.lp",
-    help="Rules for objectives of yours, cost(NAME,U,N); docs/writing-objectives.md.",
+    help="Rules for your own objectives, cost(NAME,U,N); docs/writing-objectives.md.",
 )
 
 _LEVEL_OPTION = click.option(

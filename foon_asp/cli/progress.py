@@ -121,9 +121,9 @@ class Progress(Reporter):
             return (now - self._began) / new * (total - done) if new else None
         if self._costs is None or self._bound is None or self._first_bound is None:
             return None
-        (objective, bound), (first, since) = self._bound, self._first_bound
+        (objective, bound), (first, first_time) = self._bound, self._first_bound
         closed, gap = abs(Fraction(bound - first)), abs(Fraction(self._costs.measure(objective) - bound))
-        return float(gap / closed) * (now - since) if closed and gap else None
+        return float(gap / closed) * (now - first_time) if closed and gap else None
 
     def __rich__(self) -> "Text":
         from rich.text import Text

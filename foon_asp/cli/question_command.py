@@ -38,9 +38,9 @@ def question_command(verb: str) -> click.Command:
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answering(question)
     if verb == "view":
-        from foon_asp.cli.serve import serving
+        from foon_asp.cli.serve import with_serve_option
 
-        command = serving(command, question)
+        command = with_serve_option(command, question)
     command = (options.debug_option if question.pose is no_data else options.data_options)(command)
     takes_all = any(option.positional and option.many for option in question.options)
     if question.pose is not no_data and not takes_all:  # after the arguments of the question
@@ -50,10 +50,10 @@ def question_command(verb: str) -> click.Command:
     names = {option.name for option in question.options}
     if "containers" in names and "items" not in names:
         command = _without_used_up(verb)(command)
-    own = [o for o in question.options if not (o.name in _LIMITS and o.part is Part.COMMAND)]
-    if len(own) < len(question.options):
+    own_options = [o for o in question.options if not (o.name in _LIMITS and o.part is Part.COMMAND)]
+    if len(own_options) < len(question.options):
         command = options.limit_options(command)
-    for declared in reversed(own):
+    for declared in reversed(own_options):
         command = click_option(declared)(command)
     help_ = f"{INDEX[verb].line}\n\n{textwrap.dedent(question.help).strip()}"
     return click.command(verb, help=help_)(command)
@@ -127,7 +127,7 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
             "--format",
             "format_",
             type=click.Choice(question.formats),
-            help=f"The format, whatever the name of the file; without a file, {first} to stdout.",
+            help=f"The format, in place of the ending of the file; without a file, {first} to stdout.",
         ),
         click.option(
             "-o",

@@ -57,7 +57,7 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
     if old == new:
         raise UserError("the new name is the old one")
     if not is_name(renaming.rename.kind, new):
-        raise UserError(f"{new!r} cannot be the name of {_a(renaming.rename.kind)} in FOON text")
+        raise UserError(f"{new!r} cannot be the name of {_with_article(renaming.rename.kind)} in FOON text")
     errors = []
     for file, text in texts.items():
         renaming.learn(text, str(file))
@@ -75,7 +75,7 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
     for file, (before, after) in changed.items():
         show_diff(str(file), before, after)
     if write:
-        write_all_whole({file: _mark(file) + utf_8(after) for file, (_, after) in changed.items()})
+        write_all_whole({file: _byte_order_mark(file) + utf_8(after) for file, (_, after) in changed.items()})
     click.echo(_summary(renaming, len(changed), write), err=True)
     return ExitCode.DONE
 
@@ -88,7 +88,7 @@ def _files(paths: Sequence[Path]) -> list[Path]:
     return list(dict.fromkeys(files))
 
 
-def _mark(file: Path) -> bytes:
+def _byte_order_mark(file: Path) -> bytes:
     """Return the byte order mark of a file, or nothing; a renaming keeps it."""
     return BOM_UTF8 if read_content(file).startswith(BOM_UTF8) else b""
 
@@ -103,9 +103,9 @@ def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
     if kind is not None and kind in kinds:
         return kind
     if kinds and kind is not None:
-        raise UserError(f"{old!r} is no {kind}; it is {_a(kinds[0])}")
+        raise UserError(f"{old!r} is no {kind}; it is {_with_article(kinds[0])}")
     if len(kinds) > 1:
-        listed = " and ".join(f"{_a(kind)} ({counts[kind, old]} times)" for kind in kinds)
+        listed = " and ".join(f"{_with_article(kind)} ({counts[kind, old]} times)" for kind in kinds)
         raise UserError(f"{old!r} is {listed}: choose one with --kind")
     if not kinds:
         similar = difflib.get_close_matches(old, sorted({name for _, name in counts}), n=3, cutoff=0.7)
@@ -116,14 +116,14 @@ def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
     return kinds[0]
 
 
-def _a(kind: str) -> str:
+def _with_article(kind: str) -> str:
     return _WITH_ARTICLE.get(NameKind(kind), f"a {kind}")
 
 
 def _summary(renaming: Renaming, files: int, written: bool) -> str:
     kind, old, new = renaming.rename
-    where = f"{counted(renaming.mentions, 'mention')} in {counted(files, 'file')}"
-    text = f"the {kind} {old!r} becomes {new!r}: {where}"
+    mentions = f"{counted(renaming.mentions, 'mention')} in {counted(files, 'file')}"
+    text = f"the {kind} {old!r} becomes {new!r}: {mentions}"
     if renaming.already:
         text += (
             f"; {new!r} stood there {counted(renaming.already, 'time')} already, and both are one name now"

@@ -20,23 +20,23 @@ from foon_asp.questions.contract import Question
 _FILE_OPTIONS = {"output": "-o", "format_": "--format"}
 
 
-def serving(command: Callable[..., ExitCode], question: Question) -> Callable[..., ExitCode]:
+def with_serve_option(command: Callable[..., ExitCode], question: Question) -> Callable[..., ExitCode]:
     """Return the command of ``view`` with the option ``--serve``."""
-    own = {option.name for option in question.options}
+    option_names = {option.name for option in question.options}
 
     @functools.wraps(command)
-    def served(serve: bool, **values: Any) -> ExitCode:
+    def answer_or_serve(serve: bool, **values: Any) -> ExitCode:
         if not serve:
             return command(**values)
         for name, flag in _FILE_OPTIONS.items():
             if values.pop(name, None):
                 raise UserError(f"found {flag} beside --serve: what the page shows is written into no file")
         deadline: Deadline | None = values.pop("deadline", None)
-        question_options = {name: values.pop(name) for name in own & values.keys()}
+        question_options = {name: values.pop(name) for name in option_names & values.keys()}
         return _serve(question_options, values, deadline or Deadline())
 
     help_ = "Serve a page on this machine that asks again, until ctrl-C; needs foon-asp[view]."
-    return click.option("--serve", is_flag=True, help=help_)(served)
+    return click.option("--serve", is_flag=True, help=help_)(answer_or_serve)
 
 
 def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> ExitCode:

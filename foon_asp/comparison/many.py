@@ -33,17 +33,19 @@ def compare_goals(
 
     Raises :class:`UserError` where a process dies, mostly for want of memory.
     """
-    work = partial(_compare, problem.plain, tuple(searches), settings, time_limit, rules)
+    compare_goal = partial(_compare, problem.plain, tuple(searches), settings, time_limit, rules)
     if jobs == 1:
-        yield from map(work, enumerate(goals))
+        yield from map(compare_goal, enumerate(goals))
         return
     ready: dict[int, Comparison] = {}  # comparisons that wait for the one of an earlier goal
     next_number = 0
-    for done in share(partial(partial, work), [*enumerate(goals)], min(jobs, len(goals))):
-        number, goal = done.task
-        if isinstance(done.error, LostError):
-            raise UserError(f"{problem.network.objects[goal]}: {done.error}; fewer --jobs take less memory")
-        ready[number] = done.get()
+    for finished in share(partial(partial, compare_goal), [*enumerate(goals)], min(jobs, len(goals))):
+        number, goal = finished.task
+        if isinstance(finished.error, LostError):
+            raise UserError(
+                f"{problem.network.objects[goal]}: {finished.error}; fewer --jobs take less memory"
+            )
+        ready[number] = finished.get()
         while next_number in ready:
             yield ready.pop(next_number)
             next_number += 1

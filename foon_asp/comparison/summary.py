@@ -44,6 +44,7 @@ def summarize_comparisons(comparisons: Sequence[Comparison]) -> list[Summary]:
 
 
 def _summary(name: str, comparisons: Sequence[Comparison]) -> Summary:
+    """Return the summary of the search of a name."""
     results = [(row.goal, result) for row in comparisons for result in row.searches if result.search == name]
     distances: dict[Objective, Distance] = {}
     for objective in MEASURED:

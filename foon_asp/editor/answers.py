@@ -157,11 +157,13 @@ def _hover(checked: CheckedText, parameters: object) -> Json | None:
     if node is None:
         return None
     achievers, consumers = _achievers_and_consumers(checked, node)
-    availability = "not at hand: a unit has to make it" if achievers else "at hand: no unit makes it"
+    availability = (
+        "not available: a unit has to make it" if achievers else "assumed to be available: no unit makes it"
+    )
     with contextlib.suppress(OSError, UserError):
         if file := kitchen_file(text.file.parent):
             in_kitchen = any(entry.pattern.matches(node) for entry in read_object_list(file))
-            availability = "at hand: the kitchen has it" if in_kitchen else "not in the kitchen"
+            availability = "available: it is in the kitchen" if in_kitchen else "not in the kitchen"
     paragraphs = [f"**{_plain(str(node))}**", f"made by {_units(achievers)}"]
     paragraphs += [f"needed by {_units(consumers)}", availability]
     field = field_at(text.lines[line], letter)
@@ -235,8 +237,8 @@ def _symbols(checked: CheckedText, _: object) -> list[Json]:
     network, position = checked.names.network, checked.text.position
     symbols = []
     for first, motion, end, unit in _extents(checked):
-        made = (node for node in network.outputs[unit] if node not in network.inputs[unit])
-        labels = " + ".join(dict.fromkeys(network.objects[node].label for node in made))
+        outputs = (node for node in network.outputs[unit] if node not in network.inputs[unit])
+        labels = " + ".join(dict.fromkeys(network.objects[node].label for node in outputs))
         symbols.append(
             {
                 "name": network.motions[unit],

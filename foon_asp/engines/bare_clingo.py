@@ -132,7 +132,7 @@ class Clingo:
         output: dict[str, Any] = {}
         with contextlib.suppress(ValueError):
             output = json.loads(out.decode("utf-8", "replace"), strict=False)
-        if process.returncode == 33 or any(words in err for words in _OUT_OF_MEMORY):
+        if process.returncode == 33 or any(message in err for message in _OUT_OF_MEMORY):
             raise NotCheckedError("clingo ran out of memory")
         if process.returncode not in _EXIT_CODES or output.get("Result", "UNKNOWN") == "UNKNOWN":
             lines = err.decode("utf-8", "replace").strip().split("\n")
@@ -348,25 +348,25 @@ def _counts(classes: Iterable[Fraction], figures: Iterable[Fraction]) -> list[in
 
 
 def greatest_weight(
-    weights: Collection[tuple[Fraction, int]], own: Collection[Fraction], multiplies: bool = True
+    weights: Collection[tuple[Fraction, int]], our_costs: Collection[Fraction], multiplies: bool = True
 ) -> int:
     """Return an upper bound on the sum of weights of a tree that is at least as good as ours.
 
-    ``weights`` are the distinct pairs of a unit's cost and its weight; ``own`` are the costs of our units.
-    Costs are rates where the objective ``multiplies``. Nothing is assumed of how the weights were rounded.
-    Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units with a
-    cost. Then w <= S * L(c) for every unit, so the weights of any tree T add up to at most S * L(T), where
-    L(T) is the sum of its costs; and L(T) is at most that of our tree.
+    ``weights`` are the distinct pairs of a unit's cost and its weight; ``our_costs`` are the costs of our
+    units. Costs are rates where the objective ``multiplies``. Nothing is assumed of how the weights were
+    rounded. Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units
+    with a cost. Then w <= S * L(c) for every unit, so the weights of any tree T add up to at most S * L(T),
+    where L(T) is the sum of its costs; and L(T) is at most that of our tree.
 
     Raises :class:`NotCheckedError` for a unit without a cost that has a weight, since no such S exists then,
     and for rates without a logarithm.
     """
-    all_costs = {*own, *(cost for cost, _ in weights)}
+    all_costs = {*our_costs, *(cost for cost, _ in weights)}
     bounds = {cost: _minus_log(cost) if multiplies else (cost, cost) for cost in all_costs}
     if any(weight and bounds[cost][0] <= 0 for cost, weight in weights):
         raise NotCheckedError("a unit that costs nothing has a weight")
     ratios = (weight / bounds[cost][0] for cost, weight in weights if bounds[cost][0])
-    return math.floor(max(ratios, default=Fraction(0)) * sum(bounds[cost][1] for cost in own))
+    return math.floor(max(ratios, default=Fraction(0)) * sum(bounds[cost][1] for cost in our_costs))
 
 
 def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:

@@ -50,7 +50,7 @@ def check_plan_with_bare_clingo(claim: Asked, seconds: float) -> tuple[Objective
         raise DisagreementError("the plan of clingo does not run", answer)
     if theirs.costs != ours:
         better = theirs.costs < ours
-        which = "ours is not the best" if better else "clingo calls a worse one the best"
-        message = f"our plan costs {list(ours)}, the one of clingo {list(theirs.costs)}; {which}"
+        verdict = "ours is not the best" if better else "clingo calls a worse one the best"
+        message = f"our plan costs {list(ours)}, the one of clingo {list(theirs.costs)}; {verdict}"
         raise DisagreementError(message, answer, better)
     return whole

@@ -85,12 +85,16 @@ class DisagreementError(Exception):
 
 
 def differing(
-    by: str, ours: int | Fraction, theirs: int | Fraction, answer: EngineAnswer, more_is_better: bool = False
+    measure: str,
+    ours: int | Fraction,
+    theirs: int | Fraction,
+    answer: EngineAnswer,
+    more_is_better: bool = False,
 ) -> DisagreementError:
     """Return the error that two trees claimed to be optimal have different costs by an objective."""
     better = theirs > ours if more_is_better else theirs < ours
-    which = "ours is not the best" if better else f"{answer.engine} calls a worse one the best"
-    message = f"by {by} our tree has {ours}, the one of {answer.engine} {theirs}; {which}"
+    verdict = "ours is not the best" if better else f"{answer.engine} calls a worse one the best"
+    message = f"by {measure} our tree has {ours}, the one of {answer.engine} {theirs}; {verdict}"
     return DisagreementError(message, answer, ours=better)
 
 

@@ -132,6 +132,7 @@ begin_goal
 
 
 def _operator(name: str, preconditions: list[int], add_effects: list[int], weight: int) -> str:
+    """Return the text of an operator; preconditions and effects are variables that are, or become, 0."""
     conditions = "".join(f"{variable} 0\n" for variable in preconditions)
     effects = "".join(f"0 {variable} -1 0\n" for variable in add_effects)
     return (

@@ -87,6 +87,6 @@ def new_figure(width: float, height: float, **options: Any) -> "Iterator[Figure]
         yield Figure((width, height), **options)
 
 
-def missing(what: object) -> UserError:
+def missing(error: object) -> UserError:
     """Return the error that a picture needs a package that is not installed, with how to install it."""
-    return UserError(f"a picture needs more packages ({what}): pip install 'foon-asp[pictures]'")
+    return UserError(f"a picture needs more packages ({error}): pip install 'foon-asp[pictures]'")

@@ -38,6 +38,7 @@ def write_comparison_chart(comparisons: Sequence[Comparison], conditions: str, f
 
 
 def _draw(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> None:
+    """Draw the box and the points of each search, over a label with its statistics."""
     trees: dict[str, list[tuple[float, Verdict]]] = {}
     for comparison in comparisons:
         for judged in comparison.searches:

@@ -60,10 +60,12 @@ def graph_text(drawing: Drawing) -> str:
     lines = [f"  {' -> '.join(motions)} [style=invis]"]  # neighbours in a file are close to each other
     for box in sorted(drawing.boxes, key=lambda box: box.name in named):  # names are painted last
         label = box.head if box.name in named else ()
-        look = f"{_LOOKS[box.role].partition(', penwidth')[0]}, fontsize=24, fontcolor=black, style=filled"
+        attributes = (
+            f"{_LOOKS[box.role].partition(', penwidth')[0]}, fontsize=24, fontcolor=black, style=filled"
+        )
         shape = "circle" if box.node else "square"
         tooltip = _quoted(["; ".join((*box.head, *box.details))])
-        lines.append(_node(box, label, f"{look}, shape={shape}, tooltip={tooltip}"))
+        lines.append(_node(box, label, f"{attributes}, shape={shape}, tooltip={tooltip}"))
     return _text(drawing, _SPOTS, lines)
 
 
@@ -83,9 +85,9 @@ def _legend(drawing: Drawing) -> Iterator[str]:
     yield "  }"
 
 
-def _node(box: Box, label: Sequence[str], look: str) -> str:
+def _node(box: Box, label: Sequence[str], attributes: str) -> str:
     class_ = f"{box.role.replace(' ', '-')} head{len(box.head)}"
-    return f'  {box.name} [label={_quoted(label)}, class="{class_}", {look}]'
+    return f'  {box.name} [label={_quoted(label)}, class="{class_}", {attributes}]'
 
 
 def _quoted(lines: Sequence[str]) -> str:

@@ -115,16 +115,16 @@ def draw_plan(
     for number, (unit, copies) in enumerate(zip(units, sources, strict=True)):
         motion = canvas.add(Role.MOTION, f"{number + 1}. {unit.motion}")
         for node in unit.inputs:
-            made, role = copies.get(node), Role.KITCHEN if node in kitchen else Role.OBJECT
-            copy = canvas.add(role, node.label, node) if made is None else canvas.shared(node, made)
+            achiever, role = copies.get(node), Role.KITCHEN if node in kitchen else Role.OBJECT
+            copy = canvas.add(role, node.label, node) if achiever is None else canvas.shared(node, achiever)
             canvas.arrows.append((copy, motion))
         for node in unit.outputs:
             if (node, number) in consumed:
                 canvas.arrows.append((motion, canvas.shared(node, number)))
             else:
                 canvas.arrows.append((motion, canvas.add(Role.BY_PRODUCT, node.label, node)))
-    for goal, made in goal_sources.items():
-        canvas.shared(goal, made)
+    for goal, achiever in goal_sources.items():
+        canvas.shared(goal, achiever)
     return canvas.drawing(caption)
 
 
@@ -159,16 +159,16 @@ class _Canvas:
         self._boxes.append(Box(name, role, label, node, unit))
         return name
 
-    def shared(self, node: ObjectNode, made: int | None = None) -> str:
-        """Return the name of the one box of a node, or of its copy that the step ``made`` made."""
-        if (node, made) not in self._names:
+    def shared(self, node: ObjectNode, achiever: int | None = None) -> str:
+        """Return the name of the one box of a node, or of its copy that the step ``achiever`` makes."""
+        if (node, achiever) not in self._names:
             role = Role.OBJECT
             if node in self._goals:
                 role = Role.GOAL
             elif node in self._kitchen:
                 role = Role.KITCHEN
-            self._names[node, made] = self.add(role, node.label, node)
-        return self._names[node, made]
+            self._names[node, achiever] = self.add(role, node.label, node)
+        return self._names[node, achiever]
 
     def drawing(self, caption: Iterable[str]) -> Drawing:
         """Return the finished drawing."""

@@ -66,17 +66,17 @@ def write_front_chart(front: Plotted, file: Path) -> None:
         elif 0 < min(columns[y]) * _LOG_SCALE_RATIO < max(columns[y]):
             axes.set_yscale("log")
         for number, value in enumerate(series_values):
-            look: dict[str, Any] = {"color": f"C{number}", "zorder": 2 - number / len(series_values)}
+            style: dict[str, Any] = {"color": f"C{number}", "zorder": 2 - number / len(series_values)}
             if front.complete:
                 # where lines overlap, all are visible: the greater the value, the wider, and further back
                 xs, ys, *_ = zip(*(point for point in points if point[2] <= value), strict=True)
                 best = list(accumulate(ys, max if upwards else min))
                 width = 1.2 + 1.8 * number / len(series_values)
                 axes.step(
-                    [*xs, points[-1][0] + 0.7], [*best, best[-1]], where="post", linewidth=width, **look
+                    [*xs, points[-1][0] + 0.7], [*best, best[-1]], where="post", linewidth=width, **style
                 )
             xs, ys, *_ = zip(*(point for point in points if point[2] == value), strict=True)
-            axes.plot(xs, ys, _MARKERS[number % len(_MARKERS)], label=str(value), **look)
+            axes.plot(xs, ys, _MARKERS[number % len(_MARKERS)], label=str(value), **style)
         if series:
             name = series.row.words
             name += "\n(lines: at most this value)" if front.complete else ""

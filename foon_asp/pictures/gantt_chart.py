@@ -33,15 +33,16 @@ def write_gantt(gantt: Gantt, file: Path) -> None:
 
 
 def _draw(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
+    """Draw the bars of a schedule, the first step on top."""
     rows = gantt.in_order
     agents = sorted({row.agent for row in rows}, key=lambda agent: (agent is None, agent))
     for agent in agents:
-        look = _PASSIVE_LOOK if agent is None else {"facecolor": f"C{agent - 1}", "edgecolor": "white"}
+        style = _PASSIVE_LOOK if agent is None else {"facecolor": f"C{agent - 1}", "edgecolor": "white"}
         name = "by itself" if agent is None else f"agent {agent}"
         bars = [(position, row) for position, row in enumerate(rows) if row.agent == agent]
         starts = [float(row.start) for _, row in bars]
         lengths = [float(row.end - row.start) for _, row in bars]
-        axes.barh([position for position, _ in bars], lengths, left=starts, label=name, **look)
+        axes.barh([position for position, _ in bars], lengths, left=starts, label=name, **style)
     axes.grid(visible=False, axis="y")
     axes.set_yticks(range(len(rows)), [f"{row.name}  {row.step}" for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)

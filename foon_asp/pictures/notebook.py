@@ -23,10 +23,10 @@ def page_bundle(value: object, drawings: Iterable[Drawing]) -> dict[str, str]:
 
     Cells of a notebook show the HTML; lists of values and consoles show ``repr(value)``.
     """
-    parts = [f"<pre>{html.escape(str(value))}</pre>"]
+    blocks = [f"<pre>{html.escape(str(value))}</pre>"]
     with contextlib.suppress(UserError):
-        parts += [_image(svg_picture(drawing)) for drawing in drawings]
-    return {"text/plain": repr(value), "text/html": "\n".join(parts)}
+        blocks += [_image(svg_picture(drawing)) for drawing in drawings]
+    return {"text/plain": repr(value), "text/html": "\n".join(blocks)}
 
 
 def _image(svg: str) -> str:

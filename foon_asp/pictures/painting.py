@@ -40,7 +40,7 @@ def _paint(axes: "Axes", elements: Iterable[dict[str, Any]]) -> None:
 
     for element in elements:
         bold_lines = int(element.get("class", "head0").rpartition("head")[2])
-        look: dict[str, Any] = {"linestyle": "solid", "linewidth": 1.0, "clip_on": False}
+        style: dict[str, Any] = {"linestyle": "solid", "linewidth": 1.0, "clip_on": False}
         for operation in (
             *element.get("_draw_", ()),
             *element.get("_hdraw_", ()),
@@ -48,23 +48,23 @@ def _paint(axes: "Axes", elements: Iterable[dict[str, Any]]) -> None:
         ):
             kind = operation["op"]
             if kind in "cC":
-                look["edgecolor" if kind == "c" else "facecolor"] = operation["color"]
+                style["edgecolor" if kind == "c" else "facecolor"] = operation["color"]
             elif kind == "F":
                 size = operation["size"]
             elif kind == "S":
                 name, _, width = operation["style"].rstrip(")").partition("(")
-                look |= {"linewidth": float(width)} if width else {"linestyle": name}
+                style |= {"linewidth": float(width)} if width else {"linestyle": name}
             elif kind == "T":
                 weight = "bold" if bold_lines > 0 else "normal"
                 x, y = operation["pt"]
                 axes.text(
-                    x, y, operation["text"], ha="center", size=size, color=look["edgecolor"], weight=weight
+                    x, y, operation["text"], ha="center", size=size, color=style["edgecolor"], weight=weight
                 )
                 bold_lines -= 1
             elif kind in "eE":
-                axes.add_artist(Circle(operation["rect"][:2], operation["rect"][2], **look))
+                axes.add_artist(Circle(operation["rect"][:2], operation["rect"][2], **style))
             elif kind in "pP":
-                axes.add_artist(Polygon(operation["points"], fill=kind == "P", **look))
+                axes.add_artist(Polygon(operation["points"], fill=kind == "P", **style))
             else:
                 codes = [Path.MOVETO, *[Path.CURVE4] * (len(operation["points"]) - 1)]
-                axes.add_artist(PathPatch(Path(operation["points"], codes), fill=kind == "B", **look))
+                axes.add_artist(PathPatch(Path(operation["points"], codes), fill=kind == "B", **style))

@@ -45,6 +45,7 @@ def two_columns(
 
 
 def _section(section: Pair) -> str:
+    """Return the HTML of pairs of units under their heading; nothing without any."""
     if not section.rows:
         return ""
     heading = f"{section.heading}: {len(section.rows):,}"
@@ -56,8 +57,8 @@ def _section(section: Pair) -> str:
 
 def _pair(row: Row) -> str:
     unit_a, unit_b, differences = row
-    column_a = _unit(unit_a, {(d.kind, d.a) for d in differences})
-    column_b = _unit(unit_b, {(d.kind, d.b) for d in differences})
+    column_a = _unit(unit_a, {(difference.kind, difference.a) for difference in differences})
+    column_b = _unit(unit_b, {(difference.kind, difference.b) for difference in differences})
     items = "".join(f"<li>{_difference(difference)}</li>" for difference in differences)
     return f'<div class="pair">{column_a}{column_b}{f"<ul>{items}</ul>" if items else ""}</div>'
 
@@ -66,15 +67,16 @@ def _difference(difference: UnitDifference) -> str:
     """Return a difference in words, such as ``state chopped only in A``."""
     prefix = f"{_text(difference.of)}: " if difference.of else ""
     sides = [f"<b>{_text(name)}</b>" for name in (difference.a, difference.b) if name]
-    where = (
+    location = (
         f"{sides[0]} in A, {sides[1]} in B"
         if len(sides) > 1
         else f"{sides[0]} only in {'A' if difference.a else 'B'}"
     )
-    return f"{prefix}{difference.kind} {where}"
+    return f"{prefix}{difference.kind} {location}"
 
 
 def _unit(unit: Unit | None, marked: set[tuple[str, str | None]]) -> str:
+    """Return the HTML of a unit, with the ``marked`` kinds and names in bold; an empty cell for ``None``."""
     if unit is None:
         return '<section class="none"></section>'
     motion = f"<b>{_text(unit.motion)}</b>" if ("motion", unit.motion) in marked else _text(unit.motion)

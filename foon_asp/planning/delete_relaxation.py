@@ -44,6 +44,7 @@ class _Relaxation:
             self._rules[default.pop()].append(axiom)
 
     def strips(self) -> StripsTask:
+        """Return the compiled task, with its relevant facts numbered in order."""
         task = self._task
         useful = self._useful()
         actions = [action for operator in task.operators for action in self._variants(operator, useful)]

@@ -124,6 +124,7 @@ def _closing(tokens: list[Token], opening: int) -> int:
 
 
 def _tokens(lines: list[str]) -> Iterator[Token]:
+    """Return the tokens of lines in lower case, without comments; a ``?`` begins a word."""
     for number, line in enumerate(lines, 1):
         content = line.split(";", 1)[0].lower()
         begin = 0

@@ -52,12 +52,12 @@ def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
     """
     steps: list[PlanStep] = []
     faults: list[Diagnostic] = []
-    begun = False
+    has_begun = False
     for number, line in _plan_lines(split_lines(text), file):
         content = _COMMENT.sub("", line)
-        if not content.strip() or (not begun and _HEAD.fullmatch(content)):
+        if not content.strip() or (not has_begun and _HEAD.fullmatch(content)):
             continue
-        begun = True
+        has_begun = True
         step = _STEP.fullmatch(content)
         if step is None:
             faults.append(
@@ -107,7 +107,7 @@ def _plan_lines(lines: Sequence[str], file: str) -> Sequence[tuple[int, str]]:
         message = "found a log that ends in the middle of this plan: it is cut off"
         raise InputError([_fault(file, first, lines[first - 1], 0, message)])
     steps = [
-        (number, _bare(line))
+        (number, _without_log_marks(line))
         for number, line in enumerate(lines[first:end], first + 1)
         if line.strip() and not _BETWEEN.match(line.strip())
     ]
@@ -118,7 +118,7 @@ def _plan_lines(lines: Sequence[str], file: str) -> Sequence[tuple[int, str]]:
     return steps
 
 
-def _bare(line: str) -> str:
+def _without_log_marks(line: str) -> str:
     """Return a line of a log with blanks instead of its time stamp, and without the cost of its step."""
     stamp = _STAMPED.match(line)
     blanks = " " * (stamp.end() if stamp else 0)

@@ -76,6 +76,7 @@ class _Reader:
         self._derived: set[int] = set()
 
     def read(self) -> SasTask:
+        """Return the task of the whole file."""
         self._expect("begin_version")
         if self._number() != _FORMAT_VERSION:
             self._fault(f"found another version, expected {_FORMAT_VERSION}")
@@ -100,6 +101,7 @@ class _Reader:
         return SasTask(self._file, facts, self._variables, derived, start, goal, operators, axioms, costed)
 
     def _variable(self) -> list[str]:
+        """Read a variable, and return the names of its facts."""
         self._expect("begin_variable")
         variable = self._next()
         if self._number() != -1:
@@ -138,14 +140,17 @@ class _Reader:
         return SasAxiom(body, self._value(variable, after), source)
 
     def _values(self) -> tuple[int, ...]:
+        """Read a number of lines with a variable and a value, and return their facts."""
         return tuple(self._value(*self._numbers(2)) for _ in range(self._number()))
 
     def _value(self, variable: int, value: int) -> int:
+        """Return the fact that is a value of a variable."""
         if not (0 <= variable < len(self._variables) and 0 <= value < len(self._variables[variable])):
             self._fault(f"found the value {value} of variable {variable}, which is not declared")
         return self._variables[variable][value]
 
     def _numbers(self, count: int | None) -> list[int]:
+        """Read a line of ``count`` numbers, or of any positive count for ``None``."""
         words = self._next().split()
         if not words or (count is not None and len(words) != count):
             self._fault(f"found {len(words)} words, expected {count or 'some'} numbers")

@@ -93,8 +93,8 @@ def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
     steps: list[list[int]] = []
     use_of: dict[tuple[Copy, str], int] = {}  # the use of a tool with this label that a made copy belongs to
 
-    def take(number: int, label: str, node: ObjectNode | None, copy: Copy | None) -> int:
-        """Return the use of a tool by a step: one that continues, or a new one, fetched from the kitchen."""
+    def assign(number: int, label: str, node: ObjectNode | None, copy: Copy | None) -> int:
+        """Assign a step to the use of a tool, one that continues or a new one, and return this use."""
         use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:
             names.append(label if node is None or not problem.at_hand(node) else means.name(node, label))
@@ -106,18 +106,18 @@ def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
     for number, step in enumerate(replay.steps):
         copies = {copy.node: copy for copy in (*step.gone, *step.stayed)}
         for label, demand in tools_asked(problem, means, step.unit).items():
-            after = {node: take(number, label, node, copies.get(node)) for node in demand.kept}
+            after = {node: assign(number, label, node, copies.get(node)) for node in demand.kept}
             changed = {
-                node: take(number, label, node, None if node is None else copies.get(node))
+                node: assign(number, label, node, None if node is None else copies.get(node))
                 for node in (*demand.changed, *demand.others)
             }
             fallback = next(iter((changed or after).values()), None)
-            for made in demand.made:
+            for output in demand.made:
                 if changed:
-                    after[made] = changed.pop(_most_similar(changed, made))
+                    after[output] = changed.pop(_most_similar(changed, output))
                 else:
-                    after[made] = take(number, label, None, None)
-                use_of[Copy(made, number), label] = after[made]
+                    after[output] = assign(number, label, None, None)
+                use_of[Copy(output, number), label] = after[output]
             for copy in step.came:
                 if copy.node.label != label and copy.node.is_in(label):
                     vessels = (use for node, use in after.items() if copy.node.label in node.ingredients)

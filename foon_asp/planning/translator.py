@@ -30,10 +30,10 @@ def installed() -> bool:
         return False
 
 
-def require_translator(what: str) -> None:
-    """Raise :class:`UserError` where the translator, which ``what`` needs, is not installed."""
+def require_translator(purpose: str) -> None:
+    """Raise :class:`UserError` where the translator, which ``purpose`` needs, is not installed."""
     if not installed():
-        raise UserError(f"{what} takes Fast Downward's translator, which is not installed: {_ADVICE}")
+        raise UserError(f"{purpose} takes Fast Downward's translator, which is not installed: {_ADVICE}")
 
 
 def translated(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> str:
@@ -92,14 +92,14 @@ def _failure(domain: PddlOutline, problem: PddlOutline, code: int, output: str) 
         return UserError(_input_error(domain, problem, lines))
     last = lines[-1] if lines else "it says nothing"
     if code == _OUT_OF_MEMORY or last.startswith("MemoryError"):
-        what = "Fast Downward's translator ran out of memory"
+        reason = "Fast Downward's translator ran out of memory"
     elif code < 0:
-        what = f"Fast Downward's translator was ended by signal {-code}"
+        reason = f"Fast Downward's translator was ended by signal {-code}"
     elif last.startswith("RecursionError"):
-        what = "found conditions nested too deeply for Fast Downward's translator: nest them less"
+        reason = "found conditions nested too deeply for Fast Downward's translator: nest them less"
     else:
-        what = f"Fast Downward's translator fails on these files, with {last[:200]!r}"
-    return UserError(f"{domain.file}, {problem.file}: {what}")
+        reason = f"Fast Downward's translator fails on these files, with {last[:200]!r}"
+    return UserError(f"{domain.file}, {problem.file}: {reason}")
 
 
 def _input_error(domain: PddlOutline, problem: PddlOutline, lines: list[str]) -> str:

@@ -82,8 +82,8 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
     @staticmethod
     def get_credits(**_: object) -> Any:
         """Return the authors, licence and description of the engine."""
-        words = "Cheapest plans of problems without deletes, proved by answer set programming and cuts."
-        return Credits(ENGINE, "The foon-asp developers", "", "", "MIT", words, words)
+        description = "Cheapest plans of problems without deletes, proved by answer set programming and cuts."
+        return Credits(ENGINE, "The foon-asp developers", "", "", "MIT", description, description)
 
     def _solve(
         self,

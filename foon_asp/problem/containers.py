@@ -79,7 +79,8 @@ def _sides(
         if unit_id is None:  # it needs all its inputs
             return unit.inputs, unit.outputs
         details = [
-            _sides(network.detailed.unit(d), rule, utensils, None) for d in network.stands_for[unit_id]
+            _sides(network.detailed.unit(detail), rule, utensils, None)
+            for detail in network.stands_for[unit_id]
         ]
         needed = set.intersection(*(_at_level(needs, network.level) for needs, _ in details))
         added = set.union(*(_at_level(gives, network.level) for _, gives in details))

@@ -76,8 +76,8 @@ class Costs:
         """
         if objective not in self.measures:
             needs = objective.row.needs
-            above = " above 0" if needs is Known.RATES else ""
-            raise ValueError(f"{str(objective)!r} cannot be computed: it needs {needs}{above}")
+            condition = " above 0" if needs is Known.RATES else ""
+            raise ValueError(f"{str(objective)!r} cannot be computed: it needs {needs}{condition}")
         return self.measures[objective]
 
     def key(self, objectives: Sequence[Objective]) -> tuple[int | Fraction, ...]:

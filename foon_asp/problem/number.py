@@ -15,32 +15,32 @@ _EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
 _MAX_EXPONENT = 1000  # of 10: the digits of 1e999999999 take hours to compute
 
 
-def exact(number: Number, what: str) -> Fraction:
-    """Return a number as an exact fraction; raises :class:`UserError`, with ``what`` it is, for others."""
+def exact(number: Number, quantity: str) -> Fraction:
+    """Return a number as an exact fraction; raises :class:`UserError` about the ``quantity``."""
     try:
         power = _EXPONENT.search(str(number)) if isinstance(number, str | Decimal) else None
         if power and abs(int(power[1])) > _MAX_EXPONENT:
             raise UserError(
-                f"found {str(number)[:40]} for {what}, expected an exponent of at most {_MAX_EXPONENT:,}"
+                f"found {str(number)[:40]} for {quantity}, expected an exponent of at most {_MAX_EXPONENT:,}"
             )
         return Fraction(repr(number) if isinstance(number, float) else number)
     except (ValueError, ZeroDivisionError, OverflowError):
-        raise UserError(f"found {number!r} for {what}, expected a number such as '0.85'") from None
+        raise UserError(f"found {number!r} for {quantity}, expected a number such as '0.85'") from None
 
 
-def unit_price(number: Number, what: str) -> Fraction:
-    """Return an exact price, from 0; raises :class:`UserError`, with ``what`` it is, for other values."""
-    price = exact(number, what)
+def unit_price(number: Number, quantity: str) -> Fraction:
+    """Return an exact price, from 0; raises :class:`UserError` about the ``quantity`` for others."""
+    price = exact(number, quantity)
     if price < 0 or max(price.numerator, price.denominator).bit_length() > _MAX_PRICE_BITS:
         raise UserError(
-            f"found {str(number)[:40]} for {what}, expected a price from 0, of at most 1,000 digits"
+            f"found {str(number)[:40]} for {quantity}, expected a price from 0, of at most 1,000 digits"
         )
     return price
 
 
-def success_rate(number: Number, what: str) -> Fraction:
+def success_rate(number: Number, quantity: str) -> Fraction:
     """Return an exact success rate, above 0 and at most 1; raises :class:`UserError` for other values."""
-    rate = exact(number, what)
+    rate = exact(number, quantity)
     if not 0 < rate <= 1:
-        raise UserError(f"found {number} for {what}, expected a number above 0 and at most 1")
+        raise UserError(f"found {number} for {quantity}, expected a number above 0 and at most 1")
     return rate

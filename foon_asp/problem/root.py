@@ -29,10 +29,13 @@ class Root:
             raise ValueError("expected a positive degree, and a positive number under the root")
         for divisor in range(2, degree + 1):
             while degree % divisor == 0:
-                above, below = whole_root(divisor, of.numerator), whole_root(divisor, of.denominator)
-                if above**divisor != of.numerator or below**divisor != of.denominator:
+                numerator, denominator = (
+                    whole_root(divisor, of.numerator),
+                    whole_root(divisor, of.denominator),
+                )
+                if numerator**divisor != of.numerator or denominator**divisor != of.denominator:
                     break
-                degree, of = degree // divisor, Fraction(above, below)
+                degree, of = degree // divisor, Fraction(numerator, denominator)
         return cls(degree, of)
 
     @property

@@ -96,7 +96,8 @@ class Shop:
             o = open_preconditions.pop()
             if o not in plan:
                 plan[o] = ends.makers[o]
-                open_preconditions += next((b.lacks for b in plan[o] if b.unit == cheapest.get(o)), ())
+                lacking = (blocked.lacks for blocked in plan[o] if blocked.unit == cheapest.get(o))
+                open_preconditions += next(lacking, ())
         units = {cheapest[o] for o in plan if o in cheapest}
         plan = {o: [blocked for blocked in makers if blocked.unit in units] for o, makers in plan.items()}
         listed = plan.keys() - cheapest

@@ -72,9 +72,9 @@ def share(
             worker = workers.get(number)
             if worker is None:  # it was killed before its message was read
                 continue
-            done = worker.task
+            finished = worker.task
             if kind == "ready":
-                worker.start_timer(seconds(done))
+                worker.start_timer(seconds(finished))
                 continue
             if kind == "lost":
                 code = worker.end() if worker.is_late else worker.died()
@@ -90,7 +90,7 @@ def share(
             else:
                 del workers[number]
                 worker.end()
-            yield Done(done, None, value) if kind != "done" else Done(done, value, None)
+            yield Done(finished, None, value) if kind != "done" else Done(finished, value, None)
     finally:
         for worker in workers.values():
             worker.end()
@@ -152,30 +152,30 @@ def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
 def serve() -> None:
     """Do tasks as a process of a pool, after ``begin``, and send their answers, until the parent ends."""
     received, answers = requests(receive_packed)
-    do = _work(received.get())
+    work = _task_function(received.get())
     with contextlib.suppress(BrokenPipeError):  # the parent has ended
         send(answers, ("ready", None))
         while True:
-            write(answers, _answer(do, received.get()))
+            write(answers, _answer(work, received.get()))
 
 
-def _work(begin: bytes) -> Callable[[Any], Any]:
+def _task_function(begin: bytes) -> Callable[[Any], Any]:
     """Return the function that does tasks; where ``begin`` raises, one that raises the same for each task."""
     try:
-        do: Callable[[Any], Any] = pickle.loads(begin)()
+        work: Callable[[Any], Any] = pickle.loads(begin)()
     except Exception as error:
         failure = error
 
-        def do(_: object) -> Any:
+        def work(_: object) -> Any:
             raise failure
 
-    return do
+    return work
 
 
-def _answer(do: Callable[[Any], Any], task: bytes) -> bytes:
+def _answer(work: Callable[[Any], Any], task: bytes) -> bytes:
     """Return the message with the answer to a task, or with the exception that it raised."""
     try:
-        return packed(("done", do(pickle.loads(task))))
+        return packed(("done", work(pickle.loads(task))))
     except Exception as error:
         return packed(("raised", _portable(error)))
 

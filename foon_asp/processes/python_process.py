@@ -32,13 +32,13 @@ class PythonProcess:
 
     It has the module search path of this process, and never outlives it. ``options`` are of Python.
 
-    Raises :class:`UserError` where the path of Python is not known; ``what`` begins its message.
+    Raises :class:`UserError` where the path of Python is not known; ``activity`` begins its message.
     """
 
-    def __init__(self, module: str, what: str, *options: str, stderr: int | None = None) -> None:
+    def __init__(self, module: str, activity: str, *options: str, stderr: int | None = None) -> None:
         if not sys.executable:
             raise UserError(
-                f"{what} by a Python of their own, and this program does not know where Python is: "
+                f"{activity} by a Python of their own, and this program does not know where Python is: "
                 "sys.executable is not set"
             )
         paths = [_PACKAGES, *(str(Path(path).resolve()) for path in sys.path)]

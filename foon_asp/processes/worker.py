@@ -33,12 +33,12 @@ class Worker(PythonProcess):
     def __init__(
         self,
         module: str,
-        what: str,
+        activity: str,
         *options: str,
         stderr: int | None = None,
         read: Callable[[RawIOBase], Message] = receive,
     ) -> None:
-        super().__init__(module, what, *options, stderr=stderr)
+        super().__init__(module, activity, *options, stderr=stderr)
         self.has_spoken = False
         self._busy = False  # from a request until its answer, and after the end
         self._messages: queue.SimpleQueue[Message | None] = queue.SimpleQueue()

@@ -143,13 +143,13 @@ async def _stream(
             with contextlib.suppress(RuntimeError):  # the server has ended
                 loop.call_soon_threadsafe(queue.put_nowait, event)
 
-        def work() -> None:
+        def run() -> None:
             try:
                 answer(token, tell)
             finally:
                 tell(None)
 
-        Aside(work)
+        Aside(run)
         try:
             while (event := await queue.get()) is not None:
                 yield json_line(event) + "\n"

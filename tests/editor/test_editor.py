@@ -92,7 +92,7 @@ def test_a_session_in_an_editor(client: LanguageClient, tmp_path: Path) -> None:
         "not in the kitchen",
         "state 'chopped': 2 times",
     ]
-    assert "at hand: the kitchen has it" in text.ask("hover", 0, 4)["contents"]["value"]
+    assert "available: it is in the kitchen" in text.ask("hover", 0, 4)["contents"]["value"]
     (maker,) = text.ask("definition", 7, 4)
     assert (maker["uri"], maker["range"]["start"]["line"]) == (text.uri, 4)
     assert text.ask("definition", 0, 4) == []

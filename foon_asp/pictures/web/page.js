@@ -157,20 +157,20 @@ class TreePanel {
   tell() {
     const step = this.steps[this.step - 1];
     const parts = [];
-    if (!step) parts.push(el("h2", {}, "Before the first step"), el("p", { class: "said" }, "What the plan takes is in the kitchen."));
+    if (!step) parts.push(el("h2", {}, "Before the first step"), el("p", { class: "said" }, "All that the plan uses from the kitchen is available."));
     else {
       parts.push(el("h2", {}, `Step ${step.step}: ${step.motion}`));
       const group = (name, nodes, look) => nodes.length ? [el("h3", {}, name), el("ul", {}, nodes.map((node) => this.thing(node, look, step.step)))] : [];
       const gone = step.inputs.filter((input) => input.stays === false);
-      parts.push(...group("took", step.inputs.filter((input) => input.stays !== false), "took"));
-      parts.push(...group("used up", gone, "minus"), ...group("came", this.newOf(step), "plus"));
+      parts.push(...group("uses", step.inputs.filter((input) => input.stays !== false), "took"));
+      parts.push(...group("uses up", gone, "minus"), ...group("makes", this.newOf(step), "plus"));
     }
     this.now.replaceChildren(...parts);
     const there = this.there();
     this.kitchen.replaceChildren(
       el("summary", {}, `Kitchen after ${this.step ? `step ${this.step}` : "no step"}: ${counted(there.length, "object")}`),
-      this.items === "lasting" ? el("p", { class: "said" }, "Nothing runs out: what was made or at hand stays. Only what the plan takes is listed.")
-        : el("p", { class: "said" }, "What was made and is used up is gone. What the plan takes from the kitchen is listed as it was at the start."),
+      this.items === "lasting" ? el("p", { class: "said" }, "Nothing runs out: all available items stay. Only items that the plan uses are listed.")
+        : el("p", { class: "said" }, "Items that are used up are gone. Items that the plan uses from the kitchen are listed as at the start."),
       el("ul", {}, there.map(({ node, copies, came }) => {
         const item = this.thing(node, came ? "plus" : "", this.step);
         if (copies > 1) item.firstChild.append(el("small", {}, ` × ${copies}`));
@@ -208,8 +208,8 @@ class TreePanel {
         el("dt", {}, "step"), el("dd", {}, String(step)),
         rate ? [el("dt", {}, "rate"), el("dd", {}, figure(rate))] : null,
         el("dt", {}, "read at"), el("dd", {}, el("ul", {}, sourceList(unit)))),
-        el("h3", {}, "takes"), el("ul", {}, unit.inputs.map((node) => this.thing(node, "took", step))),
-        el("h3", {}, "gives"), el("ul", {}, unit.outputs.map((node) => this.thing(node, node.made ? "plus" : "", step)))];
+        el("h3", {}, "uses"), el("ul", {}, unit.inputs.map((node) => this.thing(node, "took", step))),
+        el("h3", {}, "makes"), el("ul", {}, unit.outputs.map((node) => this.thing(node, node.made ? "plus" : "", step)))];
     } else {
       const makers = this.steps.filter((each) => each.outputs.some((node) => node.made && keyOf(node) === object));
       const needers = this.steps.filter((each) => each.inputs.some((node) => keyOf(node) === object));

@@ -1,4 +1,4 @@
-// The page that asks: what is asked stands on the left, and what was answered is a page of its own on the right.
+// The interactive page: a form with the question on the left, and the page of the answer on the right.
 
 const { first } = data;
 const body = (value) => ({ method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(value) });
@@ -107,7 +107,7 @@ const status = el("p", { class: "told", role: "status" });
 const asks = el("button", { type: "button", class: "tool main", click: () => ask() }, "Ask");
 const stops = el("button", { type: "button", class: "tool", disabled: true, click: () => fetch("cancel", body({})) }, "Cancel");
 const frame = el("iframe", { title: "The answer" });
-const newer = el("button", { type: "button", class: "tool", hidden: true, click: () => open(latest) }, "Show what came since");
+const newer = el("button", { type: "button", class: "tool", hidden: true, click: () => open(latest) }, "Show the new answer");
 let latest = 0;
 let shown = 0;
 let touched = false;  // whether somebody is at work on the page that is shown
@@ -115,14 +115,14 @@ let turn = 0;
 let busy = false;  // whether something is being answered
 
 document.body.append(
-  el("main", { class: "form" }, el("h1", {}, "What is asked"),
+  el("main", { class: "form" }, el("h1", {}, "Question"),
     group("Goals", goalChips.list, ...goalField.parts),
-    group("What is best", objectiveChips.list, more),
+    group("Objective", objectiveChips.list, more),
     el("div", { class: "pair" }, group("Containers", containers), group("Items", items)),
     group("Kitchen", ...kitchenField.parts, kitchen),
     group("Rules", rules, wrong),
     ...(data.always.length ? [group("In every question", el("ul", { class: "said" }, data.always.map((each) => el("li", {}, each))))] : []),
-    group("Beside the tree", beside),
+    group("Also show", beside),
     el("div", { class: "acts" }, asks, stops), status, newer),
   frame);
 
