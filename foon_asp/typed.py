@@ -12,7 +12,7 @@ from foon_asp.errors import UserError
 P = ParamSpec("P")
 T = TypeVar("T")
 
-_WORDS = {
+_TYPE_WORDS = {
     "int": "a whole number",
     "float": "a number",
     "bool": "True or False",
@@ -106,4 +106,4 @@ def _words(kind: Any) -> Iterator[str]:
         yield f"several such as [{', '.join(dict.fromkeys(_words(arguments[0])))}]"
     elif kind is not types.NoneType:
         name = (origin or kind).__name__ if isinstance(origin or kind, type) else ""
-        yield _WORDS.get(name, name) if name else "something else"
+        yield _TYPE_WORDS.get(name, name) if name else "something else"

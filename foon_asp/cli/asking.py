@@ -12,7 +12,7 @@ from click.core import ParameterSource
 
 from foon_asp.cli import options
 from foon_asp.cli.output import say
-from foon_asp.cli.progress import Progress
+from foon_asp.cli.progress_line import Progress
 from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError

@@ -23,7 +23,7 @@ from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath, WrittenPath
 from foon_asp.cli.output_file import check_outputs, refuse_inputs
-from foon_asp.cli.progress import Progress
+from foon_asp.cli.progress_line import Progress
 from foon_asp.comparison.rows_file import RowsFile
 from foon_asp.document.json_document import document
 from foon_asp.network import counted

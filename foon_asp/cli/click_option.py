@@ -14,19 +14,19 @@ from foon_asp.rules.constraint import Constraint, RuleText, named_constraint
 
 Command = TypeVar("Command", bound=Callable[..., object])
 
-_RULES = "foon_asp.rules"
+_RULES_KEY = "foon_asp.rules"
 
 
 def _keep_rules(context: click.Context, _: click.Parameter, value: tuple[str, ...]) -> None:
     """Store the rules of a command in its context, for :func:`_with_rules`."""
-    context.meta[_RULES] = tuple(map(RuleText, value))
+    context.meta[_RULES_KEY] = tuple(map(RuleText, value))
 
 
 def _with_rules(
     context: click.Context, _: click.Parameter, value: tuple[Constraint, ...]
 ) -> tuple[Constraint, ...]:
     """Return the constraints of a command followed by its rules, without duplicates."""
-    return tuple(dict.fromkeys((*value, *context.meta.get(_RULES, ()))))
+    return tuple(dict.fromkeys((*value, *context.meta.get(_RULES_KEY, ()))))
 
 
 def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> dict[Constraint, int]:

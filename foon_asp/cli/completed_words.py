@@ -12,7 +12,7 @@ from foon_asp.problem import Objective
 from foon_asp.rules.constraint_library import library_constraints
 from foon_asp.text.goal_name import entry_names, nodes_beginning
 
-_MAX_NAMES = 200  # of a completion: shells list no more readably
+_MAX_NAMES = 200  # of a completion: a shell cannot list more in a readable way
 
 # Endings of the names of constants whose values are motions, or labels.
 _MOTIONS, _LABELS = "_motion", ("_object", "_intermediate", "_ingredient")

@@ -18,8 +18,8 @@ from foon_asp.cli.verbs import SHELL_REQUEST
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 
-_MAX_WORDS = 200  # of a completion: shells list no more readably
-_LINE = "FOON_ASP_LINE"  # in the environment: the line up to the cursor
+_MAX_WORDS = 200  # of a completion: a shell cannot list more in a readable way
+_LINE_VARIABLE = "FOON_ASP_LINE"  # in the environment: the line up to the cursor
 
 
 class _Shell(ShellComplete):
@@ -30,7 +30,9 @@ class _Shell(ShellComplete):
 
     def get_completion_args(self) -> tuple[list[str], str]:
         """Return the words after the name of the program, and the incomplete word at the cursor."""
-        *words, typed = split_arg_string(f"{os.environ[_LINE]}x")  # x: the last word is begun even if empty
+        *words, typed = split_arg_string(
+            f"{os.environ[_LINE_VARIABLE]}x"
+        )  # x: the last word is begun even if empty
         return words[1:], typed[:-1]
 
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
@@ -69,7 +71,7 @@ complete -o default -o filenames -F _foon_asp %(prog_name)s
 
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
         """Return the completions without the text up to the last ``:`` or ``=``."""
-        is_quoted = os.environ[_LINE].removesuffix(incomplete).endswith(("'", '"'))
+        is_quoted = os.environ[_LINE_VARIABLE].removesuffix(incomplete).endswith(("'", '"'))
         completed = None if is_quoted else re.match(r".*[:=]", incomplete)
         items = super().get_completions(args, incomplete)
         return [CompletionItem(item.value[completed.end() :]) for item in items] if completed else items

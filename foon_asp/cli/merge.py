@@ -9,7 +9,7 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import WrittenPath
 from foon_asp.cli.output import write_output
 from foon_asp.cli.output_file import check_outputs
-from foon_asp.cli.progress import bytes_bar
+from foon_asp.cli.progress_line import bytes_bar
 from foon_asp.errors import UserError
 from foon_asp.questions.merge import merge_files
 from foon_asp.report.unit_block import kept_apart_text

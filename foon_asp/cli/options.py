@@ -10,7 +10,7 @@ from foon_asp.cli.click_option import Command, click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath, WrittenPath
 from foon_asp.cli.output import say
-from foon_asp.cli.progress import bytes_bar
+from foon_asp.cli.progress_line import bytes_bar
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.reading import read_dataset as read_data
 from foon_asp.deadline import Deadline, LimitError, Watch

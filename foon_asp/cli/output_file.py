@@ -13,7 +13,7 @@ from foon_asp.errors import UserError
 from foon_asp.rules.constraint import LibraryUse, find_constraint
 from foon_asp.text.data_folder import find_data, network_files
 
-_DATA = ("kitchen", "rates", "utensils", "goals", "unit_prices")
+_DATA_OPTIONS = ("kitchen", "rates", "utensils", "goals", "unit_prices")
 _STDIN = Path("/dev/stdin")  # may be a file: foon-asp lint - < recipe.txt
 
 
@@ -52,7 +52,7 @@ def read_files() -> Iterator[Path]:
     if "network" in context.params:
         sources = context.params.get("sources", ())
         folder, network = with_sources(sources, context.params["folder"], context.params["network"])
-        files = find_data(folder, network, **{name: context.params[name] for name in _DATA})
+        files = find_data(folder, network, **{name: context.params[name] for name in _DATA_OPTIONS})
         yield from files.network
         yield from filter(None, files[1:])
     yield _STDIN

@@ -27,7 +27,7 @@ from foon_asp.questions.index import INDEX
 from foon_asp.questions.posing import no_data
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 
-_CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
+_EXIT_CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
 _LIMITS = frozenset({"time_limit", "memory_limit"})
 _NOT_FOR_TERMINALS = {"png": "PNG", "pdf": "PDF", "html": "a page of HTML"}
 _ESCAPED = frozenset({"text", "json", "csv", "markdown", "steps"})  # other formats are written unchanged
@@ -98,7 +98,7 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
             keep(result)
         except NoTreeError as error:
             click.echo(str(error), err=True)
-            return _CODES[error.ending]
+            return _EXIT_CODES[error.ending]
         for chart in charts:
             try:
                 result.write_chart(chart)
@@ -110,7 +110,7 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
                 _show(result, form, parameters(question, values, Part.TEXT))
             else:
                 _write(result, form, output)
-        return _CODES[result.ending]
+        return _EXIT_CODES[result.ending]
 
     return answer
 

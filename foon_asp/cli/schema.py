@@ -8,7 +8,7 @@ from foon_asp.document.schema import schema, schema_kinds
 from foon_asp.errors import UserError
 from foon_asp.text.json_value import json_text, schema_name
 
-_KINDS = {"solve": "answer"}  # of verbs whose documents have another name
+_DOCUMENT_KINDS = {"solve": "answer"}  # of verbs whose documents have another name
 
 
 @click.command("schema")
@@ -29,9 +29,9 @@ def command(verb: str | None) -> ExitCode:
         for kind in kinds:
             click.echo(f"{schema_name(kind):<26} {schema(kind)['title']}")
         return ExitCode.DONE
-    kind = _KINDS.get(verb, verb)
+    kind = _DOCUMENT_KINDS.get(verb, verb)
     if kind not in kinds:
-        names = ", ".join(sorted({*kinds, *_KINDS}))
+        names = ", ".join(sorted({*kinds, *_DOCUMENT_KINDS}))
         raise UserError(f"found {verb!r}, expected a verb that has a schema: {names}")
     click.echo(json_text(schema(kind)), nl=False)
     return ExitCode.DONE

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from foon_asp.editor.checked_text import CheckedText
 from foon_asp.editor.edited_text import EditedText
-from foon_asp.editor.field import KINDS, Field, field_at
+from foon_asp.editor.field import NAME_KINDS, Field, field_at
 from foon_asp.editor.json_rpc import INVALID_PARAMETERS, RequestError, parameter
 from foon_asp.errors import UserError
 from foon_asp.linting.names import Names
@@ -84,7 +84,7 @@ def _item(text: EditedText, line: int, field: Field, names: Names, kind: NameKin
     id_ = "" if field.id is None else max(ids, key=ids.__getitem__, default="")
     bracket = ""
     if kind is NameKind.WORD and field.end == len(text.lines[line]):
-        holding = sum(mention.often for mention in mentions if _holds(mention.line))
+        holding = sum(mention.often for mention in mentions if _is_contents(mention.line))
         bracket = "\t{" if 2 * holding > count else "\t["
     item: Json = {
         "label": name,
@@ -97,7 +97,7 @@ def _item(text: EditedText, line: int, field: Field, names: Names, kind: NameKin
     return item
 
 
-def _holds(line: Line) -> bool:
+def _is_contents(line: Line) -> bool:
     return isinstance(line, StateLine) and isinstance(line.attribute, Contents)
 
 
@@ -119,7 +119,7 @@ def _line_heads(text: EditedText, line: int, letter: int, names: Names) -> list[
         head, digits = match.groups()
         matches = sorted(
             (id_, name, kind)
-            for kind in KINDS[head]
+            for kind in NAME_KINDS[head]
             for name in names.counts[kind]
             for id_ in _ids(names, kind, name)
             if id_.startswith(digits)

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from foon_asp.text.renaming import NameKind
 
-_HEAD = re.compile(r"([OSM])(\d*)\t")
-KINDS: dict[str, tuple[NameKind, ...]] = {
+_LINE_HEAD = re.compile(r"([OSM])(\d*)\t")
+NAME_KINDS: dict[str, tuple[NameKind, ...]] = {
     "O": (NameKind.OBJECT,),
     "S": (NameKind.STATE, NameKind.WORD),
     "M": (NameKind.MOTION,),
@@ -32,11 +32,11 @@ class Field(NamedTuple):
 
 def field_at(line: str, position: int) -> Field | None:
     """Return the field of a line that has or ends at the letter ``position``; ``None`` outside of names."""
-    head = _HEAD.match(line)
+    head = _LINE_HEAD.match(line)
     if head is None or position < head.end():
         return None
     letter, id_ = head.groups()
-    kinds = KINDS[letter]
+    kinds = NAME_KINDS[letter]
     fields = _FIELD.finditer(line, head.end())
     field = next(field for field in fields if field.start() <= position <= field.end())
     prefix = line[head.end() : field.start()]

@@ -38,7 +38,9 @@ from foon_asp.engines.engine import (
 from foon_asp.problem import Costs, Objective, levels, multiplies
 
 NAME: Final = "clingo"
-OPTIONS: Final = ("--opt-strategy=usc,pmres,disjoint,stratify",)  # of all strategies, proved most optima
+OPTIONS: Final = (
+    "--opt-strategy=usc,pmres,disjoint,stratify",
+)  # of the strategies tried, it ended most often
 MAX_KINDS = 10_000  # of trees within the bound: more prove more answers, and take longer to enumerate
 _MAX_MEMORY: Final = 4 * 2**30  # bytes, where no memory limit is smaller
 _EXIT_CODES: Final = {0, 10, 20, 30}  # without a fault: of the Python module, and of the program

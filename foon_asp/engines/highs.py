@@ -1,9 +1,9 @@
 """HiGHS as a second engine: the question as a mixed integer program.
 
-A binary variable for every unit says that it is used; another one for every unit and node says that the unit
-is the achiever of that node, and an integer one is the level of every node that has to be made. A used unit
-has an achiever of each of its preconditions, and an achieved node is on a higher level than the preconditions
-of its achiever, so that no node supports itself.
+A binary variable for every unit says that it is used; another one for every unit and node that it makes says
+that the unit is the achiever of this node; and a continuous one is the level of every node that has to be
+made. Each precondition of a used unit has an achiever, and an achieved node is on a higher level than the
+preconditions of its achiever, so that no node supports itself.
 """
 
 import time
@@ -16,7 +16,7 @@ from foon_asp.problem import Objective, Problem
 
 NAME: Final = "HiGHS"
 _ROW_TOLERANCE: Final = 1e-6  # of a sum of fractions or logarithms: HiGHS keeps a row within it
-_OPTIONS: Final = {
+_HIGHS_OPTIONS: Final = {
     "threads": 1,
     "mip_rel_gap": 0.0,
     "mip_abs_gap": 1e-9,
@@ -51,7 +51,7 @@ class _Program:
     def __init__(self, problem: Problem, forbidden: frozenset[int]) -> None:
         self._library, self._numpy = libraries()
         self._problem, self._highs = problem, silent_highs()
-        for option, value in _OPTIONS.items():
+        for option, value in _HIGHS_OPTIONS.items():
             self._highs.setOptionValue(option, value)
         binary, require, total = self._highs.addBinary, self._highs.addConstr, self._highs.qsum
         scope = scope_of(problem, forbidden)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 
-_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9])?", re.ASCII)
+_OFFER_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9])?", re.ASCII)
 _MAX_FAULT_LETTERS = 300  # of an error: a package may print any amount
 
 
@@ -113,7 +113,7 @@ def offers_by_name(offers: Iterable[Offer], reserved: Iterable[str]) -> dict[str
     owners = {name.lower(): "foon-asp" for name in reserved}
     by_name: dict[str, Offer] = {}
     for offer in offers:
-        if not _NAME.fullmatch(offer.name):
+        if not _OFFER_NAME.fullmatch(offer.name):
             raise offer.fault("expected a name of up to 40 letters and digits, with - _ . between them")
         if offer.name.lower() in owners:
             raise offer.fault(f"the name is taken: {owners[offer.name.lower()]} has one that is called so")

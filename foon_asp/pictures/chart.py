@@ -19,7 +19,7 @@ COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0
 _WIDTH_INCHES = 7.15  # both columns of a printed page
 _SUFFIXES = (".svg", ".png")
 _INK = "#333333"  # of text and axes
-_STYLE: dict[Any, Any] = {  # by the names that matplotlib has for its settings
+_MATPLOTLIB_STYLE: dict[Any, Any] = {  # by the names that matplotlib has for its settings
     "font.family": "sans-serif",
     # The first comes with matplotlib, so that layouts are equal on all machines; the others are for viewers
     # of an SVG without it.
@@ -83,7 +83,7 @@ def new_figure(width: float, height: float, **options: Any) -> "Iterator[Figure]
         ) from None
     with mpl.rc_context():
         mpl.rcdefaults()
-        mpl.rcParams.update(_STYLE)
+        mpl.rcParams.update(_MATPLOTLIB_STYLE)
         yield Figure((width, height), **options)
 
 

@@ -20,19 +20,19 @@ _NAMED_NODES = 24  # of a large network, by degree: names of more would overlap
 
 # Objects are green and motions red, as in the FOON literature. For readers with a color deficiency, motions
 # are dark and have corners, and objects are light and rounded.
-_LOOKS = {
+_ROLE_ATTRIBUTES = {
     Role.MOTION: 'style=filled, fillcolor="#c62828", color="#8e0000", fontcolor="#ffffff", fontsize=11',
     Role.KITCHEN: 'fillcolor="#e3f4e1", color="#7cb97c", fontsize=9',
     Role.OBJECT: 'fillcolor="#93d293", color="#2e7d32"',
     Role.BY_PRODUCT: 'fillcolor="#ffffff", color="#7cb97c", style="filled,rounded,dashed", fontsize=9',
     Role.GOAL: 'fillcolor="#ffd54f", color="#a67c00", penwidth=2, peripheries=2, fontsize=12',
 }
-_BOXES = f"""\
+_BOX_DEFAULTS = f"""\
   graph [fontname="{FONT}", fontsize=12, labelloc=t, nodesep=0.12, ranksep=0.3, pad=0.15]
   node [fontname="{FONT}", fontsize=10, shape=box, style="filled,rounded",
     margin="0.13,0.05", width=0, height=0]
   edge [color="#616161", arrowsize=0.6]"""
-_SPOTS = f"""\
+_POINT_DEFAULTS = f"""\
   graph [fontname="{FONT}", fontsize=40, labelloc=t, pad=0.5, outputorder=edgesfirst,
     layout=sfdp, start=1, K=4, repulsiveforce=0.5, overlap=true]
   node [fontname="{FONT}", label="", shape=circle, style=filled,
@@ -44,8 +44,8 @@ def dot_text(drawing: Drawing) -> str:
     """Return a drawing as DOT, from top to bottom; a network of many units as :func:`graph_text`."""
     if drawing.graph and drawing.units > BOXED_UNITS:
         return graph_text(drawing)
-    labels = (_node(box, (*box.head, *box.details), _LOOKS[box.role]) for box in drawing.boxes)
-    return _text(drawing, _BOXES, [*_legend(drawing), *labels])
+    labels = (_node(box, (*box.head, *box.details), _ROLE_ATTRIBUTES[box.role]) for box in drawing.boxes)
+    return _text(drawing, _BOX_DEFAULTS, [*_legend(drawing), *labels])
 
 
 def graph_text(drawing: Drawing) -> str:
@@ -60,13 +60,12 @@ def graph_text(drawing: Drawing) -> str:
     lines = [f"  {' -> '.join(motions)} [style=invis]"]  # neighbours in a file are close to each other
     for box in sorted(drawing.boxes, key=lambda box: box.name in named):  # names are painted last
         label = box.head if box.name in named else ()
-        attributes = (
-            f"{_LOOKS[box.role].partition(', penwidth')[0]}, fontsize=24, fontcolor=black, style=filled"
-        )
+        colors = _ROLE_ATTRIBUTES[box.role].partition(", penwidth")[0]
+        attributes = f"{colors}, fontsize=24, fontcolor=black, style=filled"
         shape = "circle" if box.node else "square"
         tooltip = _quoted(["; ".join((*box.head, *box.details))])
         lines.append(_node(box, label, f"{attributes}, shape={shape}, tooltip={tooltip}"))
-    return _text(drawing, _SPOTS, lines)
+    return _text(drawing, _POINT_DEFAULTS, lines)
 
 
 def _text(drawing: Drawing, defaults: str, nodes: Iterable[str]) -> str:
@@ -81,7 +80,7 @@ def _legend(drawing: Drawing) -> Iterator[str]:
     yield '  subgraph cluster_legend {\n    label="" color="#bdbdbd"'
     for number, role in enumerate(Role):
         if role in roles:
-            yield "  " + _node(Box(f"legend{number}", role, role), (role,), _LOOKS[role])
+            yield "  " + _node(Box(f"legend{number}", role, role), (role,), _ROLE_ATTRIBUTES[role])
     yield "  }"
 
 

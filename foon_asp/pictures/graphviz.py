@@ -18,7 +18,7 @@ _PAGE_UNITS_PER_INCH = 180  # coordinates on the page for an inch of Graphviz: f
 
 # What DOT cannot express: the head of a label, its first lines, is bold; and where the font is missing,
 # another sans-serif one is used.
-_STYLE = f"""\
+_SVG_STYLE = f"""\
 <style>
 text {{ font-family: "{FONT}", Verdana, Arial, sans-serif }}
 path+text, polygon+text,
@@ -35,7 +35,7 @@ def svg_picture(drawing: Drawing) -> str:
     Raises :class:`UserError` for a drawing that is too large, and where Graphviz is not installed.
     """
     svg = _laid_out(drawing, dot_text(drawing), "svg").decode()
-    return svg[svg.index("<svg") :].replace('<g id="graph0"', _STYLE + '<g id="graph0"', 1)
+    return svg[svg.index("<svg") :].replace('<g id="graph0"', _SVG_STYLE + '<g id="graph0"', 1)
 
 
 def layout(drawing: Drawing) -> dict[str, Any]:

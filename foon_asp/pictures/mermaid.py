@@ -7,7 +7,7 @@ from foon_asp.pictures.drawing import Box, Drawing, Role
 from foon_asp.text.json_value import json_line
 
 # By role: the brackets of a box and its style. Mermaid has no double borders: a goal's is thick.
-_BOXES = {
+_ROLE_STYLES = {
     Role.MOTION: ("[", "]", "fill:#c62828,stroke:#8e0000,color:#ffffff"),
     Role.KITCHEN: ("(", ")", "fill:#e3f4e1,stroke:#7cb97c,color:#000000"),
     Role.OBJECT: ("(", ")", "fill:#93d293,stroke:#2e7d32,color:#000000"),
@@ -35,11 +35,11 @@ def _lines(drawing: Drawing) -> Iterator[str]:
     yield "flowchart TD"
     yield from (f"  {_node(box)}" for box in drawing.boxes)
     yield from (f"  {tail} --> {head}" for tail, head in drawing.arrows)
-    yield from (f"  classDef {_css(role)} {style}" for role, (_, _, style) in _BOXES.items())
+    yield from (f"  classDef {_css(role)} {style}" for role, (_, _, style) in _ROLE_STYLES.items())
 
 
 def _node(box: Box) -> str:
-    opening, closing, _ = _BOXES[box.role]
+    opening, closing, _ = _ROLE_STYLES[box.role]
     head = "<br/>".join(map(_escaped, box.head))
     label = "<br/>".join((f"<b>{head}</b>", *map(_escaped, box.details)))
     return f'{box.name}{opening}"{label}"{closing}:::{_css(box.role)}'

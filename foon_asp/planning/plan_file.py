@@ -14,8 +14,8 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.plain_file import split_lines
 
 _COMMENT = re.compile(r"\s*;.*")
-_HEAD = re.compile(r"\s*\w*Plan\w*:?\s*")  # of unified-planning: SequentialPlan:
-_STEP = re.compile(
+_HEADING = re.compile(r"\s*\w*Plan\w*:?\s*")  # of unified-planning: SequentialPlan:
+_PLAN_STEP = re.compile(
     r"""\s*
     (?:(?:step\s+)?\d+(?:\.\d+)?\s*:\s*)?           # 0: or 0.000: or step 0:
     (?:\(\s*(?P<listed>[^\s();:]+)\s*\)|            # (u580-pour)
@@ -32,9 +32,9 @@ _LOG = re.compile(
 _PLAN_FOLLOWS = re.compile(rf"{_STAMP}solution found!|ff: found (?:a )?(?:legal )?plan", re.IGNORECASE)
 _PLAN_ENDS = re.compile(rf"{_STAMP}plan (?:length|cost):|plan cost:|time spent:", re.IGNORECASE)
 _BETWEEN = re.compile(rf"{_STAMP}actual search time:", re.IGNORECASE)
-_LENGTH = re.compile(rf"{_STAMP}plan length:\s*(\d+)", re.IGNORECASE)
+_PLAN_LENGTH = re.compile(rf"{_STAMP}plan length:\s*(\d+)", re.IGNORECASE)
 _STAMPED = re.compile(_STAMP)
-_COST = re.compile(r"\s\(\d+\)\s*\Z")  # of a step of Fast Downward: u26-twist (1)
+_STEP_COST = re.compile(r"\s\(\d+\)\s*\Z")  # of a step of Fast Downward: u26-twist (1)
 
 
 class PlanStep(NamedTuple):
@@ -55,10 +55,10 @@ def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
     has_begun = False
     for number, line in _plan_lines(split_lines(text), file):
         content = _COMMENT.sub("", line)
-        if not content.strip() or (not has_begun and _HEAD.fullmatch(content)):
+        if not content.strip() or (not has_begun and _HEADING.fullmatch(content)):
             continue
         has_begun = True
-        step = _STEP.fullmatch(content)
+        step = _PLAN_STEP.fullmatch(content)
         if step is None:
             faults.append(
                 _fault(
@@ -111,7 +111,7 @@ def _plan_lines(lines: Sequence[str], file: str) -> Sequence[tuple[int, str]]:
         for number, line in enumerate(lines[first:end], first + 1)
         if line.strip() and not _BETWEEN.match(line.strip())
     ]
-    length = _LENGTH.match(lines[end].strip())
+    length = _PLAN_LENGTH.match(lines[end].strip())
     if length is not None and int(length[1]) != len(steps):
         message = f"found a plan of {len(steps)} steps above, expected {length[1]}"
         raise InputError([_fault(file, end + 1, lines[end], 0, message)])
@@ -122,7 +122,7 @@ def _without_log_marks(line: str) -> str:
     """Return a line of a log with blanks instead of its time stamp, and without the cost of its step."""
     stamp = _STAMPED.match(line)
     blanks = " " * (stamp.end() if stamp else 0)
-    return _COST.sub("", blanks + line[len(blanks) :])
+    return _STEP_COST.sub("", blanks + line[len(blanks) :])
 
 
 def _fault(file: str, number: int, line: str, column: int, message: str) -> Diagnostic:

@@ -14,8 +14,8 @@ from foon_asp.processes.pipe import packed
 from foon_asp.processes.worker import DiedError, Worker, give_back, take
 from foon_asp.proof.timetable import TimedStep, Tool, ToolName
 
-_MISSING = "a schedule needs OR-Tools: pip install 'foon-asp[schedule]'"
-_KEY = "foon_asp.planning.cp_sat"
+_NOT_INSTALLED = "a schedule needs OR-Tools: pip install 'foon-asp[schedule]'"
+_WORKER_KEY = "foon_asp.planning.cp_sat"
 _TICK_TOLERANCE = 1e-6  # of a bound in ticks, which is a float: so little above a whole number is that number
 
 
@@ -38,7 +38,7 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     Raises :class:`UserError` where OR-Tools is not installed.
     """
     if find_spec("ortools") is None:
-        raise UserError(_MISSING)
+        raise UserError(_NOT_INSTALLED)
     try:
         order = tool_order(task, deadline)
     except KeyboardInterrupt:  # at a limit, too
@@ -59,7 +59,7 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
         nonlocal bound
         bound = max(bound, ceil(value - _TICK_TOLERANCE))
 
-    worker = take(_KEY, lambda: Worker(_KEY, "schedules are found"))
+    worker = take(_WORKER_KEY, lambda: Worker(_WORKER_KEY, "schedules are found"))
     try:
         kind, status = worker.ask(
             packed((task, incumbent)), deadline, {"found": improve, "bound": raise_bound}
@@ -70,8 +70,8 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
         raise BugError(f"CP-SAT {died}") from None
     if kind == "missing":
         worker.end()
-        raise UserError(f"{_MISSING} ({status})")
-    give_back(_KEY, worker)
+        raise UserError(f"{_NOT_INSTALLED} ({status})")
+    give_back(_WORKER_KEY, worker)
     if status not in {"proved", "limit"}:
         raise BugError(f"CP-SAT ends with {status}")
     makespan = _makespan(task, incumbent)

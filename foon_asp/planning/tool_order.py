@@ -16,7 +16,7 @@ from foon_asp.grounding.run import Run
 from foon_asp.planning.schedule_task import ScheduleTask
 from foon_asp.proof.timetable import ToolName
 
-_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
+_CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
 
 
 class ToolOrder(NamedTuple):
@@ -59,7 +59,7 @@ def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
     return run(
         (question_encoding("tool_order.lp"),),
         write_tool_order(list(task.counts.values()), uses, task.after, may_lack),
-        _OPTIONS,
+        _CLINGO_OPTIONS,
         deadline,
         "opt" if may_lack else "ignore",
         predicates=[("_used_before", 2), ("_lacking", 2)],
@@ -96,8 +96,8 @@ def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...
     The steps start in this order, each as early as agents, tools and the steps that it waits for allow.
     """
     starts, ends = [0] * len(order), [0] * len(order)
-    agents = [0] * task.agents
-    free: dict[ToolName, list[int]] = {name: [0] * count for name, count in task.counts.items()}
+    agent_free = [0] * task.agents
+    tool_free: dict[ToolName, list[int]] = {name: [0] * count for name, count in task.counts.items()}
     use_ends = [0] * len(task.uses)  # when the last step of a use so far ends
     copy_free = [0] * len(task.sharing)  # when the last step so far that shares a copy ends
     unscheduled = [len(use.steps) for use in task.uses]
@@ -107,12 +107,12 @@ def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...
         begin = max((ends[earlier] for earlier in task.after[step]), default=0)
         for use in uses:
             name, steps = task.uses[use]
-            begin = max(begin, heappop(free[name]) if unscheduled[use] == len(steps) else use_ends[use])
+            begin = max(begin, heappop(tool_free[name]) if unscheduled[use] == len(steps) else use_ends[use])
         shared = [copy for copy, steps in enumerate(task.sharing) if step in steps]
         begin = max(begin, *(copy_free[copy] for copy in shared), 0)
         if not task.passive[step]:
-            begin = max(begin, agents[0])
-            heapreplace(agents, begin + task.lengths[step])
+            begin = max(begin, agent_free[0])
+            heapreplace(agent_free, begin + task.lengths[step])
         starts[step], ends[step] = begin, begin + task.lengths[step]
         for copy in shared:
             copy_free[copy] = ends[step]
@@ -120,5 +120,5 @@ def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...
             use_ends[use] = ends[step]
             unscheduled[use] -= 1
             if not unscheduled[use]:
-                heappush(free[task.uses[use].name], use_ends[use])
+                heappush(tool_free[task.uses[use].name], use_ends[use])
     return tuple(starts)

@@ -19,7 +19,7 @@ _ADVICE = "pip install 'foon-asp[pddl]' brings it along"
 _INPUT_ERROR, _OUT_OF_MEMORY = 31, 20  # exit codes of the translator
 # Without invariants each atom is a variable with two values: facts are atoms and their negations, and no
 # action is pruned that is applicable in the delete relaxation alone.
-_OPTIONS = ("--invariant-generation-max-candidates", "0")
+_TRANSLATOR_OPTIONS = ("--invariant-generation-max-candidates", "0")
 
 
 def installed() -> bool:
@@ -57,7 +57,7 @@ def translated(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) ->
 def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
     """Run the translator in a folder; return its exit code and its output."""
     # Unbuffered, it notices at its next line that nobody reads it any more, should this process be killed.
-    command = [sys.executable, "-P", "-u", "-m", _MODULE, *_OPTIONS, "domain.pddl", "problem.pddl"]
+    command = [sys.executable, "-P", "-u", "-m", _MODULE, *_TRANSLATOR_OPTIONS, "domain.pddl", "problem.pddl"]
     process = subprocess.Popen(
         command,
         cwd=folder,

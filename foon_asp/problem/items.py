@@ -19,8 +19,8 @@ class Fate(StrEnum):
     """The reason why an input of a unit stays, or that it is ``USED_UP``.
 
     ``OUTPUT``: the same node is also an output. ``TOOL``: a utensil with no contents. ``VESSEL``: a utensil
-    that some output is in, on or at. ``INSIDE``: the ingredient of an item that is both an input and an
-    output. ``TOLD_STAYS`` and ``TOLD_GOES``: a file of the user says so.
+    that some output is in, on or at. ``INSIDE``: the ingredient of an item that is, by its label, both an
+    input and an output. ``TOLD_STAYS`` and ``TOLD_GOES``: a file of the user says so.
 
     Example:
         >>> str(foon_asp.Fate.TOOL)

@@ -10,7 +10,7 @@ Number = int | str | float | Decimal | Fraction
 """An exact number; a float is the decimal that it is printed as, so that 0.9 is nine tenths."""
 
 
-_MAX_PRICE_BITS = 3322  # a thousand digits: sums of longer numbers take long
+_MAX_PRICE_BITS = 3322  # of numerator and denominator: a thousand digits
 _EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
 _MAX_EXPONENT = 1000  # of 10: the digits of 1e999999999 take hours to compute
 

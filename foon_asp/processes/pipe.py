@@ -17,14 +17,14 @@ T = TypeVar("T")
 OUT_OF_MEMORY = 77
 """The exit code of a process that ran out of memory."""
 
-_LENGTH = struct.Struct("!Q")
-_CHUNK_BYTES = 1 << 20  # read at once: a wrong length would otherwise allocate all memory
+_LENGTH_HEADER = struct.Struct("!Q")
+_CHUNK_BYTES = 1 << 20  # read at once, so that memory is allocated as content arrives
 
 
 def packed(value: object) -> bytes:
     """Return a value as the bytes of a message, which :func:`receive` reads."""
     content = pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
-    return _LENGTH.pack(len(content)) + content
+    return _LENGTH_HEADER.pack(len(content)) + content
 
 
 def write(pipe: RawIOBase, content: bytes) -> None:
@@ -46,7 +46,7 @@ def receive(pipe: RawIOBase) -> Any:
 
 def receive_packed(pipe: RawIOBase) -> bytes:
     """Wait for a message, and return it pickled; raises ``EOFError`` where the other end is closed."""
-    (length,) = _LENGTH.unpack(_exactly(pipe, _LENGTH.size))
+    (length,) = _LENGTH_HEADER.unpack(_exactly(pipe, _LENGTH_HEADER.size))
     return _exactly(pipe, length)
 
 

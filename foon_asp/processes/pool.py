@@ -72,9 +72,9 @@ def share(
             worker = workers.get(number)
             if worker is None:  # it was killed before its message was read
                 continue
-            finished = worker.task
+            current = worker.task
             if kind == "ready":
-                worker.start_timer(seconds(finished))
+                worker.start_timer(seconds(current))
                 continue
             if kind == "lost":
                 code = worker.end() if worker.is_late else worker.died()
@@ -90,7 +90,7 @@ def share(
             else:
                 del workers[number]
                 worker.end()
-            yield Done(finished, None, value) if kind != "done" else Done(finished, value, None)
+            yield Done(current, None, value) if kind != "done" else Done(current, value, None)
     finally:
         for worker in workers.values():
             worker.end()

@@ -1,9 +1,6 @@
 """Published searches, and those of other packages, over the same problem as the solver and without it."""
 
 from foon_asp.searches.breadth_first import breadth_first as breadth_first
-from foon_asp.searches.catalog import SEARCHES as SEARCHES
-from foon_asp.searches.catalog import find_searches as find_searches
-from foon_asp.searches.catalog import search_names as search_names
 from foon_asp.searches.depth_first import depth_first as depth_first
 from foon_asp.searches.greedy_inputs import greedy_inputs as greedy_inputs
 from foon_asp.searches.greedy_success import greedy_success as greedy_success
@@ -15,3 +12,6 @@ from foon_asp.searches.retrieval import Ties as Ties
 from foon_asp.searches.search import Retrieve as Retrieve
 from foon_asp.searches.search import Search as Search
 from foon_asp.searches.search import SearchSettings as SearchSettings
+from foon_asp.searches.search_catalog import SEARCHES as SEARCHES
+from foon_asp.searches.search_catalog import find_searches as find_searches
+from foon_asp.searches.search_catalog import search_names as search_names

@@ -5,7 +5,7 @@ from typing import Any
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-_REQUEST_SECONDS = 10.0  # for a request to arrive completely: slow browsers need some, attackers use all
+_REQUEST_SECONDS = 10.0  # for a request to arrive completely: fewer refuse slow browsers
 _MAX_WAITING = 64  # connections that may wait for a request at once; a browser has six
 
 

@@ -23,7 +23,7 @@ from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import entry_names, nodes_beginning
 from foon_asp.text.json_value import Json
 
-_KEPT_PAGES = 4  # answers that can still be shown: each takes some megabytes
+_KEPT_PAGES = 4  # answers that can still be shown: each keeps its problem in memory
 _MAX_COMPLETIONS = 30  # of a name
 
 Tell = Callable[[Json], object]

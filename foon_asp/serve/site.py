@@ -28,8 +28,8 @@ from foon_asp.text.json_value import Json, json_line
 
 Asgi = Callable[[Any, Any, Any], Any]
 
-_MAX_BODY_BYTES = 1_000_000  # of a question: more would be read into memory before it is refused
-_NUMBER = re.compile("[0-9]{1,18}")  # ``int`` raises for thousands of digits
+_MAX_BODY_BYTES = 1_000_000  # of a question: longer ones are refused before they fill the memory
+_PAGE_NUMBER = re.compile("[0-9]{1,18}")  # ``int`` raises for thousands of digits
 _WEB = Path(__file__).resolve().parent / "web"
 _HEADERS = {
     "content-security-policy": "default-src 'none'; frame-ancestors 'none'",
@@ -50,7 +50,7 @@ def site(desk: Desk, token: str, port: int) -> Asgi:
 
     def answer(request: Request) -> Response:
         number = request.path_params["number"]
-        page = desk.page(int(number)) if _NUMBER.fullmatch(number) else None
+        page = desk.page(int(number)) if _PAGE_NUMBER.fullmatch(number) else None
         if page is None:
             return PlainTextResponse("this page is no longer kept: ask again", 404)
         return HTMLResponse(page, headers={"content-security-policy": "frame-ancestors 'self'"})

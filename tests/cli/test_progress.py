@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 import foon_asp
-from foon_asp.cli import progress
+from foon_asp.cli import progress_line
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective
 from foon_asp.text.reader import FoonReader
@@ -29,7 +29,7 @@ def test_a_long_search_tells_what_is_left(monkeypatch: pytest.MonkeyPatch) -> No
     tree = foon_asp.solve(foon_asp.load().problem("macaroni")).costs
     assert tree is not None
     monkeypatch.setattr(time, "monotonic", lambda: 100.0)
-    shown = progress.Progress(Deadline(60))
+    shown = progress_line.Progress(Deadline(60))
     assert shown.line(102.0).startswith("nothing found yet  |  2 s, at most 60 s left")
     shown.tree(tree)
     shown.bound(Objective.UNITS, 3)
@@ -41,7 +41,7 @@ def test_a_long_search_tells_what_is_left(monkeypatch: pytest.MonkeyPatch) -> No
     assert "proved: units at least 7  |  2 s, about 1 s left at this pace" in shown.line(102.0)
     shown.bound(Objective.INPUTS, 18)  # another objective begins anew
     assert "proved: inputs at least 18  |  4 s, at most 60 s left" in shown.line(104.0)
-    unlimited = progress.Progress()
+    unlimited = progress_line.Progress()
     assert "|  5 s  |" in unlimited.line(105.0)
     unlimited.step("comparing", 10, 30)  # of which ten were there before
     assert unlimited.line(105.0) == "comparing: 10 of 30  |  5 s"
@@ -56,12 +56,14 @@ def test_only_a_terminal_sees_what_takes_long(
     network: Path, monkeypatch: pytest.MonkeyPatch, terminal: bool, long: float, shown: bool
 ) -> None:
     screen = io.StringIO()
-    monkeypatch.setattr(progress, "_DELAY_SECONDS", long)
+    monkeypatch.setattr(progress_line, "_DELAY_SECONDS", long)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
-    monkeypatch.setattr(progress, "console", lambda err: Console(file=screen, force_terminal=True, width=100))
-    with click.Context(click.Command("solve")), progress.bytes_bar("reading", [network]):
+    monkeypatch.setattr(
+        progress_line, "console", lambda err: Console(file=screen, force_terminal=True, width=100)
+    )
+    with click.Context(click.Command("solve")), progress_line.bytes_bar("reading", [network]):
         FoonReader().read_network([network])
-    with progress.Progress() as told:
+    with progress_line.Progress() as told:
         told.step("answering", 3, 8)
         told.begin()
         end = time.monotonic() + 5
