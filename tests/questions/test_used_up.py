@@ -359,7 +359,8 @@ def test_a_plan_without_steps_keeps_to_the_rules() -> None:
 @pytest.mark.slow
 def test_other_questions_answer_for_plans_too(cli: Cli, tmp_path: Path) -> None:
     asked = ("--goal", "greek salad", "--items", "used-up", "--format", "json")
-    answers = cli("solve", "--all-goals", *asked).json
+    each = [word for name in ("units", "inputs", "success") for word in ("--objective", name)]
+    answers = cli("solve", "--all-goals", *asked, *each).json
     assert answers["items"] == "used-up"
     assert [answer["costs"]["units"] for answer in answers["answers"]] == [33, 33, 36]
     (row,) = cli("compare", *asked, "--search", "bfs").json["comparisons"]
