@@ -61,7 +61,7 @@ def ask(
             found = [question.command(*about, **how) for about in posed]
     if len(found) == 1:
         return found[0]
-    return Each(found)
+    return Each(answers=tuple(found))
 
 
 def _warn_of_measures(command: "_Command", given: Mapping[str, Any]) -> None:

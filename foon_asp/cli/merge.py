@@ -13,8 +13,8 @@ from foon_asp.cli.progress import bytes_bar
 from foon_asp.errors import UserError
 from foon_asp.questions.merge import merge_files
 from foon_asp.report.unit_block import kept_apart_text
-from foon_asp.report.whole_file import utf_8
 from foon_asp.text.data_folder import find_data
+from foon_asp.whole_file import utf_8
 
 
 @click.command("merge")

@@ -17,8 +17,9 @@ from foon_asp.questions.arguments import asked_with, chosen_objectives, limits, 
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import asked_in_python
 from foon_asp.questions.how import How, settings_of
-from foon_asp.questions.result import AboutGoals, Ending
-from foon_asp.report.answer import figure_text
+from foon_asp.questions.result import Ending, Result
+from foon_asp.results.document import AboutGoals
+from foon_asp.results.figure_text import figure_text
 from foon_asp.results.table import Cell, Part, Table
 from foon_asp.results.values_of import head_of
 from foon_asp.text.json_value import schema_name
@@ -28,7 +29,7 @@ _STYLES = {Status.OPTIMAL: "good", Status.INFEASIBLE: "bad"}
 _LEFT = frozenset({0, 1})
 
 
-class Optima(AboutGoals, frozen=True, kw_only=True, tag=schema_name("optima")):
+class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("optima")):
     """The best trees for each goal by itself.
 
     Attributes:

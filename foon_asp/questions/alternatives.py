@@ -23,10 +23,11 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Option, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import ITEMS, TREE
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text
 from foon_asp.report.used_up_note import used_up_note
+from foon_asp.results.document import AboutGoals
+from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import CostedTree, Mention, Node, Value, step_lines, steps_not_in
 from foon_asp.results.values_of import costed_tree, head_of, mention_of, node_of
@@ -55,7 +56,7 @@ class Parting(Value, frozen=True):
     ways: tuple[Way, ...]
 
 
-class Alternatives(AboutGoals, frozen=True, kw_only=True, tag=schema_name("alternatives")):
+class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("alternatives")):
     """Other trees, the best first; none contains all units of another.
 
     Attributes:

@@ -16,10 +16,11 @@ from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.help_search import helped_trees
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text, success_text
 from foon_asp.report.used_up_note import used_up_note
+from foon_asp.results.document import AboutGoals
+from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Part, Table
 from foon_asp.results.values import Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
@@ -53,7 +54,7 @@ class AssistedTree(Value, frozen=True):
         return None if self.costs is None else self.costs.success
 
 
-class Assistance(AboutGoals, frozen=True, kw_only=True, tag=schema_name("assist")):
+class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("assist")):
     """The best trees if a person does at most 0, 1, 2, ... units, in this order.
 
     Attributes:

@@ -18,9 +18,10 @@ from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
 from foon_asp.questions.posing_plan import a_tree
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree, posed_tree
 from foon_asp.report.verdict import Listed, Stop, verdict_text, verdict_values
+from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values import ListedConstraint, UsedUpRun
 from foon_asp.results.values_of import head_of
@@ -32,7 +33,7 @@ if TYPE_CHECKING:  # clingo and linear programs, which only rules and certificat
     from foon_asp.certificate import Certificate
 
 
-class Checked(AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
+class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
     """Whether a given tree executes, or a plan, in which items are used up and order and repeats count.
 
     Attributes:

@@ -28,10 +28,11 @@ from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
 from foon_asp.questions.posing import Command, each_goal
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved
 from foon_asp.questions.searching import COUNT, DEPTH, TIES, known_searches, search_settings, searched
 from foon_asp.resources import published_table as published_file
+from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values_of import head_of
 from foon_asp.searches import Search, SearchSettings, search_names
@@ -40,7 +41,7 @@ from foon_asp.text.json_value import Json, schema_name
 _ONE_TREE = "FOON text holds one tree: name one search (--search) and one goal (--goal)"
 
 
-class Compared(AboutGoals, frozen=True, kw_only=True, tag=schema_name("compare")):
+class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("compare")):
     """The searches and the optimum, compared for each goal of a problem.
 
     Attributes:

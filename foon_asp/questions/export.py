@@ -10,7 +10,7 @@ from foon_asp.dataset.paths import File
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.network import counted
-from foon_asp.planning.name_map import map_json
+from foon_asp.planning.name_map import MapFile
 from foon_asp.planning.pddl_writer import domain_text, items_words, problem_text, scale_words
 from foon_asp.planning.planning_task import PlanningTask, planning_task
 from foon_asp.planning.unified import unified_problem
@@ -22,11 +22,12 @@ from foon_asp.questions.how import Patience
 from foon_asp.questions.in_hand import in_hand
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
-from foon_asp.questions.result import AboutGoals
-from foon_asp.report.whole_file import write_whole
+from foon_asp.questions.result import Result
+from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values_of import head_of
-from foon_asp.text.json_value import Json, json_text, schema_name
+from foon_asp.text.json_value import schema_name
+from foon_asp.whole_file import write_whole
 
 FILES = ("domain.pddl", "problem.pddl", "map.json")
 """What is written into a folder."""
@@ -35,7 +36,7 @@ _MERGED = "set"
 _HOW = ("lasting", _MERGED, "used-up")
 
 
-class Exported(AboutGoals, frozen=True, kw_only=True, tag=schema_name("export")):
+class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("export")):
     """A planning task in PDDL, and what its names stand for.
 
     Attributes:
@@ -51,7 +52,7 @@ class Exported(AboutGoals, frozen=True, kw_only=True, tag=schema_name("export"))
 
     domain_file: str = field(name="domain")
     problem_file: str = field(name="problem")
-    name_map: Json = field(name="map")
+    name_map: MapFile = field(name="map")
 
     @property
     def task(self) -> PlanningTask:
@@ -95,7 +96,7 @@ class Exported(AboutGoals, frozen=True, kw_only=True, tag=schema_name("export"))
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise UserError(f"{folder}: cannot be created as a folder: {error.strerror or error}") from None
-        contents = (self.domain_file, self.problem_file, json_text(self.name_map))
+        contents = (self.domain_file, self.problem_file, self.name_map.json_text())
         for name, content in zip(FILES, contents, strict=True):
             write_whole(folder / name, content.encode(errors="backslashreplace"))
 
@@ -216,7 +217,7 @@ def export(
             **head_of(task.problem, task.objectives),
             domain_file=domain_text(task),
             problem_file=problem_text(task),
-            name_map=map_json(task),
+            name_map=MapFile.of(task),
         )
     exported.__dict__["task"] = task
     return exported

@@ -20,10 +20,11 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
-from foon_asp.questions.result import AboutGoals, Ending, NothingToDrawError
+from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text, figure_text, success_texts
 from foon_asp.report.used_up_note import used_up_note
+from foon_asp.results.document import AboutGoals
+from foon_asp.results.figure_text import costs_text, figure_text, success_texts
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.table import Table
 from foon_asp.results.values import (
@@ -70,7 +71,7 @@ class Point(Value, frozen=True):
         return tuple(step.id for step in self.units if step.id is not None)
 
 
-class Front(AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
+class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
     """The Pareto front: trees of which none is as good as another by every objective and better by one.
 
     Attributes:

@@ -21,12 +21,12 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.how import Limits
 from foon_asp.questions.posing import no_data
-from foon_asp.questions.result import Document, Ending
-from foon_asp.report.whole_file import write_whole
+from foon_asp.questions.result import Ending, Result
 from foon_asp.results.plain import fraction_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import Value
 from foon_asp.text.json_value import schema_name
+from foon_asp.whole_file import write_whole
 
 if TYPE_CHECKING:
     from foon_asp.certificate import Certificate
@@ -42,7 +42,7 @@ class PlannedAction(Value, frozen=True):
         return self.action
 
 
-class Relaxed(Document, frozen=True, kw_only=True, tag=schema_name("relax")):
+class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
     """The cheapest plan of a planning task without its deletes.
 
     Attributes:

@@ -13,12 +13,13 @@ from foon_asp.proof.simulation import Verdict
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import question
 from foon_asp.questions.how import Limits
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import COUNT, DEPTH, TIES, search_settings, searched
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text
 from foon_asp.report.used_up_note import used_up_note
 from foon_asp.report.verdict import Stop, verdict_text, verdict_values
+from foon_asp.results.document import AboutGoals
+from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import Node, Step, UsedUpRun
 from foon_asp.results.values_of import head_of, node_of, steps_of
@@ -28,7 +29,7 @@ from foon_asp.text.json_value import schema_name
 from foon_asp.text.writer import write_units
 
 
-class Retrieved(AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")):
+class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")):
     """What a search returned for a problem.
 
     Attributes:

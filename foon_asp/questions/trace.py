@@ -19,15 +19,15 @@ from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
 from foon_asp.questions.how import Limits
 from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
-from foon_asp.report.answer import changes_text
-from foon_asp.report.whole_file import utf_8, write_whole
+from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Part as Shown
-from foon_asp.results.values import Copies, Copy, Unit, Value
+from foon_asp.results.values import Copies, Copy, Unit, Value, changed_motions
 from foon_asp.results.values_of import copies_of, copy_of, head_of, lack_of
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.writer import write_node
+from foon_asp.whole_file import utf_8, write_whole
 
 States = tuple[dict[ObjectNode, int], ...]
 """How many copies there are of what can run out: in the beginning, and after each step."""
@@ -52,7 +52,7 @@ class TracedStep(Value, frozen=True):
     there: tuple[Copies, ...]
 
 
-class Traced(AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
+class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
     """What came and what went at each step of a plan, and how to go on from a step that failed.
 
     Attributes:
@@ -149,16 +149,13 @@ class Traced(AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
     def _change(self, answer: Answer) -> str:
         """Return in words how the new plan differs from what was left of the old one."""
         assert self.failed is not None
-        if answer.ids is None:
+        if answer.tree is None:
             return "no plan was found"
-        network = answer.problem.network
-        left = Counter(network.unit_id(unit) for unit in self.plan.units[self.failed - 1 :])
-        new = Counter[int | None](answer.ids)
-        gone = [unit for unit in (left - new).elements() if unit is not None]
-        come = [unit for unit in (new - left).elements() if unit is not None]
-        if not gone and not come:
+        left, new = Counter(self.plan.units[self.failed - 1 :]), Counter(answer.tree.units)
+        changes = changed_motions((left - new).elements(), (new - left).elements())
+        if not changes:
             return "what was left of the plan is still the best"
-        return f"compared with what was left of the plan: {changes_text(network, gone, come)}"
+        return f"compared with what was left of the plan: {changes}"
 
 
 def _stock(problem: Problem) -> dict[ObjectNode, int]:

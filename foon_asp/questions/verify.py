@@ -21,8 +21,9 @@ from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.posing import DATA, Command, the_data
-from foon_asp.questions.result import AboutGoals, Document, Ending
+from foon_asp.questions.result import Ending, Result
 from foon_asp.report.certified import bound_text, looked_at, trusted_text
+from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values import Measures
 from foon_asp.results.values_of import goals_of, nodes_of
@@ -52,7 +53,7 @@ class OtherDataError(proof.RefusedError):
         self.part = part
 
 
-class VerifiedCertificate(AboutGoals, frozen=True, kw_only=True, tag=schema_name("verify")):
+class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("verify")):
     """What a certificate proves about the data that it was checked with.
 
     Attributes:
@@ -166,7 +167,7 @@ class VerifiedCertificate(AboutGoals, frozen=True, kw_only=True, tag=schema_name
         yield f"proof: {self.proved_by}, checked without a solver"
 
 
-class Refused(Document, frozen=True, kw_only=True, tag=schema_name("refused")):
+class Refused(Result, frozen=True, kw_only=True, tag=schema_name("refused")):
     """The first fault of a certificate that is wrong, as ``foon-asp verify`` shows it.
 
     Attributes:

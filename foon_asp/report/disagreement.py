@@ -7,19 +7,19 @@ from pathlib import Path
 
 from foon_asp.asp import Outcome
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.document.json_document import costs_json, figures_json
 from foon_asp.encoding.encoding import read_encoding
 from foon_asp.engines import Asked, DisagreementError
 from foon_asp.engines.bare_clingo import OPTIONS
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.proof.verify import digests
-from foon_asp.report.whole_file import write_whole
+from foon_asp.results.plain import exact_measures, plain
 from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.text.exact_price import decimal_text
 from foon_asp.text.json_value import Json, json_text
 from foon_asp.text.unit_price_list import write_unit_prices
 from foon_asp.text.writer import write_units
+from foon_asp.whole_file import write_whole
 
 _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy")
 
@@ -73,14 +73,14 @@ def disagreement_json(asked: Asked, found: DisagreementError) -> Json:
                 "objectives": list(map(str, outcome.objectives)),
                 "status": str(outcome.status),
                 "units": None if outcome.units is None else list(outcome.units),
-                "costs": costs_json(outcome.costs),
-                "lower_bound": figures_json(outcome.bounds),
+                "costs": plain(outcome.costs),
+                "lower_bound": plain(exact_measures(outcome.bounds)),
                 **({"penalty": asked.penalty} if asked.soft else {}),
             },
             answer.engine: {
                 "objectives": list(map(str, answer.objectives)),
                 "units": None if answer.units is None else list(answer.units),
-                "costs": None if answer.units is None else costs_json(problem.costs(answer.units)),
+                "costs": None if answer.units is None else plain(problem.costs(answer.units)),
             },
         },
         "bare_clingo": {

@@ -1,13 +1,11 @@
-"""Whether a tree would run where items are used up: a note for people, and data."""
+"""A note where a tree would not run if items were used up."""
 
 from collections.abc import Iterable, Sequence
 
-from foon_asp.document.json_document import named_json
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import Problem, UsedUp
 from foon_asp.proof.replay import Shortage
 from foon_asp.proof.used_up_run import used_up_run
-from foon_asp.text.json_value import Json
 
 
 def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
@@ -24,24 +22,6 @@ def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
     said = _lack_text(problem, units, run.shortage)
     said += "" if run.proved else ", and no other order was found"
     return [f"note: {said}: with each item used once, see --items used-up"]
-
-
-def used_up_json(problem: Problem, tree: Iterable[FunctionalUnit] | None) -> Json | None:
-    """Return the same as data; ``None`` without a tree, and where items are used up anyway."""
-    if tree is None or problem.items is not None:
-        return None
-    run = used_up_run(problem, tree)
-    lack = run.shortage
-    return {
-        "runs": run.runs,
-        "shortage": None
-        if lack is None
-        else {
-            "position": None if lack.step is None else lack.step + 1,
-            "missing": named_json(problem.network, lack.node),
-            "used_up_by": [position + 1 for position in lack.taken],
-        },
-    }
 
 
 def _lack_text(problem: Problem, units: Sequence[FunctionalUnit], lack: Shortage) -> str:

@@ -8,8 +8,8 @@ from msgspec import UNSET, UnsetType
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.problem import Problem, given_outputs
 from foon_asp.proof.simulation import Obstacle, Simulation, Verdict
-from foon_asp.report.answer import costs_text
 from foon_asp.report.used_up_note import used_up_note
+from foon_asp.results.figure_text import costs_text
 from foon_asp.results.values import Node, Unit, Value
 from foon_asp.results.values_of import listed_unit, named_node, used_up_of
 
