@@ -2,7 +2,7 @@
 
 import inspect
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import PurePath
 from typing import Any
@@ -53,15 +53,13 @@ _OWN: dict[Any, tuple[str, Json]] = {
 def schema_of(document: type[Struct]) -> Json:
     """Return the JSON Schema of a document, draft 2020-12, complete in itself."""
     (top,), parts = msgspec.json.schema_components([document], schema_hook=_hook, ref_template=_REFERENCE)
-    for part in parts.values():
-        _describe(part)
+    bases = {each.__name__: inspect.getmro(each) for each in _structs(document)}
+    for name, part in parts.items():
+        _describe(part, bases.get(name, ()))
     for name, part in reversed(_OWN.values()):  # each may refer to one before it
         if _REFERENCE.format(name=name) in repr(parts):
             parts[name] = part
     whole = parts.pop(top["$ref"].rpartition("/")[2])
-    keys = {field.name: field.encode_name for field in structs.fields(document)}
-    for base in inspect.getmro(document):
-        _describe_fields(whole, base.__doc__ or "", keys)
     title = whole["description"].rstrip(".")
     schema = {"$schema": _DRAFT, **whole, "$defs": dict(sorted(parts.items())), "title": title}
     _put_null_last(schema)
@@ -116,14 +114,32 @@ def _hook(kind: type) -> Json:
     raise NotImplementedError(kind)
 
 
-def _describe(part: Json) -> None:
-    """Say of each field what the docstring says of it, which is the description, and allow no other keys."""
+def _structs(document: type[Struct]) -> set[type[Struct]]:
+    """Return the structs that the fields of a document are made of, and those of their fields."""
+    found, waiting = set[type[Struct]](), [msgspec.inspect.type_info(document)]
+    for info in waiting:  # grows on the way
+        if isinstance(info, msgspec.inspect.StructType) and info.cls not in found:
+            found.add(info.cls)
+            waiting += (field.type for field in info.fields)
+        for name in ("item_type", "item_types", "types", "key_type", "value_type", "type"):
+            inner = getattr(info, name, ())
+            waiting += inner if isinstance(inner, tuple) else (inner,)
+    return found
+
+
+def _describe(part: Json, bases: Sequence[type]) -> None:
+    """Say of each field what docstrings say of it, and allow no other keys.
+
+    ``bases`` are the class of the part and those that it stands on.
+    """
     docstring = part.pop("description", "")
     part["description"] = docstring.partition("\n")[0]
     if "properties" in part:
         _require_written(part)
         part["additionalProperties"] = False
-        _describe_fields(part, docstring, {})
+        keys = {field.name: field.encode_name for field in structs.fields(bases[0])} if bases else {}
+        for text in (base.__doc__ or "" for base in bases) if bases else (docstring,):
+            _describe_fields(part, text, keys)
 
 
 def _require_written(part: Json) -> None:

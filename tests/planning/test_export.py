@@ -91,8 +91,8 @@ def test_the_task_is_the_network(foon: Foon, containers: str, whole: bool) -> No
     for name, (needs, gives, _) in found.items():
         unit = units[name]
         assert name.startswith(f"u{unit}-")
-        assert {names[each] for each in needs} == {*problem.needs[unit]}
-        assert {names[each] for each in gives} == {*problem.gives[unit]}
+        assert {names[each] for each in needs} == {*problem.needs[unit or 0]}
+        assert {names[each] for each in gives} == {*problem.gives[unit or 0]}
     start = {each[1] for each in part(task, ":init")}
     assert start == {each for each in constants if names[each] in problem.kitchen}
     ((_, *goals),) = part(task, ":goal")

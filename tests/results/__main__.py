@@ -1,4 +1,4 @@
-"""The schemas of documents: ``python -m tests.results`` writes them anew into the package."""
+"""The schemas of documents, and docs/json.md: ``python -m tests.results`` writes them anew."""
 
 import importlib
 import pkgutil
@@ -15,6 +15,7 @@ from foon_asp.results.schema import schema_of, schema_of_rows
 from foon_asp.results.schema_file import SCHEMAS
 from foon_asp.results.values import Value
 from foon_asp.text.json_value import Json, json_text
+from tests.results.json_page import PAGE, page
 
 ROWS: dict[str, type[msgspec.Struct]] = {"batch-row": AnswerRow, "compare-row": Comparison}
 """The rows of files of results, by kind."""
@@ -44,11 +45,6 @@ def schemas() -> dict[str, Json]:
     return made | {kind: schema_of_rows(kind, row) for kind, row in ROWS.items()}
 
 
-def schema_text(kind: str) -> str:
-    """Return the text of the schema of a kind, as it lies in the package."""
-    return json_text(schemas()[kind])
-
-
 def _subclasses(kind: type[msgspec.Struct]) -> Iterator[Any]:
     for each in kind.__subclasses__():
         yield each
@@ -58,4 +54,5 @@ def _subclasses(kind: type[msgspec.Struct]) -> Iterator[Any]:
 if __name__ == "__main__":
     for kind, schema in schemas().items():
         (SCHEMAS / f"{kind}.json").write_text(json_text(schema), encoding="utf-8")
-    print(f"written: {len(schemas())} schemas")
+    PAGE.write_text(page(), encoding="utf-8")
+    print(f"written: {len(schemas())} schemas, and {PAGE.name}")

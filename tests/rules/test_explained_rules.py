@@ -1,6 +1,5 @@
 """``foon-asp constraints --explain``: what rules do, for people and for programs."""
 
-import re
 from pathlib import Path
 from typing import Any
 
