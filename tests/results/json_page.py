@@ -229,7 +229,7 @@ def _described(part: Json, links: Mapping[str, str]) -> str:
 
 
 def _table(part: Json, links: Mapping[str, str]) -> str:
-    required: Collection[str] = part.get("required", part["properties"])
+    required: Collection[str] = part["required"] if "required" in part else part["properties"]
     rows = ["| key | value | |", "|---|---|---|"]
     for key, value in part["properties"].items():
         often = "" if key in required else "; not always there"
