@@ -13,10 +13,10 @@ from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, answered_nearby
-from foon_asp.questions.arguments import asked_with, chosen_objectives, limits, read
+from foon_asp.questions.arguments import asked_with, chosen_objectives, read
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import asked_in_python
-from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.how import How, limits_of, settings_of
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.figure_text import figure_text
@@ -138,9 +138,8 @@ def solve_all_goals(
     """
     texts = [objectives] if isinstance(objectives, str) else objectives
     lists = [chosen_objectives(problem, text) for text in texts]
-    each_limits = limits(how.pop("time_limit", None), how.pop("memory_limit", None))
     # limits are for each answer, ctrl-C is for all of them
-    settings, within = settings_of(how), Deadline(within=caller().deadline)
+    settings, each_limits, within = settings_of(how), limits_of(how), Deadline(within=caller().deadline)
     outcomes: list[Outcome] = []
     for goal in _each_goal(problem, settings):
         for chosen in lists:

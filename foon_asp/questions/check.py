@@ -17,7 +17,7 @@ from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
 from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
-from foon_asp.questions.posing_plan import a_tree
+from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree, posed_tree
 from foon_asp.report.verdict import Listed, Stop, verdict_text, verdict_values
@@ -186,7 +186,7 @@ def _simulated(tree: Tree) -> Simulation:
     GOAL_OF_PLAN,
     CONTAINERS,
     *ITEMS,
-    pose=a_tree,
+    pose=a_plan,
     help_="""
     \b
     foon-asp check tree.txt --goal macaroni

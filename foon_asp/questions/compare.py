@@ -21,11 +21,11 @@ from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.pictures.comparison_chart import write_comparison_chart
 from foon_asp.problem import Problem
-from foon_asp.questions.arguments import asked_with, at_least, limits
+from foon_asp.questions.arguments import asked_with, at_least
 from foon_asp.questions.caller import caller
 from foon_asp.questions.compared import comparison_table, published_table, summary_tables, tidy_rows
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.how import How, limits_of, settings_of
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
 from foon_asp.questions.posing import Command, each_goal
 from foon_asp.questions.result import Ending, Result
@@ -228,7 +228,7 @@ def compare(
     if problem.rates is None and not searches:
         chosen = known_searches(rated=False)
         caller().reporter.warning("greedy-success is left out, and so is success: no success rates are known")
-    each_limit = limits(how.get("time_limit"), how.get("memory_limit"))
+    each_limit = limits_of(how)
     asked = search_settings(ties, count, depth_limit, published, *each_limit)
     at_least(jobs, 1, "jobs")
     rules = settings_of(how)._replace(deadline=None)

@@ -8,7 +8,7 @@ from msgspec import Meta
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
-from foon_asp.results.table import Part, rendered
+from foon_asp.results.table import Part
 from foon_asp.text.json_value import Json, schema_name
 
 _ANY_DOCUMENT = Meta(
@@ -36,12 +36,8 @@ class Each(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         endings = {result.ending for result in self.answers}
         return next(each for each in (Ending.LIMIT, Ending.NEGATIVE, Ending.DONE) if each in endings)
 
-    def text(self, **how: object) -> str:
-        """Return one text after the other; goals that are made by the same tree have one."""
-        return rendered(self.show(**how))
-
-    def show(self, **how: object) -> Iterator[Part]:
-        """Return the same as lines and tables."""
+    def show(self) -> Iterator[Part]:
+        """Return one after the other; goals that are made by the same tree have it once."""
         from foon_asp.questions.answer import Answer  # noqa: PLC0415 (takes the solver along)
 
         for number, (first, *others) in enumerate(self._same_trees()):
@@ -51,7 +47,7 @@ class Each(Result, frozen=True, kw_only=True, tag=schema_name("each")):
                 yield from (line for answer in (first, *others) for line in answer.goal_lines())
                 yield from first.findings()
             else:
-                yield from first.show(**how)
+                yield from first.show()
 
     def _same_trees(self) -> list[list[Any]]:
         """Return the answers in groups: those with one tree, and others alone."""

@@ -7,7 +7,6 @@ from typing import Annotated, Any, Unpack
 from msgspec import field
 
 from foon_asp.dataset.paths import File
-from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.planning.name_map import MapFile
@@ -15,11 +14,9 @@ from foon_asp.planning.pddl_writer import domain_text, items_words, problem_text
 from foon_asp.planning.planning_task import PlanningTask, planning_task
 from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
-from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.arguments import Objectives, chosen_objectives, reading, whole
-from foon_asp.questions.contract import Kind, Option, Part, described, question
-from foon_asp.questions.how import Patience
-from foon_asp.questions.in_hand import in_hand
+from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.contract import Kind, Option, Part, asked_in_python, question
+from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.result import Result
@@ -186,7 +183,7 @@ def export(
     target: Annotated[str, Option(flags=("--to",), choices=_FORMATS)] = "pddl",
     every_unit: Annotated[bool, Option(flags=("--whole",))] = False,
     items: str | None = None,
-    **how: Unpack[Patience],
+    **how: Unpack[Posed],
 ) -> Exported:
     """Write the goals of a problem as a planning task for other planners.
 
@@ -211,7 +208,7 @@ def export(
     chosen = chosen_objectives(problem, objectives)
     if every_unit:
         problem = whole(problem)
-    with reading():
+    with begin(how).watched("writing"):
         task = planning_task(problem, chosen, every_unit, _merged(problem, items))
         exported = Exported(
             **head_of(task.problem, task.objectives),
@@ -223,24 +220,20 @@ def export(
     return exported
 
 
-@described()
-@in_hand(takes_time=False)
+@asked_in_python
 def to_unified_planning(
     problem: Problem,
     objectives: Objectives = "units",
     *,
     every_unit: bool = False,
     items: str | None = None,
-    time_limit: float | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    **how: Unpack[Posed],
 ) -> Any:
     """Give the goals of a problem as a problem of unified-planning, with the names that PDDL has.
 
     :func:`foon_asp.read_plan` reads its plans back. The package comes with ``foon-asp[planning]``.
 
     Parameters:
-        problem: The problem.
         objectives: What actions cost: a name, names separated by commas, or several names.
         every_unit: Whether to give the whole network, instead of the units that the goals can need.
         items: How items are meant: ``lasting``, ``used-up`` with copies as numbers, or ``set``, in which all
@@ -263,4 +256,5 @@ def to_unified_planning(
     """
     chosen = chosen_objectives(problem, objectives)
     problem = whole(problem) if every_unit else problem
-    return unified_problem(problem, chosen, every_unit, _merged(problem, items))
+    with begin(how).watched("writing"):
+        return unified_problem(problem, chosen, every_unit, _merged(problem, items))

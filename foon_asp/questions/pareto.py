@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple, Unpack
+from typing import Annotated, NamedTuple, Unpack
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import better_than
@@ -120,19 +120,17 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
             return Ending.LIMIT
         return Ending.DONE if self.points else Ending.NEGATIVE
 
-    def show(self, trees: bool = False) -> Iterator[Shown]:
+    def show(self) -> Iterator[Shown]:
         """Return the points as a table, each with what its tree does differently from the one above.
 
-        Parameters:
-            trees: Whether to list the units, too: those of the first tree, and those that go and come with
-                each other one.
+        Where trees were asked for, the units of the first follow, and those that go and come with the others.
         """
         yield from self.goal_lines()
         yield self._claim()
         if self.points:
             yield ""
             yield self._table()
-        if not trees:
+        if not self.__dict__["trees"]:
             yield from self._used_up_lines()
             return
         for number, (point, tree) in enumerate(zip(self.points, self.task_trees, strict=True)):
@@ -223,7 +221,6 @@ class _Point(NamedTuple):
     ),
     CONTAINERS,
     *ITEMS,
-    Option("trees", "Also list the units of the trees.", Kind.FLAG, Part.TEXT),
     Option(
         "charts",
         "A file for a chart of the front (.svg or .png).",
@@ -246,7 +243,13 @@ class _Point(NamedTuple):
     found by then are on the front, too.
     """,
 )
-def pareto(problem: Problem, objectives: Objectives = (), **how: Unpack[How]) -> Front:
+def pareto(
+    problem: Problem,
+    objectives: Objectives = (),
+    *,
+    trees: Annotated[bool, Option()] = False,
+    **how: Unpack[How],
+) -> Front:
     """Find all trade-offs between two or three objectives (the Pareto front), with a tree for each.
 
     The limits are for the whole question.
@@ -254,6 +257,7 @@ def pareto(problem: Problem, objectives: Objectives = (), **how: Unpack[How]) ->
     Parameters:
         objectives: Two or three names, or a list separated by commas. Without any: units and success, or
             units and inputs where no rates are known.
+        trees: Also list the units of the trees.
 
     Returns:
         The ``points`` of the front; ``complete`` tells whether they are proved to be all.
@@ -308,7 +312,7 @@ def pareto(problem: Problem, objectives: Objectives = (), **how: Unpack[How]) ->
         points=tuple(_points(problem, chosen, found)),
         seconds=seconds,
     )
-    front.__dict__["problem"] = problem
+    front.__dict__.update(problem=problem, trees=trees)
     return front
 
 

@@ -16,10 +16,9 @@ from foon_asp.planning.strips_task import DERIVED, StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.questions.answer import Answer, answered, of_status
-from foon_asp.questions.arguments import begin
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.how import Limits
+from foon_asp.questions.how import Limits, begin
 from foon_asp.questions.posing import no_data
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.plain import fraction_text
@@ -226,7 +225,7 @@ def relax(
         >>> str(relaxed.cost), str(relaxed.status)
         ('9', 'optimal')
     """
-    deadline = begin(how.get("time_limit"), how.get("memory_limit"))
+    deadline = begin(how)
     found = solved(read_task(files(task), deadline), deadline)
     if certificate_file is None:
         return found

@@ -22,10 +22,10 @@ from foon_asp.proof.timetable import Means, ToolName, timetable_fault
 from foon_asp.proof.timetable import TimedStep as Timed
 from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.questions.answer import of_status
-from foon_asp.questions.arguments import at_least, begin, read_as
+from foon_asp.questions.arguments import at_least, read_as
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import Limits
+from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
@@ -272,7 +272,7 @@ def schedule(
         ),
     ] = None,
     items: str = "used-up",
-    **how: Unpack[Limits],
+    **how: Unpack[Posed],
 ) -> Schedule:
     """Find the shortest schedule of a plan: when each step starts, who does it, and with which tools.
 
@@ -304,7 +304,7 @@ def schedule(
         >>> str(found.status), str(found.makespan)
         ('optimal', '40')
     """
-    deadline = begin(how.get("time_limit"), how.get("memory_limit"))
+    deadline = begin(how)
     at_least(agents, 1, "agents")
     problem = read_as(problem, items)
     tree = _in_order(posed_tree(problem, plan))

@@ -10,9 +10,8 @@ from foon_asp.comparison.comparison import simulated
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof.simulation import Verdict
-from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import question
-from foon_asp.questions.how import Limits
+from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import COUNT, DEPTH, TIES, search_settings, searched
 from foon_asp.questions.tree import Tree
@@ -173,7 +172,7 @@ def search(
     count: Annotated[str, COUNT] = "ingredients",
     depth_limit: Annotated[int | None, DEPTH] = None,
     published: bool = False,
-    **how: Unpack[Limits],
+    **how: Unpack[Posed],
 ) -> Retrieved:
     """Retrieve a task tree with a published search, and find out whether it executes.
 
@@ -197,7 +196,7 @@ def search(
         <Retrieved: bfs, executes in another order>
     """
     (wanted,) = searched([search])
-    deadline = begin(how.get("time_limit"), how.get("memory_limit"))
+    deadline = begin(how)
     settings = search_settings(ties, count, depth_limit, published, deadline.left, deadline.memory)
     found = wanted.run(replace(problem, items=None), settings)
     stuck_at = None if found.stuck_at is None else node_of(problem.network, found.stuck_at)

@@ -2,21 +2,21 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Literal
+from typing import Literal, Unpack
 
 from msgspec import UNSET, UnsetType
 
+from foon_asp.dataset import Dataset
 from foon_asp.dataset.items import Stays, items_of
 from foon_asp.dataset.paths import File
 from foon_asp.dataset.statistics import count_levels
-from foon_asp.deadline import Cancel
 from foon_asp.escapes import escaped
 from foon_asp.foon import Foon, load
 from foon_asp.network import Network, counted, starting_kitchen
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
 from foon_asp.problem import ContainerRule, UsedUp, container_rule, needed_inputs
-from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
+from foon_asp.questions.how import Limits, begin
 from foon_asp.questions.options import CONTAINERS, ITEMS
 from foon_asp.questions.posing import the_data
 from foon_asp.questions.result import Result
@@ -275,9 +275,7 @@ def stats(
     explain_items: bool = False,
     containers: str = "strict",
     stays: Stays | None = None,
-    time_limit: float | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    **how: Unpack[Limits],
 ) -> Stats | ListedUnits:
     """Count what is in a network at each level of detail, or list its functional units.
 
@@ -301,16 +299,22 @@ def stats(
         >>> listed.text().splitlines()[1:]
         ['       faucet; off  (used up)', '     → faucet; on']
     """
-    dataset = (foon if isinstance(foon, Foon) else load(foon)).dataset
     explains = explain_items or stays is not None
-    numbers = tuple(dict.fromkeys(unit))
-    if not (units or numbers or explains):
+    with begin(how).watched("counting"):
+        dataset = (foon if isinstance(foon, Foon) else load(foon)).dataset
+        if units or unit or explains:
+            return _listed(dataset, tuple(dict.fromkeys(unit)), container_rule(containers), explains, stays)
         return Stats.of(dataset.data)
+
+
+def _listed(
+    dataset: Dataset, numbers: Sequence[int], rule: ContainerRule, explains: bool, stays: Stays | None
+) -> ListedUnits:
+    """Return the units that have some ids, or all; and what becomes of their inputs where that is asked."""
     items = items_of(dataset, "used-up", None, stays) if explains else None
     network = (dataset.part((), numbers)[0] if numbers else dataset.data).network
     found = [network.unit_of_number(number) for number in numbers]
     ids = [u for u in found if u is not None] if numbers else range(len(network))
-    rule = container_rule(containers)
     listed = tuple(_explained(network, u, rule, dataset.utensils, items) for u in ids)
     return ListedUnits(containers=rule, level=network.level, units=listed)
 

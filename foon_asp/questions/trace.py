@@ -9,14 +9,15 @@ from typing import Annotated, Any, Unpack
 
 from msgspec import field
 
+from foon_asp.asp import Settings
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem, UsedUp
 from foon_asp.proof.replay import Replay, replay_for, replayable
 from foon_asp.questions.answer import Answer, answered
-from foon_asp.questions.arguments import Objectives, chosen_objectives, read_as, settings
+from foon_asp.questions.arguments import Objectives, chosen_objectives, read_as
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import Limits
+from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, Result
@@ -248,7 +249,7 @@ def trace(
     *,
     failed: Annotated[int | None, Option(metavar="N", least=1)] = None,
     items: str = "used-up",
-    **how: Unpack[Limits],
+    **how: Unpack[Posed],
 ) -> Traced:
     """Say what is in the kitchen after each step of a plan, and plan anew if a step fails.
 
@@ -283,7 +284,7 @@ def trace(
         if not 1 <= failed <= len(replay.steps):
             last = len(replay.steps)
             raise UserError(f"found the step {failed}, expected one up to which the plan runs: 1 to {last}")
-        limits = settings(time_limit=how.get("time_limit"), memory_limit=how.get("memory_limit"))
+        limits = Settings(deadline=begin(how))
         answer = answered(_from_here(problem, states[failed - 1]), chosen, limits)
     executed = []
     for number, step in enumerate(replay.steps, 1):

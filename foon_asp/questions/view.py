@@ -6,15 +6,14 @@ from enum import StrEnum
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 from msgspec import structs
 
 from foon_asp.asp import Settings
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.nearby import shown
-from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Cancel
+from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import FunctionalUnit, TaskTree, counted, unit_at_level
@@ -28,14 +27,14 @@ from foon_asp.pictures.painting import painted
 from foon_asp.pictures.tree_drawing import network_drawing, tree_drawing
 from foon_asp.pictures.whole_network import WholeNetwork
 from foon_asp.problem import ContainerRule, Objective, Problem, container_rule, levels
-from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answered, answered_under
-from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
+from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certifying import certified
 from foon_asp.questions.contract import Kind, Option, Part, question, question_of
-from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
+from foon_asp.questions.how import How, Limits, begin, settings_of
+from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
 from foon_asp.questions.posing import Command, is_for_goals, one_problem, the_data
@@ -53,6 +52,7 @@ _BEST = 5  # trees, the best and those after it
 _MERMAID_PAGE = ".md"
 _PAGES = ("html", "json")
 _PICTURES = ("svg", "png", "pdf", "dot", "mermaid", "graphml")
+_RULES = ("constraints", "constants", "encodings")
 _FOR_THE_BEST = {
     "objectives": "--objective",
     "beside": "--beside",
@@ -293,7 +293,6 @@ def _posed(
         many=True,
         choices=tuple(map(str, Beside)),
     ),
-    *HOW,
     help_="""
     \b
     foon-asp view --goal macaroni -o macaroni.html      a page
@@ -335,14 +334,7 @@ def view(
     tree: str | PathLike[str] | Iterable[FunctionalUnit] | None = None,
     units: Iterable[int] = (),
     beside: Iterable[str] = (Beside.SEARCHES, Beside.PROOF),
-    constraints: Files = (),
-    constants: Constants | None = None,
-    encodings: File | None = None,
-    containers: str = "strict",
-    time_limit: float | None = None,
-    memory_limit: int | str | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    **how: Unpack[How],
 ) -> View:
     """Solve a problem, and show what was found on a page or as a picture; or show what is given.
 
@@ -355,7 +347,6 @@ def view(
         tree: A tree to draw: the path of a file (FOON text, or an answer in JSON), or functional units.
         units: Ids of units to draw, as in ``json()``.
         beside: Without any, there is only the tree, which is enough for a picture.
-        containers: The container rule for data: ``strict`` or ``implied``. A problem has its own.
 
     Returns:
         The page and the picture: ``html()``, ``svg()``, ``png()``, ``pdf()``, ``dot()``, ``mermaid()`` and
@@ -378,20 +369,20 @@ def view(
     if isinstance(about, Answer):
         return View(about)
     listed = tuple(dict.fromkeys(units))
+    rules = {name: how[name] for name in _RULES if name in how}  # type: ignore[literal-required]
+    rule = how.get("containers", "strict")
     if tree is not None and listed:
         raise UserError("a tree and units are two different drawings: give one of them")
     if tree is None and not listed and isinstance(about, Problem):
         wanted = {str(each) for each in ([beside] if isinstance(beside, str) else beside)}
         for name in sorted(wanted - {*Beside}):
             raise UserError(f"found beside={name!r}, expected one of {', '.join(Beside)}")
-        chosen = chosen_objectives(about, objectives)
-        how = settings(constraints, constants, encodings, time_limit, memory_limit)
+        chosen, asked = chosen_objectives(about, objectives), settings_of(how)
         if not wanted or caller().form in _PICTURES:
-            return View(answered_under(about, chosen, how))
-        rules = {"constraints": constraints, "constants": constants, "encodings": encodings}
-        *_, grown = pages(about, chosen, how, wanted, rules)
+            return View(answered_under(about, chosen, asked))
+        *_, grown = pages(about, chosen, asked, wanted, rules)
         return grown
-    if constraints or constants or encodings is not None:
+    if any(rules.values()):
         raise UserError("rules are for the best tree of a problem; nothing is solved here")
     if listed:
         return View(None, picture=_units_drawing(about, listed))
@@ -399,7 +390,7 @@ def view(
         drawing = (
             posed_tree(about, tree).drawing()
             if isinstance(about, Problem)
-            else _drawing_without_goals(about, container_rule(containers), tree)
+            else _drawing_without_goals(about, container_rule(rule), tree)
         )
         if not drawing.units:
             raise UserError("the tree has no functional unit to draw")
@@ -407,7 +398,7 @@ def view(
     assert isinstance(about, Foon)
     if not len(about.dataset.data.network):
         raise UserError("the network has no units to show")
-    return View(None, network=about.dataset.problem((0,), containers, everything=True))
+    return View(None, network=about.dataset.problem((0,), rule, everything=True))
 
 
 def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
@@ -461,7 +452,7 @@ def pages(
     page = View(answer, certified=proof, network=whole(problem) if Beside.NETWORK in wanted else None)
     yield page
 
-    def left() -> dict[str, Any]:
+    def left() -> Limits:
         return {"time_limit": deadline.left, "memory_limit": deadline.memory}
 
     if plans and not ruled:
@@ -477,7 +468,9 @@ def pages(
         page = structs.replace(page, certified=proof, lasting=lasting)
         yield page
     if ruled:
-        page = structs.replace(page, without_rules=answered(problem, chosen, settings(**left())))
+        page = structs.replace(
+            page, without_rules=answered(problem, chosen, Settings(deadline=begin(left())))
+        )
         yield page
     if answer.ending is Ending.NEGATIVE:
         explained = why_not(endless, **rules, **left())
