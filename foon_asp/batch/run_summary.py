@@ -7,7 +7,7 @@ from typing import Self
 
 from foon_asp.batch.answer_row import AnswerRow
 from foon_asp.network import counted
-from foon_asp.results.document import Document
+from foon_asp.results.document import Document, Known
 from foon_asp.results.table import Part
 from foon_asp.text.json_value import schema_name
 
@@ -37,6 +37,9 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
     seconds_worst: float | None
     seconds: float
 
+    errors = Known[Sequence[AnswerRow]](())
+    """The rows of this run that have an error."""
+
     @classmethod
     def of(
         cls, questions: int, before: Sequence[AnswerRow], now: Sequence[AnswerRow], seconds: float
@@ -53,8 +56,7 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
             seconds_worst=max(each, default=None),
             seconds=round(seconds, 3),
         )
-        found.__dict__["errors"] = [row for row in now if row.error is not None]
-        return found
+        return found.knowing(errors=[row for row in now if row.error is not None])
 
     def show(self) -> Iterator[Part]:
         """Return how many were answered and proved, and the first of the rows that have an error."""
@@ -66,9 +68,8 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
             yield f"proved: {_counts(self.proofs, 'by ') or 'none'}"
         if self.seconds_median is not None:
             yield f"seconds for one: median {self.seconds_median:.3f}, worst {self.seconds_worst:.3f}"
-        errors: list[AnswerRow] = self.__dict__["errors"]
-        yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in errors[:_SHOWN])
-        failed = sum(row.status == "failed" for row in errors)
+        yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in self.errors[:_SHOWN])
+        failed = sum(row.status == "failed" for row in self.errors)
         if failed > _SHOWN:
             yield f"... and {failed - _SHOWN} more failed: see their rows"
 

@@ -22,7 +22,7 @@ from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Part, Question, question_of
 from foon_asp.questions.each import Each
 from foon_asp.questions.index import module_name, question_name
-from foon_asp.questions.posing import no_data, one_problem, one_problem_or_each
+from foon_asp.questions.posing import no_data, one_problem
 from foon_asp.questions.posing_plan import a_plan, settle_data
 from foon_asp.questions.result import Result
 from foon_asp.questions.tree import read_answer
@@ -92,7 +92,7 @@ def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) ->
             asked["goals_named"] = tuple(map(str, listed.goals))
     says_goals = question.pose in {no_data, a_plan}  # itself, where there are any
     unnamed = not says_goals and asked.get("goals_named") == ()
-    alone = question.pose in {one_problem, one_problem_or_each} and not asked.get("all_goals")
+    alone = question.pose is one_problem and not asked.get("all_goals")
     each_alone = unnamed and alone
     goals = command.unnamed_goals() if each_alone else []
     if len(goals) < 2:

@@ -26,7 +26,7 @@ from foon_asp.questions.options import ITEMS, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.used_up_note import used_up_note
-from foon_asp.results.document import AboutGoals
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import CostedTree, Mention, Node, Value, step_lines, steps_not_in
@@ -86,11 +86,8 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
     partings: tuple[Parting, ...]
     trees: tuple[CostedTree, ...]
 
-    @property
-    def problem(self) -> Problem:
-        """The problem that was asked about."""
-        found: Problem = self.__dict__["problem"]
-        return found
+    problem = Known[Problem]()
+    """The problem that was asked about."""
 
     @property
     def task_trees(self) -> tuple[Tree, ...]:
@@ -172,16 +169,11 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
                 makers = " and ".join(f"{unit.motion} [{unit.source[0]}]" for unit in way.made_by)
                 yield f"  {_numbered(way.trees)}: {makers}"
 
-    @property
-    def wanted(self) -> int | None:
-        """The number of trees asked for; ``None`` for all optimal ones."""
-        found: int | None = self.__dict__["wanted"]
-        return found
+    wanted = Known[int | None]()
+    """The number of trees asked for; ``None`` for all optimal ones."""
 
-    @property
-    def different(self) -> bool:
-        """Whether the trees are those that differ most."""
-        return bool(self.__dict__["different"])
+    different = Known[bool]()
+    """Whether the trees are those that differ most."""
 
     def drawing(self) -> Drawing | None:
         """Return what the picture of the first tree shows."""
@@ -274,8 +266,7 @@ def alternatives(
     else:
         pool = _ranked(problem, chosen, settings, limit, Fraction(0))
     found = _values(problem, chosen, pool)
-    found.__dict__.update(problem=problem, wanted=best or different, different=different is not None)
-    return found
+    return found.knowing(problem=problem, wanted=best or different, different=different is not None)
 
 
 def _values(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) -> Alternatives:

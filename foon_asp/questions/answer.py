@@ -18,7 +18,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.used_up_note import used_up_note
 from foon_asp.report.why_infeasible import why_infeasible
-from foon_asp.results.document import AboutGoals
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.figure_text import bound_text, costs_text, figure_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import Figure, ListedConstraint, Node, Step, UsedUpRun, Value
@@ -191,30 +191,21 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             seconds={phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
             **more,
         )
-        answer.__dict__["outcome"] = outcome
-        return answer
+        return answer.knowing(outcome=outcome)
 
-    @property
-    def outcome(self) -> Outcome:
-        """The outcome of the solver, with ids."""
-        found: Outcome = self.__dict__["outcome"]
-        return found
+    outcome = Known[Outcome]()
+    """The outcome of the solver, with ids."""
 
     @property
     def problem(self) -> Problem:
         """The problem that was asked about."""
         return self.outcome.problem
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Lines about the proof, which are shown behind the steps."""
-        notes: tuple[str, ...] = self.__dict__.get("notes", ())
-        return notes
+    notes = Known[tuple[str, ...]](())
+    """Lines about the proof, which are shown behind the steps."""
 
-    @property
-    def certificate(self) -> "Certificate | None":
-        """The certificate that proves the answer, where one was asked for and found."""
-        return self.__dict__.get("certificate")
+    certificate = Known["Certificate | None"](None)
+    """The certificate that proves the answer, where one was asked for and found."""
 
     def having(
         self, notes: Iterable[str] = (), certificate: "Certificate | None" = None, **fields: Any
@@ -228,8 +219,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         """
         answer = replace(self, **fields)
         certificate = certificate or self.certificate
-        answer.__dict__.update(self.__dict__, notes=(*self.notes, *notes), certificate=certificate)
-        return answer
+        known = {**self.__dict__, "notes": (*self.notes, *notes), "certificate": certificate}
+        return answer.knowing(**known)
 
     @property
     def ids(self) -> tuple[int, ...] | None:

@@ -27,12 +27,12 @@ from foon_asp.questions.compared import comparison_table, published_table, summa
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
 from foon_asp.questions.how import How, limits_of, settings_of
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
-from foon_asp.questions.posing import Command, each_goal
+from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved
 from foon_asp.questions.searching import COUNT, DEPTH, TIES, known_searches, search_settings, searched
 from foon_asp.resources import published_table as published_file
-from foon_asp.results.document import AboutGoals
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values_of import head_of
 from foon_asp.searches import Search, SearchSettings, search_names
@@ -60,11 +60,11 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
     comparisons: tuple[Comparison, ...]
     published: PublishedTable | UnsetType = UNSET
 
-    @property
-    def retrieved(self) -> tuple[Retrieved, ...]:
-        """What each search returned for each goal, where trees are asked for, or there is but one."""
-        retrieved: tuple[Retrieved, ...] = self.__dict__["retrieved"]
-        return retrieved
+    retrieved = Known[tuple[Retrieved, ...]]()
+    """What each search returned for each goal, where trees are asked for, or there is but one."""
+
+    summed_up = Known[bool]()
+    """Whether a summary alone is shown."""
 
     @property
     def proved(self) -> bool:
@@ -81,8 +81,8 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         if isinstance(self.published, PublishedTable):
             yield from published_table(self.published, self.comparisons)
             return
-        if not self.__dict__["summed_up"]:
-            yield f"Searches and the optimum ({self.__dict__['conditions']})"
+        if not self.summed_up:
+            yield f"Searches and the optimum ({self.conditions})"
             yield ""
             yield from comparison_table(self.comparisons, self.items == "lasting")
             if self.comparisons[0].searches[0].tree is not UNSET:
@@ -116,7 +116,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         Raises:
             UserError: for another file name, or if the packages of ``foon-asp[pictures]`` are missing.
         """
-        write_comparison_chart(self.comparisons, self.__dict__["conditions"], Path(file))
+        write_comparison_chart(self.comparisons, self.conditions, Path(file))
 
     def __repr__(self) -> str:
         return f"<Compared: {', '.join(map(str, self.goals))}>"
@@ -146,7 +146,7 @@ def _posed(
     if all_makeable:
         how = items_of(command.dataset, items, stock, stays)
         return (command.dataset.problem((0,), containers, everything=True, items=how),)
-    return each_goal(command, goals_named, containers, items, stock, stays)
+    return one_problem(command, goals_named, containers, items, stock, stays, all_goals=True)
 
 
 @question(
@@ -266,15 +266,11 @@ def compare(
             )
             for row in comparisons
         ]
-    compared = Compared(
+    return Compared(
         **head_of(problem, dict.fromkeys(each for row in comparisons for each in row.optimum)),
         comparisons=tuple(comparisons),
         published=table or UNSET,
-    )
-    compared.__dict__.update(
-        retrieved=tuple(retrieved), conditions=problem.conditions, summed_up=all_makeable
-    )
-    return compared
+    ).knowing(retrieved=tuple(retrieved), summed_up=all_makeable)
 
 
 def _compared_goals(

@@ -20,7 +20,7 @@ from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.result import Result
-from foon_asp.results.document import AboutGoals
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values_of import head_of
 from foon_asp.text.json_value import schema_name
@@ -51,20 +51,19 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
     problem_file: str = field(name="problem")
     name_map: MapFile = field(name="map")
 
-    @property
-    def task(self) -> PlanningTask:
-        """The same as values."""
-        found: PlanningTask = self.__dict__["task"]
-        return found
+    task = Known[PlanningTask]()
+    """The same as values."""
+
+    written = Known[Path | None](None)
+    """The folder that the files were written into, if they were."""
 
     def show(self) -> Iterator[Shown]:
         """Return the problem; or what was written, where the files were."""
-        written: Path | None = self.__dict__.get("written")
-        if written is None:
+        if self.written is None:
             yield from self.problem_file.splitlines()
             return
         task = self.task
-        yield f"{written}: {', '.join(FILES)} ({task.problem.conditions})"
+        yield f"{self.written}: {', '.join(FILES)} ({task.problem.conditions})"
         yield f"{counted(len(task.actions), 'action')}, {counted(len(task.names), 'object node')}"
         if task.problem.items is not None:
             yield items_words(task)
@@ -108,7 +107,7 @@ def _export_and_write(
     found = export(problem, *about, **asked)
     if folder_written is not None:
         found.write(folder_written)
-        found.__dict__["written"] = folder_written
+        found.knowing(written=folder_written)
     return found
 
 
@@ -216,8 +215,7 @@ def export(
             problem_file=problem_text(task),
             name_map=MapFile.of(task),
         )
-    exported.__dict__["task"] = task
-    return exported
+    return exported.knowing(task=task)
 
 
 @asked_in_python

@@ -8,6 +8,7 @@ from foon_asp.dataset.paths import File, Files, as_path, files
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder, counted
 from foon_asp.questions.result import Result
+from foon_asp.results.document import Known
 from foon_asp.results.table import Part
 from foon_asp.text.data_folder import DataFiles, find_data
 from foon_asp.text.diagnostics import summarize
@@ -43,23 +44,14 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
     prices: int = 0
     left_out: int
 
-    @property
-    def network(self) -> Network | None:
-        """The network; ``None`` where it was written into a store."""
-        found: Network | None = self.__dict__.get("network")
-        return found
+    network = Known[Network | None](None)
+    """The network; ``None`` where it was written into a store."""
 
-    @property
-    def store(self) -> Path | None:
-        """The store that it was written into, if it was."""
-        found: Path | None = self.__dict__.get("store")
-        return found
+    store = Known[Path | None](None)
+    """The store that it was written into, if it was."""
 
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What was assumed."""
-        found: tuple[str, ...] = self.__dict__["warnings"]
-        return found
+    warnings = Known[tuple[str, ...]]()
+    """What was assumed."""
 
     def show(self) -> Iterator[Part]:
         """Return the counts in one line."""
@@ -146,8 +138,7 @@ def merge_files(found: DataFiles, store: Path | None, lenient: bool) -> Merged:
             objects=imported.objects,
             left_out=imported.left_out,
         )
-        merged.__dict__.update(warnings=warnings, store=store)
-        return merged
+        return merged.knowing(warnings=warnings, store=store)
     reader = FoonReader(lenient)
     builder = NetworkBuilder()
     copies = 0
@@ -169,5 +160,4 @@ def merge_files(found: DataFiles, store: Path | None, lenient: bool) -> Merged:
         prices=len(reader.prices),
         left_out=reader.left_out,
     )
-    merged.__dict__.update(warnings=warnings, network=network)
-    return merged
+    return merged.knowing(warnings=warnings, network=network)

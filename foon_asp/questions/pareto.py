@@ -23,7 +23,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.used_up_note import used_up_note
-from foon_asp.results.document import AboutGoals
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.figure_text import costs_text, figure_text, success_texts
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.table import Table
@@ -95,11 +95,11 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
     points: tuple[Point, ...]
     seconds: float
 
-    @property
-    def problem(self) -> Problem:
-        """The problem that was asked about."""
-        found: Problem = self.__dict__["problem"]
-        return found
+    problem = Known[Problem]()
+    """The problem that was asked about."""
+
+    lists_trees = Known[bool]()
+    """Whether the units of the trees are listed."""
 
     @property
     def values(self) -> tuple[tuple[int | Fraction, ...], ...]:
@@ -130,7 +130,7 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
         if self.points:
             yield ""
             yield self._table()
-        if not self.__dict__["trees"]:
+        if not self.lists_trees:
             yield from self._used_up_lines()
             return
         for number, (point, tree) in enumerate(zip(self.points, self.task_trees, strict=True)):
@@ -312,8 +312,7 @@ def pareto(
         points=tuple(_points(problem, chosen, found)),
         seconds=seconds,
     )
-    front.__dict__.update(problem=problem, trees=trees)
-    return front
+    return front.knowing(problem=problem, lists_trees=trees)
 
 
 def _points(problem: Problem, objectives: Sequence[Objective], found: Sequence[_Point]) -> Iterator[Point]:

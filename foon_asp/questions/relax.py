@@ -21,6 +21,7 @@ from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.how import Limits, begin
 from foon_asp.questions.posing import no_data
 from foon_asp.questions.result import Ending, Result
+from foon_asp.results.document import Known
 from foon_asp.results.plain import fraction_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import Value
@@ -92,7 +93,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
         bound = answer.outcome.bounds.get(objective)
         proved = answer.status in {Status.OPTIMAL, Status.INFEASIBLE} or None is not cost == bound
         names = ((problem.network.motions[unit], unit) for unit in answer.ids or ())
-        relaxed = cls(
+        return cls(
             task=task.name,
             facts=len(task.facts),
             actions=task.action_count,
@@ -109,21 +110,13 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
             if answer
             else None,
             seconds=answer.seconds,
-        )
-        relaxed.__dict__.update(answer=answer, strips=task)
-        return relaxed
+        ).knowing(answer=answer, strips=task)
 
-    @property
-    def answer(self) -> Answer:
-        """The answer, in which facts are object nodes and actions are units."""
-        found: Answer = self.__dict__["answer"]
-        return found
+    answer = Known[Answer]()
+    """The answer, in which facts are object nodes and actions are units."""
 
-    @property
-    def strips(self) -> StripsTask:
-        """The task that was read."""
-        found: StripsTask = self.__dict__["strips"]
-        return found
+    strips = Known[StripsTask]()
+    """The task that was read."""
 
     @property
     def problem(self) -> Problem:
@@ -234,9 +227,7 @@ def relax(
         caller().reporter.warning("no certificate was found, and nothing is written")
         return found
     write_whole(Path(certificate_file), certificate.text().encode())
-    written = structs.replace(found, certificate=str(certificate_file))
-    written.__dict__.update(found.__dict__)
-    return written
+    return structs.replace(found, certificate=str(certificate_file)).knowing(**found.__dict__)
 
 
 def solved(task: StripsTask, deadline: Deadline) -> Relaxed:

@@ -17,7 +17,7 @@ from foon_asp.questions.searching import COUNT, DEPTH, TIES, search_settings, se
 from foon_asp.questions.tree import Tree
 from foon_asp.report.used_up_note import used_up_note
 from foon_asp.report.verdict import Stop, verdict_text, verdict_values
-from foon_asp.results.document import AboutGoals
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import Node, Step, UsedUpRun
@@ -93,20 +93,19 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
             units=steps_of(problem, ids) if found else None,
         )
         text = "" if simulation is None else verdict_text(problem, listed, simulation)
-        retrieved.__dict__.update(problem=problem, ids=ids, promise=search.promise, said=text)
-        return retrieved
+        return retrieved.knowing(problem=problem, ids=ids, promise=search.promise, said=text)
 
-    @property
-    def problem(self) -> Problem:
-        """The problem that was asked about."""
-        problem: Problem = self.__dict__["problem"]
-        return problem
+    problem = Known[Problem]()
+    """The problem that was asked about."""
 
-    @property
-    def ids(self) -> tuple[int, ...]:
-        """The units of the tree by id in the network of the problem, as listed; none without a tree."""
-        ids: tuple[int, ...] = self.__dict__["ids"]
-        return ids
+    ids = Known[tuple[int, ...]]()
+    """The units of the tree by id in the network of the problem, as listed; none without a tree."""
+
+    promise = Known[str]()
+    """What the search promises of its trees."""
+
+    said = Known[str]()
+    """Whether the tree executes, in words; empty without one."""
 
     @property
     def tree(self) -> Tree | None:
@@ -127,11 +126,11 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
 
     def show(self) -> Iterator[Part]:
         """Return what the search promises, whether its tree executes, and the steps as they were listed."""
-        yield from (*self.goal_lines(), f"{self.search} promises {self.__dict__['promise']}")
+        yield from (*self.goal_lines(), f"{self.search} promises {self.promise}")
         if self.units is None:
             yield self._without()
             return
-        yield from (self.__dict__["said"].rstrip("\n"), "")
+        yield from (self.said.rstrip("\n"), "")
         yield from (line for step in self.units for line in step.lines())
 
     def foon(self) -> str:

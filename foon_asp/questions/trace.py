@@ -22,7 +22,7 @@ from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLA
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
-from foon_asp.results.document import AboutGoals
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values import Copies, Copy, Unit, Value, changed_motions
 from foon_asp.results.values_of import copies_of, copy_of, head_of, lack_of
@@ -80,11 +80,11 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
     failed: int | None
     answer: Answer | None
 
-    @property
-    def plan(self) -> Tree:
-        """The plan that was traced."""
-        found: Tree = self.__dict__["plan"]
-        return found
+    plan = Known[Tree]()
+    """The plan that was traced."""
+
+    states = Known[States]()
+    """How many copies there are of what can run out: in the beginning, and after each step."""
 
     @property
     def ending(self) -> Ending:
@@ -102,13 +102,12 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         Raises:
             UserError: if the plan does not run so far.
         """
-        states: States = self.__dict__["states"]
-        if not 0 <= after < len(states):
-            last = len(states) - 1
+        if not 0 <= after < len(self.states):
+            last = len(self.states) - 1
             raise UserError(
                 f"found the step {after}, expected one that runs, or 0 for the start: 0 to {last}"
             )
-        return states[after]
+        return self.states[after]
 
     def kitchen_text(self, after: int) -> str:
         """Return the kitchen after a step as FOON text: each object node that is there, once.
@@ -300,8 +299,7 @@ def trace(
         failed=failed,
         answer=answer,
     )
-    traced.__dict__.update(plan=tree, states=states)
-    return traced
+    return traced.knowing(plan=tree, states=states)
 
 
 def _from_here(problem: Problem, copies: dict[ObjectNode, int]) -> Problem:

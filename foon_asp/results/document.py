@@ -1,7 +1,7 @@
 """Documents: values that are JSON of their own, with a schema, rows for tables, and lines for people."""
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Generic, Literal, Self, TypeVar
 
 from msgspec import Struct
 
@@ -12,6 +12,23 @@ from foon_asp.results.table import Part, rendered
 from foon_asp.results.values import Node
 from foon_asp.text.json_value import Json, json_text, read_json
 
+T = TypeVar("T")
+
+
+class Known(Generic[T]):
+    """What a document knows besides its JSON, as :meth:`Document.knowing` says it; else the ``default``."""
+
+    def __init__(self, *default: T) -> None:
+        self._default = default
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, document: object, owner: type | None = None) -> T:
+        if not self._default:
+            raise AttributeError(f"{self._name} is not known")
+        return self._default[0]
+
 
 class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema"):
     """A value whose fields are its JSON, in their order.
@@ -21,6 +38,11 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
     """
 
     ROWS: ClassVar[str] = ""
+
+    def knowing(self, **known: object) -> Self:
+        """Return the document itself, which from now on knows more besides its JSON, see :class:`Known`."""
+        self.__dict__.update(known)
+        return self
 
     def show(self) -> Iterator[Part]:
         """Return the lines and tables that the document is for people."""

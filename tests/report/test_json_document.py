@@ -17,13 +17,15 @@ from hypothesis import strategies as st
 import foon_asp
 from foon_asp.asp import Proof, Status
 from foon_asp.cli.verbs import VERBS, verb_command
-from foon_asp.network import ObjectNode
+from foon_asp.network import NetworkBuilder, ObjectNode
 from foon_asp.planning import translator
 from foon_asp.problem import ContainerRule
 from foon_asp.proof.simulation import Verdict
+from foon_asp.results.plain import plain
 from foon_asp.results.schema_file import schema, schema_kinds
+from foon_asp.results.values_of import named_node
 from foon_asp.searches import Ending
-from foon_asp.text.json_node import node_json, read_node_json
+from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import json_text, read_json, schema_name
 from tests.conftest import Cli, valid
 
@@ -393,6 +395,7 @@ def test_a_key_too_many_or_too_few_is_noticed(printed: Any, verb: str, words: tu
 # --- nodes, and the text
 
 
+NOTHING = NetworkBuilder().build()
 names = st.text(st.characters(codec="utf-8"), min_size=1, max_size=5)
 nodes = st.builds(
     ObjectNode.of,
@@ -406,7 +409,7 @@ nodes = st.builds(
 @given(nodes)
 @settings(max_examples=30)
 def test_a_node_is_read_as_it_was_written(node: ObjectNode) -> None:
-    assert read_node_json(json.loads(json_text(node_json(node, 3)))) == node
+    assert read_node_json(json.loads(json_text(plain(named_node(NOTHING, node))))) == node
 
 
 values = st.recursive(
