@@ -16,8 +16,8 @@ from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.used_up_note import used_up_note
-from foon_asp.report.why_infeasible import why_infeasible
+from foon_asp.questions.used_up_note import used_up_note
+from foon_asp.questions.why_infeasible import why_infeasible
 from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.figure_text import bound_text, costs_text, figure_text
 from foon_asp.results.table import Part

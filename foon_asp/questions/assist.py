@@ -18,7 +18,7 @@ from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.used_up_note import used_up_note
+from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Part, Table

@@ -20,7 +20,7 @@ from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIV
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree, posed_tree
-from foon_asp.report.verdict import Listed, Stop, verdict_text, verdict_values
+from foon_asp.questions.verdict import Stop, found_of, verdict_lines
 from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values import ListedConstraint, UsedUpRun
@@ -74,7 +74,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         foreign = tuple(n for n, unit in enumerate(map(problem.network.unit_id, tree), 1) if unit is None)
         found = cls(
             **head_of(problem, objectives),
-            **verdict_values(problem, _listed(tree), simulation),
+            **found_of(tree, simulation),
             costs=None if foreign else problem.costs(tree.ids),
             not_in_network=foreign,
             **more,
@@ -99,9 +99,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         """The tree in an order that executes, ``None`` where no order does."""
         if not self.executes:
             return None
-        order = [position - 1 for position in self.order]
-        units, places = self.tree.units, self.tree.places
-        return Tree(tuple(units[n] for n in order), self.problem, tuple(places[n] for n in order))
+        return self.tree.in_order(position - 1 for position in self.order)
 
     certificate = Known["Certificate | None"](None)
     """The certificate that proves the tree the best, where one was asked for and found."""
@@ -117,7 +115,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
 
     def show(self) -> Iterator[Shown]:
         """Return whether the tree executes, in which order, what stops it, and which rules it breaks."""
-        yield verdict_text(self.problem, _listed(self.tree), self.simulation).rstrip("\n")
+        yield from verdict_lines(self.tree, self.simulation)
         yield from (*self._about_rules(), *self.notes)
 
     def _about_rules(self) -> Iterator[str]:
@@ -153,10 +151,6 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
     def __repr__(self) -> str:
         shown = super().__repr__()
         return f"{shown[:-1]}, but breaks {counted(len(self.breaks), 'rule')}>" if self.breaks else shown
-
-
-def _listed(tree: Tree) -> Listed:
-    return list(zip(tree.units, tree.places, strict=True))
 
 
 def _simulated(tree: Tree) -> Simulation:

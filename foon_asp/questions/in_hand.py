@@ -27,7 +27,6 @@ HELP = {
     "goal": "A goal or several, by name or as :class:`ObjectNode`, where ``problem`` is a path or data; "
     "without it, the goal of the files.",
     "containers": "The container rule, ``strict`` or ``implied``, where ``problem`` is a path or data.",
-    "time_limit": "Stop after this many seconds, with what was found by then.",
     "on_progress": "Is called with a :class:`Progress` whenever something is found.",
     "cancel": "A token that ends the question from another thread, with what was found by then.",
 }

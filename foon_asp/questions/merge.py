@@ -7,9 +7,11 @@ from pathlib import Path
 from foon_asp.dataset.paths import File, Files, as_path, files
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder, counted
+from foon_asp.network.near_units import units_kept_apart
 from foon_asp.questions.result import Result
 from foon_asp.results.document import Known
 from foon_asp.results.table import Part
+from foon_asp.results.values_of import differences_of, listed_unit
 from foon_asp.text.data_folder import DataFiles, find_data
 from foon_asp.text.diagnostics import summarize
 from foon_asp.text.json_value import schema_name
@@ -75,6 +77,21 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
         of = counted(len(self.files), "file", ",")
         comment = f"Universal FOON: {counted(self.units, 'functional unit', ',')} from {of}"
         return "".join(merged_text(self.network, comment))
+
+    def kept_apart(self) -> Iterator[Part]:
+        """Return the pairs of units that differ in one thing alone, each with its places."""
+        if self.network is None:
+            return
+        pairs = units_kept_apart(self.network)
+        yield f"nearly the same, and kept apart: {counted(len(pairs), 'pair', ',')}"
+        for pair in pairs:
+            yield ""
+            for letter, unit in (("A", pair.left), ("B", pair.right)):
+                place = self.network.sources[self.network.unit_id(unit) or 0][0]
+                first, *others = listed_unit(self.network, unit, place).lines()
+                yield from (f"{letter}{first[1:]}", *others)
+            yield from (f"    {difference}" for difference in differences_of(pair))
+        yield ""
 
     def write(self, file: File, format_: str | None = None) -> None:
         """Write the network into a file, as FOON text.

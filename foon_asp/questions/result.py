@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.results.document import Document
-from foon_asp.whole_file import utf_8, write_whole
 
 if TYPE_CHECKING:
     from foon_asp.pictures.drawing import Drawing
@@ -91,6 +90,8 @@ class Result(Document, frozen=True, kw_only=True):
         Raises:
             UserError: for another format, or a file that cannot be written.
         """
+        from foon_asp.whole_file import utf_8, write_whole  # noqa: PLC0415 (most results are printed)
+
         form = format_ or ENDINGS.get(Path(file).suffix.lower(), "")
         if form not in ENDINGS.values() or not hasattr(self, form):
             raise UserError(f"{file}: the name says no format: end it in {' '.join(ENDINGS)}")

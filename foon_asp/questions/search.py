@@ -2,21 +2,21 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Annotated, Self, Unpack
+from typing import Annotated, Any, Self, Unpack
 
 from msgspec import field
 
 from foon_asp.comparison.comparison import simulated
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Problem
-from foon_asp.proof.simulation import Verdict
+from foon_asp.proof.simulation import Simulation, Verdict
 from foon_asp.questions.contract import question
 from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import COUNT, DEPTH, TIES, search_settings, searched
 from foon_asp.questions.tree import Tree
-from foon_asp.report.used_up_note import used_up_note
-from foon_asp.report.verdict import Stop, verdict_text, verdict_values
+from foon_asp.questions.used_up_note import used_up_note
+from foon_asp.questions.verdict import Stop, found_of, verdict_lines
 from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Part
@@ -26,6 +26,8 @@ from foon_asp.searches import Ending as Searched
 from foon_asp.searches import Search
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.writer import write_units
+
+_NO_TREE: Any = dict.fromkeys(("verdict", "as_listed", "in_any_order", "order", "used_up"))
 
 
 class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")):
@@ -79,21 +81,21 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
             ids: The units of its tree, by id in the network of the problem.
             stuck_at: The object in the way, if one was.
         """
-        network, found = problem.network, ended is Searched.TREE
-        simulation = simulated(problem, ids, problem.tree(ids)) if found else None
-        listed = [(network.unit(unit), network.sources[unit][0]) for unit in ids]
+        tree = Tree.of(problem, ids) if ended is Searched.TREE else None
+        simulation = None if tree is None else simulated(problem, ids, tree)
         retrieved = cls(
             **head_of(problem),
             search=search.name,
             package=search.package,
             ended=ended,
             stuck_at=stuck_at,
-            **verdict_values(problem, listed, simulation),
-            costs=problem.costs(ids) if found else None,
-            units=steps_of(problem, ids) if found else None,
+            **(_NO_TREE if tree is None or simulation is None else found_of(tree, simulation)),
+            costs=None if tree is None else problem.costs(ids),
+            units=None if tree is None else steps_of(problem, ids),
         )
-        text = "" if simulation is None else verdict_text(problem, listed, simulation)
-        return retrieved.knowing(problem=problem, ids=ids, promise=search.promise, said=text)
+        return retrieved.knowing(
+            problem=problem, ids=ids, promise=search.promise, tree=tree, simulation=simulation
+        )
 
     problem = Known[Problem]()
     """The problem that was asked about."""
@@ -104,13 +106,11 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
     promise = Known[str]()
     """What the search promises of its trees."""
 
-    said = Known[str]()
-    """Whether the tree executes, in words; empty without one."""
+    tree = Known[Tree | None]()
+    """The tree in the order listed; ``None`` without a tree."""
 
-    @property
-    def tree(self) -> Tree | None:
-        """The tree in the order listed; ``None`` without a tree."""
-        return None if self.units is None else Tree.of(self.problem, self.ids)
+    simulation = Known[Simulation | None]()
+    """What the simulation of the tree found; ``None`` without a tree."""
 
     @property
     def executes(self) -> bool:
@@ -127,10 +127,10 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
     def show(self) -> Iterator[Part]:
         """Return what the search promises, whether its tree executes, and the steps as they were listed."""
         yield from (*self.goal_lines(), f"{self.search} promises {self.promise}")
-        if self.units is None:
+        if self.tree is None or self.simulation is None or self.units is None:
             yield self._without()
             return
-        yield from (self.said.rstrip("\n"), "")
+        yield from (*verdict_lines(self.tree, self.simulation), "")
         yield from (line for step in self.units for line in step.lines())
 
     def foon(self) -> str:

@@ -17,11 +17,11 @@ from foon_asp.problem import ContainerRule, Problem, kitchen_needed, parse_objec
 from foon_asp.proof import verify as proof
 from foon_asp.proof.constraint import OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
+from foon_asp.questions.certificate_text import bound_text, looked_at, trusted_text
 from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.how import Limits, begin
 from foon_asp.questions.posing import DATA, Command, the_data
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.certified import bound_text, looked_at, trusted_text
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values import Measures

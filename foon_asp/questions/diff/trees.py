@@ -10,7 +10,7 @@ from foon_asp.network import FunctionalUnit, ObjectNode, counted
 from foon_asp.problem import ContainerRule, Costs, Objective, given_outputs, needed_inputs
 from foon_asp.questions.diff.difference import Difference, compared
 from foon_asp.questions.tree import Tree
-from foon_asp.report.used_up_note import used_up_note
+from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.results.document import Known
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Part
