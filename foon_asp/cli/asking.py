@@ -22,8 +22,8 @@ from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Part, Question, question_of
 from foon_asp.questions.each import Each
 from foon_asp.questions.index import module_name, question_name
-from foon_asp.questions.posing import no_data, one_problem, one_problem_or_each
-from foon_asp.questions.posing_plan import a_plan, a_tree, settle_data
+from foon_asp.questions.posing import no_data, one_problem
+from foon_asp.questions.posing_plan import a_plan, settle_data
 from foon_asp.questions.result import Result
 from foon_asp.questions.tree import read_answer
 
@@ -61,7 +61,7 @@ def ask(
             found = [question.command(*about, **how) for about in posed]
     if len(found) == 1:
         return found[0]
-    return Each(found)
+    return Each(answers=tuple(found))
 
 
 def _warn_of_measures(command: "_Command", given: Mapping[str, Any]) -> None:
@@ -85,14 +85,14 @@ def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) ->
     """Pose a question: once, or for each of several goals that were assumed. What is assumed is said."""
     asked = parameters(question, given, Part.PROBLEM)
     tree = given.get("tree")
-    if question.pose not in {a_plan, a_tree} and tree is not None and tree.is_file():  # a pipe is read once
+    if question.pose is not a_plan and tree is not None and tree.is_file():  # a pipe is read once
         listed = read_answer(tree)
         settle_data(command, {tree: listed})
         if asked.get("goals_named") == ():
             asked["goals_named"] = tuple(map(str, listed.goals))
-    says_goals = question.pose in {no_data, a_plan, a_tree}  # itself, where there are any
+    says_goals = question.pose in {no_data, a_plan}  # itself, where there are any
     unnamed = not says_goals and asked.get("goals_named") == ()
-    alone = question.pose in {one_problem, one_problem_or_each} and not asked.get("all_goals")
+    alone = question.pose is one_problem and not asked.get("all_goals")
     each_alone = unnamed and alone
     goals = command.unnamed_goals() if each_alone else []
     if len(goals) < 2:

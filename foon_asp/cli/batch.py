@@ -1,9 +1,6 @@
 """``foon-asp batch``: thousands of questions in one run, each answer a row."""
 
-import statistics
 import time
-from collections import Counter
-from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +10,9 @@ from foon_asp.asp import Settings
 from foon_asp.asp.assembly import rules_digest
 from foon_asp.batch.answer_row import ANSWERS, AnswerRow
 from foon_asp.batch.answer_table import FORMATS, check_table, write_table
-from foon_asp.batch.asked import Asked
 from foon_asp.batch.cluster import answer_on_cluster
 from foon_asp.batch.question_file import each_question, named_files, read_questions
+from foon_asp.batch.run_summary import RunSummary
 from foon_asp.batch.workers import answer_all
 from foon_asp.cli import options
 from foon_asp.cli.batch_data import Opening, digest, measured
@@ -25,14 +22,9 @@ from foon_asp.cli.named_path import NamedPath, WrittenPath
 from foon_asp.cli.output_file import check_outputs, refuse_inputs
 from foon_asp.cli.progress import Progress
 from foon_asp.comparison.rows_file import RowsFile
-from foon_asp.document.json_document import document
-from foon_asp.network import counted
 from foon_asp.problem import Objective
 from foon_asp.questions.options import EACH_LIMITS, JOBS, RULES
 from foon_asp.rules.constraint import Constraint
-from foon_asp.text.json_value import Json, json_text
-
-_SHOWN = 3  # errors, of possibly thousands
 
 
 @click.command("batch")
@@ -136,57 +128,17 @@ def command(
         if rows_file is not results_file:
             objectives = (*Objective, *map(Objective.of_measure, measures))
             write_table(results_file, results.done.values(), objectives)
-    found = _summary(asked, before, answered) | {"seconds": round(time.monotonic() - began, 3)}
+    found = RunSummary.of(len(asked), before, answered, time.monotonic() - began)
     if format_ == "json":
-        click.echo(json_text(found), nl=False)
+        click.echo(found.json_text(), nl=False)
     else:
-        for line in _in_words(found, [row for row in answered if row.error is not None]):
-            click.echo(line)
-        click.echo(f"results: {results_file}")
+        click.echo(f"{found.text()}results: {results_file}")
     if interrupted:
         click.echo("interrupted: run the same command again to continue", err=True)
-    return _exit_code(found["statuses"], interrupted)
+    return _exit_code(found.statuses, interrupted)
 
 
-def _summary(asked: Sequence[Asked], before: Sequence[AnswerRow], answered: Sequence[AnswerRow]) -> Json:
-    """Count rows by status and by proof, and return the median and greatest seconds of those answered now."""
-    seconds = [row.seconds for row in answered if row.seconds is not None]
-    return document(
-        "batch",
-        questions=len(asked),
-        answered_before=len(before),
-        answered=len(answered),
-        statuses=dict(sorted(Counter(row.status for row in (*before, *answered)).items())),
-        proofs=dict(sorted(Counter(row.proof for row in answered if row.proof is not None).items())),
-        seconds_median=statistics.median(seconds) if seconds else None,
-        seconds_worst=max(seconds, default=None),
-    )
-
-
-def _in_words(found: Json, without_answer: Sequence[AnswerRow]) -> Iterator[str]:
-    """Describe what was found, with the first of the rows that have an error."""
-    before, answered = found["answered_before"], found["answered"]
-    yield counted(found["questions"], "question", ",") + (
-        f", {before:,} of them answered before" if before else ""
-    )
-    yield f"in total: {_counts(found['statuses'], '') or 'none'}"
-    if answered:
-        yield f"answered {answered:,} in {found['seconds']:.1f} s"
-        yield f"proved: {_counts(found['proofs'], 'by ') or 'none'}"
-    if found["seconds_median"] is not None:
-        yield f"seconds for one: median {found['seconds_median']:.3f}, worst {found['seconds_worst']:.3f}"
-    shown = without_answer[:_SHOWN]
-    yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in shown)
-    failed = sum(row.status == "failed" for row in without_answer)
-    if failed > len(shown):
-        yield f"... and {failed - len(shown)} more failed: see their rows"
-
-
-def _counts(counts: dict[str, int], by: str) -> str:
-    return ", ".join(f"{count:,} {by}{name}" for name, count in counts.items())
-
-
-def _exit_code(statuses: Json, interrupted: bool) -> ExitCode:
+def _exit_code(statuses: dict[str, int], interrupted: bool) -> ExitCode:
     if interrupted or statuses.keys() & {"feasible", "unknown"}:
         return ExitCode.LIMIT
     return ExitCode.NEGATIVE if "failed" in statuses else ExitCode.DONE

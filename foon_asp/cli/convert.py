@@ -11,12 +11,12 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.errors import UserError
-from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.conversion import Converted, Converter
 from foon_asp.text.diagnostics import Diagnostic, InputError, summarize
 from foon_asp.text.dialect import Dialect, is_object_list
 from foon_asp.text.folder_files import FolderFile, foon_files
 from foon_asp.text.plain_file import read_plain_text
+from foon_asp.whole_file import utf_8, write_whole
 
 
 class _Task(NamedTuple):

@@ -11,7 +11,6 @@ from foon_asp.cli.named_path import NamedPath
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 from foon_asp.network import starting_nodes
-from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.resources import starter_recipe
 from foon_asp.text.data_folder import DataFiles, network_files, read_data
 from foon_asp.text.diagnostics import summarize
@@ -20,6 +19,7 @@ from foon_asp.text.plain_file import is_json, is_store, read_plain_text
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.starter import starter_files
 from foon_asp.text.writer import write_units
+from foon_asp.whole_file import utf_8, write_whole
 
 
 @click.command("init")

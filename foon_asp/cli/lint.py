@@ -1,12 +1,12 @@
 """``foon-asp lint``: what is wrong with FOON files, or worth a look."""
 
-import dataclasses
 import functools
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import click
+from msgspec import structs
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
@@ -25,10 +25,10 @@ from foon_asp.network import counted
 from foon_asp.questions.contract import TABLES
 from foon_asp.questions.lint import Linted, lint, linted_files
 from foon_asp.questions.result import Ending
-from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.json_value import json_text
 from foon_asp.text.plain_file import plain_text, read_content
+from foon_asp.whole_file import utf_8, write_whole
 
 
 def _codes(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
@@ -170,7 +170,7 @@ def command(
         if diff:
             return _show(repaired, count)
         contents = _write(repaired, contents)
-        found = dataclasses.replace(find(contents=contents, baseline=baseline), mended=count)
+        found = structs.replace(find(contents=contents, baseline=baseline), mended=count)
         for content in contents.values():  # the mended text of standard input
             write_data(content)
     _report(found, statistics, format_, err=fix and stdin)

@@ -116,14 +116,14 @@ def write_data(content: str | bytes) -> None:
 
     Raises :class:`UserError` for text that UTF-8 cannot hold.
     """
-    from foon_asp.report.whole_file import utf_8
+    from foon_asp.whole_file import utf_8
 
     cast(SafeStream, sys.stdout).write_data(utf_8(content) if isinstance(content, str) else content)
 
 
 def write_output(output: Path | None, content: bytes) -> None:
     """Write into a file, and report that; or to standard output, which is ``None`` or ``-``."""
-    from foon_asp.report.whole_file import write_whole
+    from foon_asp.whole_file import write_whole
 
     if output is None or str(output) == "-":
         write_data(content)

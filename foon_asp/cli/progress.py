@@ -95,7 +95,7 @@ class Progress(Reporter):
 
     def line(self, now: float) -> str:
         """Say how far it is at a time."""
-        from foon_asp.report.answer import bound_text, costs_text  # after a second
+        from foon_asp.results.figure_text import bound_text, costs_text  # after a second
 
         seconds = f"{now - self._began:.0f} s"
         limit = None if self._deadline is None else self._deadline.left

@@ -3,7 +3,7 @@
 import contextlib
 import sys
 import textwrap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -105,7 +105,7 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
                 click.echo(f"{chart} is not written: {nothing}", err=True)
         with asked_by(Caller(Reporter(), deadline=deadline)):
             if output is None:
-                _show(found, form, parameters(question, given, Part.TEXT))
+                _show(found, form)
             else:
                 _write(found, form, output)
         return _CODES[found.ending]
@@ -145,10 +145,10 @@ def _form(question: Question, named: str | None, output: Path | None) -> str:
     return form
 
 
-def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
+def _show(found: Result, format_: str) -> None:
     """Write the result to standard output, and to stderr what its format cannot tell."""
     if format_ == "text":
-        write_parts(found.show(**how))
+        write_parts(found.show())
     elif format_ == "json":
         click.echo(found.json_text(), nl=False)
     elif format_ in _SHOWN:

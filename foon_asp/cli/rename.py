@@ -13,12 +13,12 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.shown_diff import show_diff
 from foon_asp.errors import UserError
 from foon_asp.network import counted
-from foon_asp.report.whole_file import utf_8, write_all_whole
 from foon_asp.text.diagnostics import InputError, Rename
 from foon_asp.text.folder_files import foon_files
 from foon_asp.text.plain_file import read_content, read_plain_text
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.renaming import TABLES, NameKind, Renaming, is_name, mentioned
+from foon_asp.whole_file import utf_8, write_all_whole
 
 _A = {NameKind.OBJECT: "an object", NameKind.WORD: "a word of relations"}
 

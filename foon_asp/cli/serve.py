@@ -14,8 +14,8 @@ from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.problem import parse_objectives
-from foon_asp.questions.arguments import settings
 from foon_asp.questions.contract import Question
+from foon_asp.questions.how import settings_of
 
 _OF_A_FILE = {"output": "-o", "format_": "--format"}
 
@@ -54,7 +54,13 @@ def _serve(asked: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> E
         items=asked["items"],
         beside=tuple(asked["beside"]),
     )
-    how = settings(asked["constraints"], asked["constants"], asked["encodings"])
+    how = settings_of(
+        {
+            "constraints": asked["constraints"],
+            "constants": asked["constants"],
+            "encodings": asked["encodings"],
+        }
+    )
     example = dataset.problem((0,), first.containers)
     # what is wrong with files is said at once
     assemble(how, functools.partial(click.echo, err=True), problem=example)

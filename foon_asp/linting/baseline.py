@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.json_value import Json, read_json, schema_name
@@ -74,9 +73,8 @@ def baseline_json(file: Path, findings: Sequence[Diagnostic]) -> Json:
     """Give what to write into a baseline file, so that these findings are known."""
     counts = Counter(_key(file, finding) for finding in findings)
     keys = ("file", "code", "text", "count")
-    return document(
-        _KIND, known=[dict(zip(keys, (*key, n), strict=True)) for key, n in sorted(counts.items())]
-    )
+    known = [dict(zip(keys, (*key, n), strict=True)) for key, n in sorted(counts.items())]
+    return {"schema": schema_name(_KIND), "known": known}
 
 
 def _key(file: Path, finding: Diagnostic) -> _Key:

@@ -11,13 +11,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.document.json_document import document, fraction_json, mention_json, nodes_json
 from foon_asp.escapes import UNSAFE
-from foon_asp.pictures.graphviz import spots
-from foon_asp.pictures.tree_drawing import network_drawing
-from foon_asp.problem import Problem, reach
-from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.json_value import Json, json_line
+from foon_asp.whole_file import utf_8, write_whole
 
 WEB = Path(__file__).resolve().parent / "web"
 
@@ -32,10 +28,6 @@ _SCRIPTS = (
     "proof",
     "network",
     "start",
-)
-_OTHERS = (
-    *("lasting", "without_rules", "alternatives", "front"),
-    *("proof", "why_not", "shopping_list", "network"),
 )
 
 
@@ -78,49 +70,6 @@ class Page(NamedTuple):
     ) -> dict[str, str]:
         """Give what a notebook shows."""
         return {"text/plain": f"<Page: {self.title}>", "text/html": self.frame()}
-
-
-def view_json(answer: Json | None, trees: Iterable[tuple[Problem, Iterable[int]]], **beside: object) -> Json:
-    """Give what a page has: the document of an answer as it is, if it is about one.
-
-    ``trees`` are all trees that the page shows, each by units of a problem, for the rates of these units.
-    ``beside`` are documents of other answers, as the schema names them.
-    """
-    rates = {
-        problem.network.unit_number(unit): fraction_json(problem.rate(unit))
-        for problem, units in trees
-        for unit in units
-        if problem.rates is not None
-    }
-    return document(
-        "view",
-        answer=answer,
-        rates=[{"unit": unit, "rate": rates[unit]} for unit in sorted(rates)] or None,
-        **{"searches": [], **dict.fromkeys(_OTHERS), **beside},
-    )
-
-
-def network_json(problem: Problem) -> Json:
-    """Give a whole network with places for a picture: units first, then object nodes, each x and y."""
-    network = problem.network
-    reached = reach(problem)
-    objects, units = range(len(network.objects)), range(len(network))
-    drawing = network_drawing(network, units, (), (), ())
-    found = spots(drawing)
-    places = {box.unit if box.node is None else box.node: found[box.name] for box in drawing.boxes}
-    listed = [places[network.unit_number(u)] for u in units]
-    listed += [places.get(node, (0, 0)) for node in network.objects]  # some are in no unit
-    return {
-        "objects": nodes_json(network, objects),
-        "units": [
-            {**mention_json(network, u), "inputs": network.inputs[u], "outputs": network.outputs[u]}
-            for u in units
-        ],
-        "places": [round(number) for place in listed for number in place],
-        "kitchen": sorted(problem.kitchen),
-        "reachable": [o for o in objects if reached.available[o]],
-        "possible": sorted(reached.units),
-    }
 
 
 def web(name: str, folder: Path = WEB) -> str:

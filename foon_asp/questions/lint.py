@@ -1,8 +1,7 @@
 """What is wrong in FOON files, or doubtful."""
 
 import dataclasses
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -22,15 +21,15 @@ from foon_asp.report.lint_findings import (
     lint_text,
 )
 from foon_asp.report.lint_sarif import lint_sarif
+from foon_asp.results.plain import flat_row
 from foon_asp.results.table import rendered
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
-from foon_asp.text.json_value import json_text
+from foon_asp.text.json_value import Json, json_text, schema_name
 from foon_asp.typed import typed
 
 
-@dataclass(frozen=True, repr=False)
-class Linted(Result):
+class Linted(Result, frozen=True, tag=schema_name("lint")):
     r"""The ``findings`` in ``files``, by file and line.
 
     Each finding has a ``severity``, ``code``, ``message`` and ``source``, and where the line can be repaired,
@@ -68,9 +67,13 @@ class Linted(Result):
         summary = lint_summary(self.findings, len(self.files), self.mended)
         return rendered([lint_statistics(self.findings), summary], width)
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Return every finding, and the counts, as plain values."""
         return lint_json(self.findings, len(self.files), self.mended)
+
+    def table_rows(self) -> Iterator[Json]:
+        """Return a row for each finding."""
+        return map(flat_row, self.json_dict()["findings"])
 
     def github(self) -> str:
         """Return a workflow command of GitHub for each finding, which shows it beside its line."""

@@ -22,15 +22,15 @@ from foon_asp.proof.timetable import Means, ToolName, timetable_fault
 from foon_asp.proof.timetable import TimedStep as Timed
 from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.questions.answer import of_status
-from foon_asp.questions.arguments import at_least, begin, read_as
+from foon_asp.questions.arguments import at_least, read_as
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import Limits
+from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
-from foon_asp.questions.result import AboutGoals, Ending, NothingToDrawError, NoTreeError, Result
+from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
-from foon_asp.report.whole_file import utf_8, write_whole
+from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.table import Table
 from foon_asp.results.timed_step import TimedStep, Tool
@@ -42,6 +42,7 @@ from foon_asp.text.item_list import stated_name
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.line import LineError
 from foon_asp.text.tool_list import read_tools
+from foon_asp.whole_file import utf_8, write_whole
 
 Durations = str | PathLike[str] | Mapping[str, Number | Duration]
 Tools = str | PathLike[str] | Mapping[ToolName, int | None]
@@ -73,7 +74,7 @@ class LackingTool(Value, frozen=True):
     needed: int
 
 
-class Schedule(AboutGoals, frozen=True, kw_only=True, tag=schema_name("schedule")):
+class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("schedule")):
     """When the steps of a plan are done, and by whom.
 
     Attributes:
@@ -161,24 +162,20 @@ class Schedule(AboutGoals, frozen=True, kw_only=True, tag=schema_name("schedule"
         write_gantt(self.gantt, Path(file))
 
 
-class WrittenDurations(Result):
-    """A file of durations that was written to be filled in; ``unknown`` is how many are to be said."""
+class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durations")):
+    """A file of durations that was written to be filled in.
 
-    def __init__(self, file: Path, unknown: int) -> None:
-        self.file, self.unknown = file, unknown
+    Attributes:
+        unknown: How many durations are to be said.
+    """
 
-    def text(self) -> str:
+    file: Path
+    unknown: int
+
+    def show(self) -> Iterator[Shown]:
         """Return what to do with it."""
         todo = f"say {counted(self.unknown, 'duration')} in place of SECONDS" if self.unknown else "change it"
-        return f"wrote {self.file}: {todo}, and give it as --durations\n"
-
-    def json_dict(self) -> object:
-        """Refuse: the file is what was asked for.
-
-        Raises:
-            UserError: always.
-        """
-        raise UserError("--durations-template writes a file, and has no other format")
+        yield f"wrote {self.file}: {todo}, and give it as --durations"
 
 
 def _schedule_or_template(
@@ -192,7 +189,8 @@ def _schedule_or_template(
     known = _known_durations(plan, asked["durations"], asked["from_video"], asked["default_duration"])
     template = {unit.motion: known.get(unit.motion) for unit in plan.units}
     write_whole(durations_template, utf_8(template_text(template)))
-    return WrittenDurations(durations_template, sum(each is None for each in template.values()))
+    unknown = sum(each is None for each in template.values())
+    return WrittenDurations(file=durations_template, unknown=unknown)
 
 
 @question(
@@ -274,7 +272,7 @@ def schedule(
         ),
     ] = None,
     items: str = "used-up",
-    **how: Unpack[Limits],
+    **how: Unpack[Posed],
 ) -> Schedule:
     """Find the shortest schedule of a plan: when each step starts, who does it, and with which tools.
 
@@ -306,7 +304,7 @@ def schedule(
         >>> str(found.status), str(found.makespan)
         ('optimal', '40')
     """
-    deadline = begin(how.get("time_limit"), how.get("memory_limit"))
+    deadline = begin(how)
     at_least(agents, 1, "agents")
     problem = read_as(problem, items)
     tree = _in_order(posed_tree(problem, plan))

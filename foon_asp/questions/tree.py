@@ -147,7 +147,7 @@ class Tree(TaskTree):
     def drawing(self) -> "Drawing":
         """Give what the picture shows; units of a tree without a claim are numbered as they execute."""
         from foon_asp.pictures.tree_drawing import plan_drawing, tree_drawing  # noqa: PLC0415
-        from foon_asp.report.used_up_note import used_up_note  # noqa: PLC0415
+        from foon_asp.questions.used_up_note import used_up_note  # noqa: PLC0415
 
         if self.problem.items is not None:
             return plan_drawing(self.problem, self.units, caption=self.claim)

@@ -3,14 +3,13 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from foon_asp.document.json_document import document
 from foon_asp.escapes import UNSAFE, escaped
 from foon_asp.linting.catalog import CATALOG
 from foon_asp.linting.mending import is_mendable
 from foon_asp.network import counted
 from foon_asp.results.table import Table
 from foon_asp.text.diagnostics import Diagnostic, Severity
-from foon_asp.text.json_value import Json
+from foon_asp.text.json_value import Json, schema_name
 
 _IN_FULL = 3  # findings of a kind in a file; the lines of the others are named
 _LINES = 12
@@ -86,13 +85,13 @@ def lint_json(findings: Sequence[Diagnostic], files: int, mended: int) -> Json:
     finding, and ``unsafe`` whether only --unsafe-fixes does.
     """
     severities = Counter(finding.severity for finding in findings)
-    return document(
-        "lint",
-        files=files,
-        counts={str(severity): severities[severity] for severity in Severity},
-        codes=dict(sorted(Counter(finding.code for finding in findings).items())),
-        mended=mended,
-        findings=[
+    return {
+        "schema": schema_name("lint"),
+        "files": files,
+        "counts": {str(severity): severities[severity] for severity in Severity},
+        "codes": dict(sorted(Counter(finding.code for finding in findings).items())),
+        "mended": mended,
+        "findings": [
             {
                 "file": finding.source.file,
                 "line": finding.source.line,
@@ -107,7 +106,7 @@ def lint_json(findings: Sequence[Diagnostic], files: int, mended: int) -> Json:
             }
             for finding in findings
         ],
-    )
+    }
 
 
 def _short(line: str | None) -> str | None:
