@@ -50,6 +50,10 @@ from foon_asp.whole_file import utf_8, write_whole
 
 _BEST = 5  # trees, the best and those after it
 _MERMAID_PAGE = ".md"
+_SHOWN = (
+    *("answer", "searches", "lasting", "without_rules"),
+    *("alternatives", "front", "why_not", "shopping_list"),
+)
 _PAGES = ("html", "json")
 _PICTURES = ("svg", "png", "pdf", "dot", "mermaid", "graphml")
 _RULES = ("constraints", "constants", "encodings")
@@ -78,12 +82,12 @@ class View(Result, frozen=True):
 
     Beside the answer the page shows what is not empty here: the trees of ``searches``, the certificate that
     is ``certified``, the answer ``without_rules``, ``alternatives``, the ``front``; where there is no tree,
-    ``why_not`` and the ``shopping`` that would help; and the whole ``network`` of a problem. Beside a plan it
-    shows the answer where items are ``lasting``, which no plan is better than, and the certificate is about
-    that one. A page about a network alone has no ``answer``. Of a given tree and of some units there is only
-    a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large, or if the
-    packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError` if there is
-    no tree.
+    ``why_not`` and the ``shopping_list`` that would help; and the whole ``network`` of a problem. Beside a
+    plan it shows the answer where items are ``lasting``, which no plan is better than, and the certificate is
+    about that one. A page about a network alone has no ``answer``. Of a given tree and of some units there
+    is only a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large, or
+    if the packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError` if
+    there is no tree.
 
     Example:
         >>> page = foon_asp.view(foon_asp.load().problem("ice"))
@@ -101,7 +105,7 @@ class View(Result, frozen=True):
     alternatives: Alternatives | None = None
     front: Front | None = None
     why_not: Explanation | None = None
-    shopping: Shopping | None = None
+    shopping_list: Shopping | None = None
     network: Problem | None = None
     picture: Drawing | None = None
 
@@ -134,17 +138,10 @@ class View(Result, frozen=True):
             if problem.rates is not None
         }
         return PageData(
-            answer=self.answer,
             rates=tuple(UnitRate(unit, rates[unit]) for unit in sorted(rates)) or None,
-            searches=self.searches,
-            lasting=self.lasting,
-            without_rules=self.without_rules,
-            alternatives=self.alternatives,
-            front=self.front,
             proof=proof,
-            why_not=self.why_not,
-            shopping_list=self.shopping,
             network=None if self.network is None else WholeNetwork.of(self.network),
+            **{name: getattr(self, name) for name in _SHOWN},
         )
 
     def json_dict(self) -> Json:
@@ -152,7 +149,7 @@ class View(Result, frozen=True):
         return self.data.json_dict()
 
     def _trees(self) -> Iterator[tuple[Problem, Iterable[int]]]:
-        bought = None if self.shopping is None else self.shopping.answer
+        bought = None if self.shopping_list is None else self.shopping_list.answer
         for answer in (self.answer, self.lasting, self.without_rules, bought):
             if answer is not None:
                 yield answer.problem, answer.ids or ()
@@ -477,7 +474,7 @@ def pages(
         if plans and explained.tree_exists:
             return  # it is what runs out
         helped = None if explained.tree_exists else shopping_list(endless, chosen, **rules, **left())
-        yield structs.replace(page, why_not=explained, shopping=helped)
+        yield structs.replace(page, why_not=explained, shopping_list=helped)
         return
     if Beside.SEARCHES in wanted:
         known = known_searches(problem.rates is not None)
