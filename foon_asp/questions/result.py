@@ -1,9 +1,9 @@
 """The result of a question: a document that can be drawn, and written into files."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
@@ -48,7 +48,12 @@ class NoTreeError(UserError):
 
 
 class Result(Document, frozen=True, kw_only=True):
-    """The result of a question; ``print`` shows the text of the command line, a notebook also a picture."""
+    """The result of a question; ``print`` shows the text of the command line, a notebook also a picture.
+
+    A class names the formats that it is written in, by the ends of file names, as ``SUFFIXES``.
+    """
+
+    SUFFIXES: ClassVar[Mapping[str, str]] = ENDINGS
 
     @property
     def ending(self) -> Ending:
@@ -84,18 +89,24 @@ class Result(Document, frozen=True, kw_only=True):
 
         Parameters:
             file: The path of the file.
-            format_: ``text``, ``json``, ``csv``, ``markdown``, or ``html`` where there is a page; without it,
-                the end of the name chooses.
+            format_: One of the formats in ``SUFFIXES``; without it, the end of the name chooses.
 
         Raises:
+            NothingToDrawError: for a picture, if there is nothing to draw.
             UserError: for another format, or a file that cannot be written.
         """
         from foon_asp.whole_file import utf_8, write_whole  # noqa: PLC0415 (most results are printed)
 
-        form = format_ or ENDINGS.get(Path(file).suffix.lower(), "")
-        if form not in ENDINGS.values() or not hasattr(self, form):
-            raise UserError(f"{file}: the name says no format: end it in {' '.join(ENDINGS)}")
-        write_whole(Path(file), utf_8(self.json_text() if form == "json" else getattr(self, form)()))
+        known = {suffix: form for suffix, form in self.SUFFIXES.items() if hasattr(self, _method(form))}
+        form = format_ or known.get(Path(file).suffix.lower())
+        if form is None:
+            raise UserError(f"{file}: the name says no format: end it in {' '.join(known)}")
+        if form not in known.values():
+            raise UserError(
+                f"found the format {form!r}, expected one of {', '.join(dict.fromkeys(known.values()))}"
+            )
+        content: str | bytes = getattr(self, _method(form))()
+        write_whole(Path(file), utf_8(content) if isinstance(content, str) else content)
 
     def write_chart(self, file: File) -> None:
         """Draw a chart of the result into a file.
@@ -148,3 +159,8 @@ class Result(Document, frozen=True, kw_only=True):
 
         pictures = [] if (drawing := self.drawing()) is None else [drawing]
         return page_bundle(self, pictures)
+
+
+def _method(form: str) -> str:
+    """Return the name of the method that gives a format."""
+    return "json_text" if form == "json" else form

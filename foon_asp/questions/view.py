@@ -32,7 +32,7 @@ from foon_asp.questions.answer import Answer, answered, answered_under
 from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certifying import certified
-from foon_asp.questions.contract import Kind, Option, Part, question, question_of
+from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.how import How, Limits, begin, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
@@ -77,6 +77,20 @@ class Beside(StrEnum):
     NETWORK = "network"
 
 
+_SUFFIXES = {
+    ".html": "html",
+    ".htm": "html",
+    ".json": "json",
+    ".svg": "svg",
+    ".png": "png",
+    ".pdf": "pdf",
+    ".dot": "dot",
+    ".mmd": "mermaid",
+    _MERMAID_PAGE: "mermaid",
+    ".graphml": "graphml",
+}
+
+
 class View(Result, frozen=True):
     """A page about an ``answer``, and the picture of its tree; :meth:`write` writes either into a file.
 
@@ -96,6 +110,8 @@ class View(Result, frozen=True):
         >>> page.dot().splitlines()[0]
         'digraph foon {'
     """
+
+    SUFFIXES = _SUFFIXES
 
     answer: Answer | None
     searches: tuple[Retrieved, ...] = ()
@@ -213,27 +229,11 @@ class View(Result, frozen=True):
         return "" if self.answer is None else self.answer.remark(format_)
 
     def write(self, file: File, format_: str | None = None) -> None:
-        """Write the page or the picture; a file that ends in ``.md`` is a page with a Mermaid flowchart.
-
-        Parameters:
-            file: The path of the file.
-            format_: ``html``, ``json`` for what is in the page, ``svg``, ``png``, ``pdf``, ``dot``,
-                ``mermaid`` or ``graphml``; without it, the end of the file name chooses one.
-
-        Raises:
-            NothingToDrawError: for a picture, if there is no tree.
-            UserError: for another format, a picture that cannot be made, or a file that cannot be written.
-        """
-        file = Path(file)
-        how = question_of(view)
-        form = format_ or how.format_of(file)
-        if form not in how.formats:
-            raise UserError(f"found the format {form!r}, expected one of {', '.join(how.formats)}")
-        if form == "mermaid" and file.suffix.lower() == _MERMAID_PAGE:
-            content: str | bytes = mermaid_markdown(self._drawn())
+        """Write the page or the picture as :meth:`Result.write` does; ``.md`` is a page with a flowchart."""
+        if format_ in {None, "mermaid"} and Path(file).suffix.lower() == _MERMAID_PAGE:
+            write_whole(Path(file), utf_8(mermaid_markdown(self._drawn())))
         else:
-            content = self.json_text() if form == "json" else getattr(self, form)()
-        write_whole(file, utf_8(content) if isinstance(content, str) else content)
+            super().write(file, format_)
 
     def __repr__(self) -> str:
         return f"<View of {self.text().strip() if self.answer is None else repr(self.answer)}>"
@@ -310,18 +310,7 @@ def _posed(
     Exits with 0 when the tree is proved optimal, and otherwise as `solve` does.
     """,
     formats=(*_PAGES, *_PICTURES),
-    suffixes={
-        ".html": "html",
-        ".htm": "html",
-        ".json": "json",
-        ".svg": "svg",
-        ".png": "png",
-        ".pdf": "pdf",
-        ".dot": "dot",
-        ".mmd": "mermaid",
-        _MERMAID_PAGE: "mermaid",
-        ".graphml": "graphml",
-    },
+    suffixes=View.SUFFIXES,
     pose=_posed,
 )
 def view(
