@@ -61,7 +61,7 @@ class Result(Document, frozen=True, kw_only=True):
         return Ending.DONE
 
     def foon(self) -> str:
-        """Give the tree as FOON text.
+        """Return the tree as FOON text.
 
         Raises:
             UserError: for a result that is no tree.
@@ -69,7 +69,7 @@ class Result(Document, frozen=True, kw_only=True):
         raise UserError("this is no tree, which FOON text could hold")
 
     def steps(self) -> str:
-        """Give the plan for a robot's program, as JSON: each step with its objects by role.
+        """Return the plan for a robot's program, as JSON: each step with its objects by role.
 
         Raises:
             UserError: for a result that is no tree.
@@ -77,7 +77,7 @@ class Result(Document, frozen=True, kw_only=True):
         raise UserError("this is no tree, whose steps could be listed")
 
     def remark(self, format_: str) -> str:
-        """Give what a format other than text cannot tell; empty if there is nothing to add.
+        """Return what a format other than text cannot tell; empty if there is nothing to add.
 
         Parameters:
             format_: The name of the format, for example ``foon``.
@@ -122,11 +122,11 @@ class Result(Document, frozen=True, kw_only=True):
         raise UserError(f"{file}: there is no chart of this")
 
     def drawing(self) -> "Drawing | None":
-        """Give what the picture shows, or ``None`` where there is no tree to draw."""
+        """Return what the picture shows, or ``None`` where there is no tree to draw."""
         return None
 
     def svg(self) -> str:
-        """Give the picture as SVG.
+        """Return the picture as SVG.
 
         Raises:
             NothingToDrawError: if there is no tree.
@@ -150,11 +150,11 @@ class Result(Document, frozen=True, kw_only=True):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Give what a notebook shows."""
+        """Return what a notebook shows."""
         return self._in_notebook()
 
     def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the text, and below it the picture if there is one."""
+        """Return what a notebook shows by media type: the text, and below it the picture if there is one."""
         from foon_asp.pictures.notebook import page_bundle  # noqa: PLC0415
 
         pictures = [] if (drawing := self.drawing()) is None else [drawing]

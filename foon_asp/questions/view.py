@@ -131,7 +131,7 @@ class View(Result, frozen=True):
         return Ending.DONE if self.answer is None else self.answer.ending
 
     def text(self) -> str:
-        """Give the answer in words, or what the picture is about."""
+        """Return the answer in words, or what the picture is about."""
         return self._drawn().caption[0] + "\n" if self.answer is None else self.answer.text()
 
     @property
@@ -179,7 +179,7 @@ class View(Result, frozen=True):
             yield from ((front, front.network.units_of_numbers(point.ids)) for point in self.front.points)
 
     def html(self) -> str:
-        """Give the page, a document by itself."""
+        """Return the page, a document by itself."""
         return self._page().html()
 
     def _page(self) -> Page:
@@ -187,27 +187,27 @@ class View(Result, frozen=True):
         return Page(f"{about.strip()} - foon-asp", self.text(), self.json_dict())
 
     def dot(self) -> str:
-        """Give the picture in DOT, Graphviz' language."""
+        """Return the picture in DOT, Graphviz' language."""
         return dot_text(self._drawn())
 
     def png(self) -> bytes:
-        """Give the picture as PNG."""
+        """Return the picture as PNG."""
         return painted(self._drawn(), "png")
 
     def pdf(self) -> bytes:
-        """Give the picture as PDF."""
+        """Return the picture as PDF."""
         return painted(self._drawn(), "pdf")
 
     def mermaid(self) -> str:
-        """Give the picture as a Mermaid flowchart."""
+        """Return the picture as a Mermaid flowchart."""
         return mermaid_text(self._drawn())
 
     def graphml(self) -> str:
-        """Give the nodes and arrows of the picture as GraphML, for Gephi, networkx and the like."""
+        """Return the nodes and arrows of the picture as GraphML, for Gephi, networkx and the like."""
         return graphml_text(self._drawn())
 
     def drawing(self) -> Drawing | None:
-        """Give what the picture shows."""
+        """Return what the picture shows."""
         if self.answer is not None:
             return self.answer.drawing()
         if self.network is None:
@@ -225,7 +225,7 @@ class View(Result, frozen=True):
         return drawing
 
     def remark(self, format_: str) -> str:
-        """Say what is claimed, where that is not the best tree."""
+        """Return what is claimed, where that is not the best tree."""
         return "" if self.answer is None else self.answer.remark(format_)
 
     def write(self, file: File, format_: str | None = None) -> None:
@@ -239,7 +239,7 @@ class View(Result, frozen=True):
         return f"<View of {self.text().strip() if self.answer is None else repr(self.answer)}>"
 
     def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the page, in a frame of its own, or the picture."""
+        """Return what a notebook shows by media type: the page, in a frame of its own, or the picture."""
         if self.picture is not None:
             return picture_bundle(self, self.picture)
         return {"text/plain": repr(self), "text/html": self._page().frame()}
@@ -423,7 +423,7 @@ def pages(
     wanted: Container[str],
     rules: Mapping[str, Any],
 ) -> Iterator[View]:
-    """Give a page about a tree as it grows: first with its answer, then with one thing more beside it each.
+    """Yield a page about a tree as it grows: first with its answer, then with one thing more beside it each.
 
     ``rules`` are those of the settings, as questions take them. A plan, in which items are used up, costs no
     less than the best tree, in which they are not; so the proof is about that tree. But not by ``kitchen``,
@@ -480,7 +480,7 @@ def pages(
 
 
 def _against(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
-    """Give two objectives of a front, where one was asked for.
+    """Return two objectives of a front, where one was asked for.
 
     Against it the number of units; against that success, or inputs where no rates are known.
     """
