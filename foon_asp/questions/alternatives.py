@@ -110,9 +110,11 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
         """Return how many trees there are, what each costs, and in what it differs from the first."""
         yield from self.goal_lines()
         yield from self._claim()
-        for number, tree in enumerate(self.trees[:_SHOWN], 1):
-            yield f"tree {number}: {costs_text(tree.costs, self.objectives)}"
-            yield from used_up_note(self.problem, self.task_trees[number - 1])
+        for number, (tree, task_tree) in enumerate(
+            zip(self.trees[:_SHOWN], self.task_trees, strict=False), 1
+        ):
+            yield task_tree.claim
+            yield from used_up_note(self.problem, task_tree)
             if number == 1:
                 yield from step_lines(tree.units)
                 continue
@@ -180,7 +182,7 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
         return self.task_trees[0].drawing() if self.trees else None
 
     def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the text, and the pictures of the first trees."""
+        """Return what a notebook shows by media type: the text, and the pictures of the first trees."""
         return page_bundle(self, (tree.drawing() for tree in self.task_trees[:_PICTURES]))
 
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:  # what a command that prints an answer can do without
 
 
 def of_status(status: Status) -> Ending:
-    """Give the ending of a question from the status of its answer."""
+    """Return the ending of a question from the status of its answer."""
     return {
         Status.OPTIMAL: Ending.DONE,
         Status.INFEASIBLE: Ending.NEGATIVE,
@@ -346,7 +346,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         return None if self.tree is None else self.tree.drawing()
 
     def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the picture with its claim, or the text."""
+        """Return what a notebook shows by media type: the picture with its claim, or the text."""
         from foon_asp.pictures.notebook import picture_bundle  # noqa: PLC0415
 
         drawing = self.drawing()

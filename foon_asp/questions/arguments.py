@@ -28,7 +28,7 @@ def chosen_objectives(problem: Problem, given: Objectives) -> tuple[Objective, .
 def usual_objectives(
     problem: Problem, given: Objectives, usual: Sequence[str], instead: Sequence[str]
 ) -> Objectives:
-    """Give the objectives that are asked for, or those usual for a question where none are.
+    """Return the objectives that are asked for, or those usual for a question where none are.
 
     Where no success rates are known, it is those ``instead``, and a warning says so.
     """
@@ -48,14 +48,14 @@ def given_constraints(given: Files) -> tuple[Constraint, ...]:
 
 
 def asked_with(problem: Problem, how: Settings) -> Problem:
-    """Give the whole problem if the settings have rules that may be about any unit."""
+    """Return the whole problem if the settings have rules that may be about any unit."""
     from foon_asp.asp.assembly import asks_of_all  # noqa: PLC0415 (where there may be rules)
 
     return whole(problem) if asks_of_all(problem, how) else problem
 
 
 def whole(problem: Problem) -> Problem:
-    """Give a problem over the whole network; a command stops reading it at its limits."""
+    """Return a problem over the whole network; a command stops reading it at its limits."""
     with reading():
         return problem.whole
 

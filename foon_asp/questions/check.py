@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated, Any, Self, Unpack
 
-from msgspec import UNSET, UnsetType
+from msgspec import UNSET, UnsetType, structs
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
@@ -250,8 +250,8 @@ def check(
     if breaking is not None:
         broken = None
         if checked.executes and not checked.not_in_network:
-            broken = [rule.listed for rule in breaking.broken(given.problem, given.ids)]
-        checked = Checked.of(given, chosen, breaks=None if broken is None else tuple(broken))
+            broken = tuple(rule.listed for rule in breaking.broken(given.problem, given.ids))
+        checked = structs.replace(checked, breaks=broken).knowing(**checked.__dict__)
     in_order = checked.in_order
     if certificate is not None and in_order is not None and checked.ending is Ending.DONE:
         from foon_asp.questions.certifying import certify_tree  # noqa: PLC0415

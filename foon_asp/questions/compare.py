@@ -26,7 +26,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.compared import comparison_table, published_table, summary_tables, tidy_rows
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
 from foon_asp.questions.how import How, limits_of, settings_of
-from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
+from foon_asp.questions.options import CHART, CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
 from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved
@@ -154,14 +154,7 @@ def _posed(
     CONTAINERS,
     *ITEMS,
     *EACH_LIMITS,
-    Option(
-        "charts",
-        "A file for a chart of units over the optimum (.svg or .png).",
-        Kind.WRITTEN,
-        Part.CHART,
-        flags=("--chart",),
-        many=True,
-    ),
+    CHART._replace(help="A file for a chart of units over the optimum (.svg or .png)."),
     help_="""
     \b
     foon-asp compare                                   every goal of the goals file

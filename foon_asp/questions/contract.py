@@ -106,7 +106,7 @@ class Question:
         self.command = command
 
     def format_of(self, file: Path) -> str:
-        """Give the format that the name of a file says; raises :class:`UserError` where it says none."""
+        """Return the format that the name of a file says; raises :class:`UserError` where it says none."""
         form = self.suffixes.get(file.suffix.lower())
         if form is None:
             ends = " ".join(self.suffixes)
@@ -224,11 +224,11 @@ def _for_lasting_items(ask: Callable[P, R]) -> Callable[P, R]:
 
 
 def not_built(name: str) -> UserError:
-    """Say that a question, by the name of its verb or its module, is not built for items that are used up."""
+    """Return the error of a question, by its verb or module, that is not built for items that are used up."""
     return UserError(f"{name.replace('_', '-')} is not built for items that are used up (--items used-up)")
 
 
 def question_of(ask: Callable[..., object]) -> Question:
-    """Give the description of a question for a command line."""
+    """Return the description of a question for a command line."""
     found: Question = ask.__dict__["question"]
     return found

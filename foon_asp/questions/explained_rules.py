@@ -134,7 +134,7 @@ class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules
 def explain_rules(
     constraints: Sequence[Constraint], constants: Sequence[str], reporter: Reporter
 ) -> ExplainedRules:
-    """Say what rules do.
+    """Return what rules do, each and together.
 
     Raises :class:`UserError` where the built-in encodings were changed, so that nothing is known of rules.
     """

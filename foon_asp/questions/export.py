@@ -227,7 +227,7 @@ def to_unified_planning(
     items: str | None = None,
     **how: Unpack[Posed],
 ) -> Any:
-    """Give the goals of a problem as a problem of unified-planning, with the names that PDDL has.
+    """Return the goals of a problem as a problem of unified-planning, with the names that PDDL has.
 
     :func:`foon_asp.read_plan` reads its plans back. The package comes with ``foon-asp[planning]``.
 

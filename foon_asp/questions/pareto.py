@@ -17,9 +17,9 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, usual_objectives
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
+from foon_asp.questions.contract import TABLES, Option, question
 from foon_asp.questions.how import How, settings_of
-from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
+from foon_asp.questions.options import CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
@@ -221,14 +221,7 @@ class _Point(NamedTuple):
     ),
     CONTAINERS,
     *ITEMS,
-    Option(
-        "charts",
-        "A file for a chart of the front (.svg or .png).",
-        Kind.WRITTEN,
-        Part.CHART,
-        flags=("--chart",),
-        many=True,
-    ),
+    CHART._replace(help="A file for a chart of the front (.svg or .png)."),
     formats=TABLES,
     help_="""
     \b

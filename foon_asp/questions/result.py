@@ -1,9 +1,9 @@
 """The result of a question: a document that can be drawn, and written into files."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
@@ -48,7 +48,12 @@ class NoTreeError(UserError):
 
 
 class Result(Document, frozen=True, kw_only=True):
-    """The result of a question; ``print`` shows the text of the command line, a notebook also a picture."""
+    """The result of a question; ``print`` shows the text of the command line, a notebook also a picture.
+
+    A class names the formats that it is written in, by the ends of file names, as ``SUFFIXES``.
+    """
+
+    SUFFIXES: ClassVar[Mapping[str, str]] = ENDINGS
 
     @property
     def ending(self) -> Ending:
@@ -56,7 +61,7 @@ class Result(Document, frozen=True, kw_only=True):
         return Ending.DONE
 
     def foon(self) -> str:
-        """Give the tree as FOON text.
+        """Return the tree as FOON text.
 
         Raises:
             UserError: for a result that is no tree.
@@ -64,7 +69,7 @@ class Result(Document, frozen=True, kw_only=True):
         raise UserError("this is no tree, which FOON text could hold")
 
     def steps(self) -> str:
-        """Give the plan for a robot's program, as JSON: each step with its objects by role.
+        """Return the plan for a robot's program, as JSON: each step with its objects by role.
 
         Raises:
             UserError: for a result that is no tree.
@@ -72,7 +77,7 @@ class Result(Document, frozen=True, kw_only=True):
         raise UserError("this is no tree, whose steps could be listed")
 
     def remark(self, format_: str) -> str:
-        """Give what a format other than text cannot tell; empty if there is nothing to add.
+        """Return what a format other than text cannot tell; empty if there is nothing to add.
 
         Parameters:
             format_: The name of the format, for example ``foon``.
@@ -84,18 +89,24 @@ class Result(Document, frozen=True, kw_only=True):
 
         Parameters:
             file: The path of the file.
-            format_: ``text``, ``json``, ``csv``, ``markdown``, or ``html`` where there is a page; without it,
-                the end of the name chooses.
+            format_: One of the formats in ``SUFFIXES``; without it, the end of the name chooses.
 
         Raises:
+            NothingToDrawError: for a picture, if there is nothing to draw.
             UserError: for another format, or a file that cannot be written.
         """
         from foon_asp.whole_file import utf_8, write_whole  # noqa: PLC0415 (most results are printed)
 
-        form = format_ or ENDINGS.get(Path(file).suffix.lower(), "")
-        if form not in ENDINGS.values() or not hasattr(self, form):
-            raise UserError(f"{file}: the name says no format: end it in {' '.join(ENDINGS)}")
-        write_whole(Path(file), utf_8(self.json_text() if form == "json" else getattr(self, form)()))
+        known = {suffix: form for suffix, form in self.SUFFIXES.items() if hasattr(self, _method(form))}
+        form = format_ or known.get(Path(file).suffix.lower())
+        if form is None:
+            raise UserError(f"{file}: the name says no format: end it in {' '.join(known)}")
+        if form not in known.values():
+            raise UserError(
+                f"found the format {form!r}, expected one of {', '.join(dict.fromkeys(known.values()))}"
+            )
+        content: str | bytes = getattr(self, _method(form))()
+        write_whole(Path(file), utf_8(content) if isinstance(content, str) else content)
 
     def write_chart(self, file: File) -> None:
         """Draw a chart of the result into a file.
@@ -111,11 +122,11 @@ class Result(Document, frozen=True, kw_only=True):
         raise UserError(f"{file}: there is no chart of this")
 
     def drawing(self) -> "Drawing | None":
-        """Give what the picture shows, or ``None`` where there is no tree to draw."""
+        """Return what the picture shows, or ``None`` where there is no tree to draw."""
         return None
 
     def svg(self) -> str:
-        """Give the picture as SVG.
+        """Return the picture as SVG.
 
         Raises:
             NothingToDrawError: if there is no tree.
@@ -139,12 +150,17 @@ class Result(Document, frozen=True, kw_only=True):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Give what a notebook shows."""
+        """Return what a notebook shows."""
         return self._in_notebook()
 
     def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the text, and below it the picture if there is one."""
+        """Return what a notebook shows by media type: the text, and below it the picture if there is one."""
         from foon_asp.pictures.notebook import page_bundle  # noqa: PLC0415
 
         pictures = [] if (drawing := self.drawing()) is None else [drawing]
         return page_bundle(self, pictures)
+
+
+def _method(form: str) -> str:
+    """Return the name of the method that gives a format."""
+    return "json_text" if form == "json" else form

@@ -26,7 +26,7 @@ from foon_asp.questions.arguments import at_least, read_as
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
 from foon_asp.questions.how import Posed, begin
-from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
+from foon_asp.questions.options import CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
@@ -211,14 +211,7 @@ def _schedule_or_template(
     GOAL_OF_PLAN,
     CONTAINERS,
     *PLAN_ITEMS,
-    Option(
-        "charts",
-        "A file for a Gantt chart (.svg or .png).",
-        Kind.WRITTEN,
-        Part.CHART,
-        flags=("--chart",),
-        many=True,
-    ),
+    CHART._replace(help="A file for a Gantt chart (.svg or .png)."),
     pose=a_plan,
     command=_schedule_or_template,
     formats=TABLES,

@@ -32,7 +32,7 @@ from foon_asp.questions.answer import Answer, answered, answered_under
 from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certifying import certified
-from foon_asp.questions.contract import Kind, Option, Part, question, question_of
+from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.how import How, Limits, begin, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
@@ -50,6 +50,10 @@ from foon_asp.whole_file import utf_8, write_whole
 
 _BEST = 5  # trees, the best and those after it
 _MERMAID_PAGE = ".md"
+_SHOWN = (
+    *("answer", "searches", "lasting", "without_rules"),
+    *("alternatives", "front", "why_not", "shopping_list"),
+)
 _PAGES = ("html", "json")
 _PICTURES = ("svg", "png", "pdf", "dot", "mermaid", "graphml")
 _RULES = ("constraints", "constants", "encodings")
@@ -73,17 +77,31 @@ class Beside(StrEnum):
     NETWORK = "network"
 
 
+_SUFFIXES = {
+    ".html": "html",
+    ".htm": "html",
+    ".json": "json",
+    ".svg": "svg",
+    ".png": "png",
+    ".pdf": "pdf",
+    ".dot": "dot",
+    ".mmd": "mermaid",
+    _MERMAID_PAGE: "mermaid",
+    ".graphml": "graphml",
+}
+
+
 class View(Result, frozen=True):
     """A page about an ``answer``, and the picture of its tree; :meth:`write` writes either into a file.
 
     Beside the answer the page shows what is not empty here: the trees of ``searches``, the certificate that
     is ``certified``, the answer ``without_rules``, ``alternatives``, the ``front``; where there is no tree,
-    ``why_not`` and the ``shopping`` that would help; and the whole ``network`` of a problem. Beside a plan it
-    shows the answer where items are ``lasting``, which no plan is better than, and the certificate is about
-    that one. A page about a network alone has no ``answer``. Of a given tree and of some units there is only
-    a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large, or if the
-    packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError` if there is
-    no tree.
+    ``why_not`` and the ``shopping_list`` that would help; and the whole ``network`` of a problem. Beside a
+    plan it shows the answer where items are ``lasting``, which no plan is better than, and the certificate is
+    about that one. A page about a network alone has no ``answer``. Of a given tree and of some units there
+    is only a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large, or
+    if the packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError` if
+    there is no tree.
 
     Example:
         >>> page = foon_asp.view(foon_asp.load().problem("ice"))
@@ -93,6 +111,8 @@ class View(Result, frozen=True):
         'digraph foon {'
     """
 
+    SUFFIXES = _SUFFIXES
+
     answer: Answer | None
     searches: tuple[Retrieved, ...] = ()
     certified: Answer | None = None
@@ -101,7 +121,7 @@ class View(Result, frozen=True):
     alternatives: Alternatives | None = None
     front: Front | None = None
     why_not: Explanation | None = None
-    shopping: Shopping | None = None
+    shopping_list: Shopping | None = None
     network: Problem | None = None
     picture: Drawing | None = None
 
@@ -111,7 +131,7 @@ class View(Result, frozen=True):
         return Ending.DONE if self.answer is None else self.answer.ending
 
     def text(self) -> str:
-        """Give the answer in words, or what the picture is about."""
+        """Return the answer in words, or what the picture is about."""
         return self._drawn().caption[0] + "\n" if self.answer is None else self.answer.text()
 
     @property
@@ -134,17 +154,10 @@ class View(Result, frozen=True):
             if problem.rates is not None
         }
         return PageData(
-            answer=self.answer,
             rates=tuple(UnitRate(unit, rates[unit]) for unit in sorted(rates)) or None,
-            searches=self.searches,
-            lasting=self.lasting,
-            without_rules=self.without_rules,
-            alternatives=self.alternatives,
-            front=self.front,
             proof=proof,
-            why_not=self.why_not,
-            shopping_list=self.shopping,
             network=None if self.network is None else WholeNetwork.of(self.network),
+            **{name: getattr(self, name) for name in _SHOWN},
         )
 
     def json_dict(self) -> Json:
@@ -152,7 +165,7 @@ class View(Result, frozen=True):
         return self.data.json_dict()
 
     def _trees(self) -> Iterator[tuple[Problem, Iterable[int]]]:
-        bought = None if self.shopping is None else self.shopping.answer
+        bought = None if self.shopping_list is None else self.shopping_list.answer
         for answer in (self.answer, self.lasting, self.without_rules, bought):
             if answer is not None:
                 yield answer.problem, answer.ids or ()
@@ -166,7 +179,7 @@ class View(Result, frozen=True):
             yield from ((front, front.network.units_of_numbers(point.ids)) for point in self.front.points)
 
     def html(self) -> str:
-        """Give the page, a document by itself."""
+        """Return the page, a document by itself."""
         return self._page().html()
 
     def _page(self) -> Page:
@@ -174,27 +187,27 @@ class View(Result, frozen=True):
         return Page(f"{about.strip()} - foon-asp", self.text(), self.json_dict())
 
     def dot(self) -> str:
-        """Give the picture in DOT, Graphviz' language."""
+        """Return the picture in DOT, Graphviz' language."""
         return dot_text(self._drawn())
 
     def png(self) -> bytes:
-        """Give the picture as PNG."""
+        """Return the picture as PNG."""
         return painted(self._drawn(), "png")
 
     def pdf(self) -> bytes:
-        """Give the picture as PDF."""
+        """Return the picture as PDF."""
         return painted(self._drawn(), "pdf")
 
     def mermaid(self) -> str:
-        """Give the picture as a Mermaid flowchart."""
+        """Return the picture as a Mermaid flowchart."""
         return mermaid_text(self._drawn())
 
     def graphml(self) -> str:
-        """Give the nodes and arrows of the picture as GraphML, for Gephi, networkx and the like."""
+        """Return the nodes and arrows of the picture as GraphML, for Gephi, networkx and the like."""
         return graphml_text(self._drawn())
 
     def drawing(self) -> Drawing | None:
-        """Give what the picture shows."""
+        """Return what the picture shows."""
         if self.answer is not None:
             return self.answer.drawing()
         if self.network is None:
@@ -212,37 +225,21 @@ class View(Result, frozen=True):
         return drawing
 
     def remark(self, format_: str) -> str:
-        """Say what is claimed, where that is not the best tree."""
+        """Return what is claimed, where that is not the best tree."""
         return "" if self.answer is None else self.answer.remark(format_)
 
     def write(self, file: File, format_: str | None = None) -> None:
-        """Write the page or the picture; a file that ends in ``.md`` is a page with a Mermaid flowchart.
-
-        Parameters:
-            file: The path of the file.
-            format_: ``html``, ``json`` for what is in the page, ``svg``, ``png``, ``pdf``, ``dot``,
-                ``mermaid`` or ``graphml``; without it, the end of the file name chooses one.
-
-        Raises:
-            NothingToDrawError: for a picture, if there is no tree.
-            UserError: for another format, a picture that cannot be made, or a file that cannot be written.
-        """
-        file = Path(file)
-        how = question_of(view)
-        form = format_ or how.format_of(file)
-        if form not in how.formats:
-            raise UserError(f"found the format {form!r}, expected one of {', '.join(how.formats)}")
-        if form == "mermaid" and file.suffix.lower() == _MERMAID_PAGE:
-            content: str | bytes = mermaid_markdown(self._drawn())
+        """Write the page or the picture as :meth:`Result.write` does; ``.md`` is a page with a flowchart."""
+        if format_ in {None, "mermaid"} and Path(file).suffix.lower() == _MERMAID_PAGE:
+            write_whole(Path(file), utf_8(mermaid_markdown(self._drawn())))
         else:
-            content = self.json_text() if form == "json" else getattr(self, form)()
-        write_whole(file, utf_8(content) if isinstance(content, str) else content)
+            super().write(file, format_)
 
     def __repr__(self) -> str:
         return f"<View of {self.text().strip() if self.answer is None else repr(self.answer)}>"
 
     def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the page, in a frame of its own, or the picture."""
+        """Return what a notebook shows by media type: the page, in a frame of its own, or the picture."""
         if self.picture is not None:
             return picture_bundle(self, self.picture)
         return {"text/plain": repr(self), "text/html": self._page().frame()}
@@ -313,18 +310,7 @@ def _posed(
     Exits with 0 when the tree is proved optimal, and otherwise as `solve` does.
     """,
     formats=(*_PAGES, *_PICTURES),
-    suffixes={
-        ".html": "html",
-        ".htm": "html",
-        ".json": "json",
-        ".svg": "svg",
-        ".png": "png",
-        ".pdf": "pdf",
-        ".dot": "dot",
-        ".mmd": "mermaid",
-        _MERMAID_PAGE: "mermaid",
-        ".graphml": "graphml",
-    },
+    suffixes=View.SUFFIXES,
     pose=_posed,
 )
 def view(
@@ -437,7 +423,7 @@ def pages(
     wanted: Container[str],
     rules: Mapping[str, Any],
 ) -> Iterator[View]:
-    """Give a page about a tree as it grows: first with its answer, then with one thing more beside it each.
+    """Yield a page about a tree as it grows: first with its answer, then with one thing more beside it each.
 
     ``rules`` are those of the settings, as questions take them. A plan, in which items are used up, costs no
     less than the best tree, in which they are not; so the proof is about that tree. But not by ``kitchen``,
@@ -477,7 +463,7 @@ def pages(
         if plans and explained.tree_exists:
             return  # it is what runs out
         helped = None if explained.tree_exists else shopping_list(endless, chosen, **rules, **left())
-        yield structs.replace(page, why_not=explained, shopping=helped)
+        yield structs.replace(page, why_not=explained, shopping_list=helped)
         return
     if Beside.SEARCHES in wanted:
         known = known_searches(problem.rates is not None)
@@ -494,7 +480,7 @@ def pages(
 
 
 def _against(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
-    """Give two objectives of a front, where one was asked for.
+    """Return two objectives of a front, where one was asked for.
 
     Against it the number of units; against that success, or inputs where no rates are known.
     """

@@ -20,7 +20,7 @@ def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterat
 
 
 def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
-    """Say for each goal that cannot be made which units would make it and what the first of them lack.
+    """Yield for each goal that cannot be made which units would make it, and what the first of them lack.
 
     Where every goal can be made, it is the constraints that leave no tree.
     """
@@ -57,7 +57,7 @@ def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
 
 
 def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
-    """Say in a sentence each what is at the root of it, on the way that takes the fewest things."""
+    """Yield a sentence on each cause, those on the way that takes the fewest things first."""
     from foon_asp.problem.dead_ends import dead_ends  # noqa: PLC0415 (only where there is no tree)
 
     objects = problem.network.objects

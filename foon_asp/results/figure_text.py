@@ -27,13 +27,13 @@ def figure_text(objective: Objective, figure: int | Fraction) -> str:
 
 
 def bound_text(objective: Objective, bound: int | Fraction) -> str:
-    """Say between what and a bound an objective is: ``units at least 3``, ``success at most 0.5``."""
+    """Return a bound in words: ``units at least 3``, ``success at most 0.5``."""
     side = "at most" if multiplies(objective) else "at least"
     return f"{objective} {side} {figure_text(objective, bound)}"
 
 
 def costs_text(costs: Costs, objectives: Iterable[Objective] = ()) -> str:
-    """Give the measures of a tree in a few words, those by some objectives among them."""
+    """Return the measures of a tree in a few words, those by some objectives among them."""
     text = f"{counted(costs.units, 'unit')}, {counted(costs.inputs, 'input')}"
     shown = {Objective.UNITS, Objective.INPUTS}
     others = [Objective.SUCCESS] if costs.success is not None else []
@@ -44,7 +44,7 @@ def costs_text(costs: Costs, objectives: Iterable[Objective] = ()) -> str:
 
 
 def success_text(success: Fraction) -> str:
-    """Give a success rate to four significant digits, with ``≈`` where that is rounded.
+    """Return a success rate to four significant digits, with ``≈`` where that is rounded.
 
     A rate that is rounded to 1 is shown by what it lacks of 1.
     """
