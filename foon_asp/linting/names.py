@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
-from foon_asp.linting.habits import Habits
 from foon_asp.linting.linted_files import LintedFiles
+from foon_asp.linting.sheet import Sheet
 from foon_asp.text.line import Line, ObjectLine
 from foon_asp.text.renaming import NameKind, line_names
 
@@ -31,7 +31,6 @@ class Names:
     def __init__(self, files: LintedFiles) -> None:
         self.files = files
         self.network = files.network
-        self.sheets = files.sheets
         self.has_network = any(sheet.entries is None for sheet in files.sheets)
         self.mentions: dict[Kind, dict[str, list[Mention]]] = {kind: {} for kind in Kind}
         for number, sheet in enumerate(files.sheets):
@@ -51,11 +50,6 @@ class Names:
         """How often each label stands on an object line."""
 
     @cached_property
-    def habits(self) -> Habits:
-        """What the units change."""
-        return Habits(self.network)
-
-    @cached_property
     def loose(self) -> dict[Kind, set[str]]:
         """Names that stand on one side of units alone: what has them is never made, or never taken."""
         network = self.network
@@ -72,7 +66,7 @@ class Names:
         return {kind: names.keys() - (sides[kind][0] & sides[kind][1]) for kind, names in self.counts.items()}
 
     def objects_alike(self, name: str) -> list[str]:
-        """Give labels on object lines that may be meant, the most frequent first.
+        """Return labels on object lines that may be meant, the most frequent first.
 
         That is the name in singular or plural, or else a few labels that end with its words.
         """
@@ -95,18 +89,18 @@ class Names:
                     ending.append(label)
         return same, longer
 
-    def by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[int, int, int]]:
-        """Give the number of each sheet with a name, the index of its first line, and its mentions there."""
-        found: dict[int, tuple[int, int]] = {}
+    def by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[Sheet, int, int]]:
+        """Yield each sheet with a name, the index of its first line, and its mentions there."""
+        places: dict[int, tuple[int, int]] = {}
         for sheet, _, index, count in self.mentions[kind][name]:
-            first, total = found.get(sheet, (index, 0))
-            found[sheet] = min(first, index), total + count
-        for sheet, (index, count) in found.items():
-            yield sheet, index, count
+            first, total = places.get(sheet, (index, 0))
+            places[sheet] = min(first, index), total + count
+        for sheet, place in places.items():
+            yield self.files.sheets[sheet], *place
 
 
 def times(count: int) -> str:
-    """Say how often."""
+    """Return how often, in words."""
     return "once" if count == 1 else "twice" if count == 2 else f"{count} times"
 
 

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 
-from foon_asp.linting.habits import Habit
+from foon_asp.linting.habits import Habit, Habits
 from foon_asp.linting.names import Kind, Names
-from foon_asp.linting.near_names import by_what_is_left
+from foon_asp.linting.near_names import by_what_is_left, near_word
 from foon_asp.network import Contents, Relation, counted
 from foon_asp.text.line import LineError, StateLine
 from foon_asp.text.table_rows import read_rows
@@ -30,7 +30,7 @@ class Vocabulary:
         self.habits: dict[str, Habit] = {}
 
     @classmethod
-    def of(cls, names: Names) -> "Vocabulary":
+    def of(cls, names: Names, habits: Habits) -> "Vocabulary":
         """Learn from files; a utensil is an object that others are in or on, or that a table says is one."""
         learned = cls()
         for kind in Kind:
@@ -39,7 +39,7 @@ class Vocabulary:
             if Path(table.file).name == _UTENSILS:
                 learned.utensils.update(line.strip() for line in table.lines if line.strip()[:1] not in "#")
         learned.names[Kind.OBJECT] |= learned.utensils
-        learned.habits = names.habits.of_motions()
+        learned.habits = habits.of_motions()
         for word, mentions in names.mentions[Kind.WORD].items():
             counts = learned.brackets.setdefault(word, Counter())
             for mention in mentions:
@@ -50,15 +50,29 @@ class Vocabulary:
                         learned.utensils.add(attribute.object)
         return learned
 
-    def add(self, other: "Vocabulary") -> None:
-        """Add what another one knows."""
-        for kind in Kind:
-            self.names[kind] |= other.names[kind]
-        self.utensils |= other.utensils
-        for motion, habit in other.habits.items():
-            self.habits[motion] = self.habits.get(motion, Habit()).plus(*habit)
-        for word, counts in other.brackets.items():
-            self.brackets.setdefault(word, Counter()).update(counts)
+    def plus(self, other: "Vocabulary") -> "Vocabulary":
+        """Return a vocabulary of all that this and another one know."""
+        both = Vocabulary()
+        for each in (self, other):
+            for kind in Kind:
+                both.names[kind] |= each.names[kind]
+            both.utensils |= each.utensils
+            for motion, habit in each.habits.items():
+                both.habits[motion] = both.habits.get(motion, Habit()).plus(*habit)
+            for word, counts in each.brackets.items():
+                both.brackets.setdefault(word, Counter()).update(counts)
+        return both
+
+    def slip(self, kind: Kind, name: str) -> tuple[str, str] | None:
+        """Return a word of a name that is not known, and the known word for which it is likely a slip."""
+        if name in self.names[kind]:
+            return None
+        for word in words_of(name):
+            if word not in self.words and (
+                meant := near_word(word, self.near[kind], kind is not Kind.OBJECT)
+            ):
+                return word, meant
+        return None
 
     @cached_property
     def words(self) -> frozenset[str]:

@@ -1,14 +1,16 @@
 """Findings of linting for people, for programs, and as annotations that GitHub shows beside a change."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from foon_asp.document.json_document import document
 from foon_asp.escapes import UNSAFE, escaped
 from foon_asp.linting.catalog import CATALOG
+from foon_asp.linting.example import Example
 from foon_asp.linting.mending import is_mendable
+from foon_asp.linting.rule import Rule
 from foon_asp.network import counted
-from foon_asp.results.table import Table
+from foon_asp.results.table import Part, Table
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.json_value import Json
 
@@ -33,8 +35,7 @@ def lint_text(findings: Sequence[Diagnostic], files: int, mended: int) -> str:
         shown[kind] += 1
         if shown[kind] > _IN_FULL:
             continue
-        head, *excerpt = str(finding).split("\n")
-        lines += [f"{head} [{finding.code}]", *excerpt]
+        lines.append(_with_code(finding))
         if shown[kind] == _IN_FULL and (others := kinds[kind][_IN_FULL:]):
             lines.append(_folded(others))
     lines.append(lint_summary(findings, files, mended))
@@ -69,6 +70,33 @@ def lint_statistics(findings: Sequence[Diagnostic]) -> Table:
         rows.append((str(count), str(of_code[0].severity), code, ", ".join(mends), CATALOG[code].meaning))
     headings = "count", "severity", "code", "mends", "meaning"
     return Table(headings, rows, left=frozenset({1, 2, 3, 4}), headed=bool(rows))
+
+
+def explained(rule: Rule, example: Example) -> Iterator[Part]:
+    """Return what a rule means, its example with tabs drawn as ``→``, and what it finds there."""
+    yield f"{rule.code}: {rule.severity}: {rule.meaning}"
+    for paragraph in rule.explanation.split("\n\n"):
+        yield from ("", paragraph.replace("\n", " "))
+    for name, text in example_texts(example):
+        yield from ("", f"{name}:", *(f"    {line}" for line in text.splitlines()))
+    yield ""
+    yield from example_findings(example).splitlines()
+
+
+def example_texts(example: Example) -> Iterator[tuple[str, str]]:
+    """Yield the name and the text of each file of an example, with tabs drawn as ``→``."""
+    for file, content in example.files.items():
+        yield str(file), content.decode(errors="replace").replace("\t", "→")
+
+
+def example_findings(example: Example) -> str:
+    """Return what is found in an example, as :func:`lint_text` shows it."""
+    return "".join(f"{_with_code(finding)}\n" for finding in example.findings)
+
+
+def _with_code(finding: Diagnostic) -> str:
+    head, *excerpt = str(finding).split("\n")
+    return "\n".join([f"{head} [{finding.code}]", *excerpt])
 
 
 def _folded(others: Sequence[Diagnostic]) -> str:

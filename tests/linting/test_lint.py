@@ -55,7 +55,7 @@ def test_line_ends_do_not_matter(tmp_path: Path, end: str) -> None:
     ]
     assert here == there
     assert [code for _, _, code, _ in here] == [
-        "repeated-state",
+        "repeated-object",
         "space-for-tab",
         "unknown-container",
         "missing-separator",
@@ -428,7 +428,7 @@ def test_the_exit_code_goes_by_severity(tmp_path: Path, cli: Cli) -> None:
                 "broken-chain",
                 "time-value",
                 "other-bracket",
-                "no-bracket",
+                "misread-line",
             },
         ),
         ("dialects", {"no-motion", "id-of-two-names"}),
