@@ -1,7 +1,5 @@
 """``foon-asp lint``: what is wrong with FOON files, or worth a look."""
 
-import dataclasses
-import functools
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -15,7 +13,7 @@ from foon_asp.cli.output import terminal, write_data, write_output, write_parts
 from foon_asp.cli.output_file import check_outputs, refuse_inputs
 from foon_asp.cli.shown_diff import show_diff
 from foon_asp.errors import UserError
-from foon_asp.linting.baseline import baseline_json, check_replaceable
+from foon_asp.linting.baseline import Baseline, check_replaceable
 from foon_asp.linting.catalog import CATALOG, unknown_code
 from foon_asp.linting.context import Context
 from foon_asp.linting.example import example
@@ -24,10 +22,11 @@ from foon_asp.linting.mending import is_mendable, mended
 from foon_asp.linting.vocabulary import Vocabulary
 from foon_asp.network import counted
 from foon_asp.questions.contract import TABLES
-from foon_asp.questions.lint import Linted, lint, linted_files
+from foon_asp.questions.lint import Found, Linted, find, linted_files
 from foon_asp.questions.result import Ending
 from foon_asp.report.lint_findings import explained
 from foon_asp.report.whole_file import utf_8, write_whole
+from foon_asp.results.plain import plain
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.json_value import json_text
 from foon_asp.text.plain_file import plain_text, read_content
@@ -177,28 +176,29 @@ def command(
     if learn:
         return _learn(linted_files(on_disk), output)
     contents = {stdin_filename or Path("<stdin>"): sys.stdin.buffer.read()} if stdin else {}
-    find = functools.partial(lint, *on_disk, select=select, ignore=ignore, vocabulary=vocabulary)
     if baseline and write_baseline:
         refuse_inputs(baseline, [*linted_files(on_disk, contents), *filter(None, [vocabulary])])
         check_replaceable(baseline)
-        findings = find(contents=contents).findings
-        write_whole(baseline, utf_8(json_text(baseline_json(baseline, findings))))
+        findings = find(on_disk, contents, select, ignore, None, vocabulary).findings
+        write_whole(baseline, utf_8(json_text(plain(Baseline.of(baseline, findings)))))
         click.echo(f"wrote {baseline}: {counted(len(findings), 'finding')}", err=True)
         return ExitCode.DONE
-    found = find(contents=contents, baseline=baseline)
+    found = find(on_disk, contents, select, ignore, baseline, vocabulary)
+    count = 0
     if fix or diff:
         repaired = _repaired(found, contents, unsafe_fixes)
         count = sum(is_mendable(finding, unsafe_fixes) for finding in found.findings)
         if diff:
             return _show(repaired, count)
         contents = _write(repaired, contents)
-        found = dataclasses.replace(find(contents=contents, baseline=baseline), mended=count)
+        found = find(on_disk, contents, select, ignore, baseline, vocabulary)
         for content in contents.values():  # the mended text of standard input
             write_data(content)
-    _report(found, statistics, format_, err=fix and stdin)
+    linted = found.linted(mended=count)
+    _report(linted, statistics, format_, err=fix and stdin)
     if baseline:
-        _report_known(found)
-    return ExitCode.NEGATIVE if found.ending is Ending.NEGATIVE else ExitCode.DONE
+        _report_known(linted)
+    return ExitCode.NEGATIVE if linted.ending is Ending.NEGATIVE else ExitCode.DONE
 
 
 def _learn(files: Sequence[Path], output: Path | None) -> ExitCode:
@@ -213,7 +213,7 @@ def _learn(files: Sequence[Path], output: Path | None) -> ExitCode:
 _Repaired = Mapping[Path, tuple[bytes, bytes]]  # the content of a file before and after
 
 
-def _repaired(found: Linted, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
+def _repaired(found: Found, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
     """Return the content of every file with something to repair."""
     fixes: dict[str, list[Diagnostic]] = {}
     for finding in found.findings:

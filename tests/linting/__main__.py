@@ -5,9 +5,8 @@ from collections.abc import Iterator
 
 from foon_asp.linting.catalog import CATALOG
 from foon_asp.linting.example import Example, example
-from foon_asp.linting.mending import is_mendable
 from foon_asp.linting.rule import Rule
-from foon_asp.report.lint_findings import example_findings, example_texts
+from foon_asp.report.lint_findings import example_texts
 from tests.conftest import ROOT
 
 FILE = ROOT / "docs" / "lint.md"
@@ -28,8 +27,8 @@ def page() -> str:
 
 
 def _row(rule: Rule, shown: Example) -> str:
-    mends = sum(map(is_mendable, shown.findings))
-    unsafe = sum(is_mendable(finding, unsafe=True) for finding in shown.findings)
+    mends = sum(finding.mendable for finding in shown.findings)
+    unsafe = any(finding.unsafe for finding in shown.findings)
     fix = "mends" if mends == len(shown.findings) else "mends some" if mends else "unsafe" if unsafe else ""
     return f"| [`{rule.code}`](#{rule.code}) | {rule.severity} | {rule.meaning} | {fix} |\n"
 
@@ -40,7 +39,8 @@ def _section(rule: Rule, shown: Example) -> Iterator[str]:
         yield textwrap.fill(paragraph, WIDTH, break_long_words=False, break_on_hyphens=False) + "\n"
     for name, text in example_texts(shown):
         yield f"```foon {name}\n{text.rstrip()}\n```\n"
-    yield f"```text\n{example_findings(shown)}```\n"
+    findings = "\n".join(map(str, shown.findings))
+    yield f"```text\n{findings}\n```\n"
 
 
 if __name__ == "__main__":
