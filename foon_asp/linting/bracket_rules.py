@@ -54,7 +54,7 @@ def _other_is_meant(
     here, there = counts[attribute], counts[swapped]
     if there > here:
         return f"'{_in_other_bracket(attribute)}' stands {times(there)}, this {times(here)}"
-    if other is Relation and held[0] in known.utensils and other in known.brackets[attribute.word]:
+    if other is Relation and held[0] in known.utensils and other in known.brackets(attribute.word):
         return f"{held[0]!r} is something that others are in or on"
     return ""
 
@@ -101,13 +101,13 @@ def _bracketed(state: str, context: Context) -> str:
     known, words = context.known, state.split(" ")
     for length in range(min(_MAX_WORDS, len(words) - 1), 0, -1):
         word, held = " ".join(words[:length]), " ".join(words[length:])
-        counts = known.brackets.get(word)
-        if not counts or held in known.names[Kind.STATE]:
+        brackets = list(known.brackets(word))
+        if not brackets or held in known.names[Kind.STATE]:
             continue
         items = [item.strip() for item in held.split(",")]
-        if counts.most_common(1)[0][0] is Relation:
+        if brackets[0] is Relation:
             if held in known.names[Kind.OBJECT]:
                 return f"{word} [{held}]"
-        elif word == "contains" or known.names[Kind.OBJECT].issuperset(items):
+        elif word == "contains" or known.names[Kind.OBJECT] >= set(items):
             return f"{word} {{{','.join(items)}}}"
     return ""

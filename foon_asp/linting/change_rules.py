@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from foon_asp.linting.context import Context
-from foon_asp.linting.habits import Habit, mentioned
+from foon_asp.linting.habits import Changes, Habit, mentioned
 from foon_asp.linting.rule import WARNING, rule
 from foon_asp.text.diagnostics import Diagnostic
 
@@ -15,9 +15,10 @@ def _is_seldom(often: int, of: int) -> bool:
     return of >= _MIN_UNITS and _SELDOM * often <= of
 
 
-def _habit(context: Context, unit: int) -> Habit:
-    """Return what units with the motion of a unit do, in the files and in the vocabulary."""
-    return context.known.habits.get(context.network.motions[unit], Habit())
+def _units(context: Context) -> Iterator[tuple[int, str, Changes, Habit]]:
+    """Yield each unit with its motion, what it changes, and what units with its motion do."""
+    for unit, motion in enumerate(context.network.motions):
+        yield unit, motion, context.habits.units[unit], context.known.habit(motion)
 
 
 def _finding(context: Context, unit: int, side: int, node: int, message: str) -> Diagnostic:
@@ -33,12 +34,9 @@ def lost_contents(context: Context) -> Iterator[Diagnostic]:
     Nothing is said of motions that are known to take something out, such as `drain`, nor of those that are
     not known.
     """
-    for unit, changes in enumerate(context.habits.units):
-        habit = _habit(context, unit)
+    for unit, motion, changes, habit in _units(context):
         for node, lost in changes.lost.items() if _is_seldom(habit.lose, habit.keep) else ():
-            message = (
-                f"contains {', '.join(lost)} before {context.network.motions[unit]!r}, and no output has it"
-            )
+            message = f"contains {', '.join(lost)} before {motion!r}, and no output has it"
             yield _finding(context, unit, 1, node, message)
 
 
@@ -48,13 +46,10 @@ def gained_contents(context: Context) -> Iterator[Diagnostic]:
 
     Nothing is said of motions that show what is inside, such as `open`.
     """
-    for unit, changes in enumerate(context.habits.units):
-        habit = _habit(context, unit)
+    for unit, motion, changes, habit in _units(context):
         is_habit = habit.gain and not _is_seldom(habit.gain, habit.keep)
         for node, gained in () if is_habit else changes.gained.items():
-            message = (
-                f"contains {', '.join(gained)} after {context.network.motions[unit]!r}, and no input has it"
-            )
+            message = f"contains {', '.join(gained)} after {motion!r}, and no input has it"
             yield _finding(context, unit, 1, node, message)
 
 
@@ -66,10 +61,9 @@ def from_nothing(context: Context) -> Iterator[Diagnostic]:
     out of itself.
     """
     made_of_itself = _made_of_itself(context)
-    for unit, changes in enumerate(context.habits.units):
-        habit = _habit(context, unit)
+    for unit, motion, changes, habit in _units(context):
         for node in changes.new:
-            message = f"comes from no input of {context.network.motions[unit]!r}"
+            message = f"comes from no input of {motion!r}"
             if node in made_of_itself:
                 copy = context.files.copies[made_of_itself[node]][0]
                 message += f"; the unit on {context.sheets[copy.sheet].where(copy.at)} makes it"
@@ -95,8 +89,7 @@ def vanished(context: Context) -> Iterator[Diagnostic]:
 
     Nothing is said of motions that use things up, such as `wash`, nor of those that are not known.
     """
-    for unit, changes in enumerate(context.habits.units):
-        habit = _habit(context, unit)
+    for unit, motion, changes, habit in _units(context):
         for node in changes.gone if _is_seldom(habit.end, habit.units) else ():
-            message = f"is in no output of {context.network.motions[unit]!r}; where is it then?"
+            message = f"is in no output of {motion!r}; where is it then?"
             yield _finding(context, unit, 0, node, message)

@@ -1,10 +1,10 @@
 """What rules look at: the files that are linted together, and what is known of names beforehand."""
 
-from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
+from foon_asp.linting.chain import Chain
 from foon_asp.linting.habits import Habits
 from foon_asp.linting.linted_files import Copy, LintedFiles
 from foon_asp.linting.names import Kind, Names
@@ -72,13 +72,19 @@ class Context:
         sides = zip(self.network.inputs, self.network.outputs, strict=True)
         return {node for inputs, outputs in sides for node in set(outputs).difference(inputs)}
 
-    def sides(self) -> Iterator[Side]:
-        """Yield both sides of each unit."""
-        objects = self.network.objects
+    @cached_property
+    def sides(self) -> list[Side]:
+        """Both sides of each unit."""
+        objects, found = self.network.objects, []
         for unit, sides in enumerate(zip(self.network.inputs, self.network.outputs, strict=True)):
             inputs, outputs = ([objects[node] for node in side] for side in sides)
-            yield Side(unit, 0, inputs, outputs)
-            yield Side(unit, 1, outputs, inputs)
+            found += [Side(unit, 0, inputs, outputs), Side(unit, 1, outputs, inputs)]
+        return found
+
+    @cached_property
+    def chains(self) -> list[Chain]:
+        """The units of each sheet in order."""
+        return [Chain(self.network, copies) for copies in self.files.copies_by_sheet]
 
     def at_unit(self, copy: Copy, message: str) -> Diagnostic:
         """Return a finding about a copy of a unit."""
@@ -88,6 +94,11 @@ class Context:
         """Return a finding about a node among the inputs (0) or outputs (1) of a copy of a unit."""
         sheet = self.sheets[copy.sheet]
         return sheet.finding(message, self.node_line(copy, side, node), node.label)
+
+    def line(self, copy: Copy, side: int, node: ObjectNode) -> str:
+        """Return the line of a node in a copy of a unit, as messages about the same file name it."""
+        sheet = self.sheets[copy.sheet]
+        return sheet.where(self.node_line(copy, side, node), sheet)
 
     def node_line(self, copy: Copy, side: int, node: ObjectNode) -> int:
         """Return the index of the object line of a node of a copy of a unit, or else of its first line."""

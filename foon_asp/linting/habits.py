@@ -47,10 +47,6 @@ class Habit(NamedTuple):
     make: int = 0
     end: int = 0
 
-    def plus(self, *more: int) -> "Habit":
-        """Add another one."""
-        return Habit(*map(sum, zip(self, more, strict=True)))
-
 
 class Habits:
     """Looks at the units of a network one by one."""
@@ -122,21 +118,11 @@ class Habits:
         ]
         return Changes(lost, gained, fresh, [], keeps)
 
-    def of_motions(self) -> dict[str, Habit]:
-        """Count what the units with each motion do."""
-        found: dict[str, Habit] = {}
-        for unit, motion in enumerate(self.network.motions):
-            seen = self.units[unit]
-            new = (
-                1,
-                int(seen.keeps),
-                int(bool(seen.lost)),
-                int(bool(seen.gained)),
-                int(bool(seen.new)),
-                int(bool(seen.gone)),
-            )
-            found[motion] = found.get(motion, Habit()).plus(*new)
-        return found
+    def of_units(self) -> Iterator[tuple[str, Habit]]:
+        """Yield the motion of each unit, and what the unit does."""
+        for motion, seen in zip(self.network.motions, self.units, strict=True):
+            changed = seen.keeps, seen.lost, seen.gained, seen.new, seen.gone
+            yield motion, Habit(1, *(int(bool(each)) for each in changed))
 
 
 def _comes_from(node: ObjectNode, places: AbstractSet[str]) -> bool:

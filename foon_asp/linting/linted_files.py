@@ -14,7 +14,6 @@ from foon_asp.text.dialect import is_object_list
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_object import read_objects
 from foon_asp.text.line import Line
-from foon_asp.text.listed_unit import ListedUnit
 from foon_asp.text.plain_file import is_json, split_lines
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.renaming import TABLES
@@ -75,10 +74,11 @@ class LintedFiles:
 
     def _read(self, file: Path) -> None:
         text = self.reader.text(file, self._contents.get(file))
+        lines = split_lines(text)
         if is_json(text):
-            self._read_json(text, file)
+            self._read_json(text, file, lines)
             return
-        sheet = Sheet(str(file), split_lines(text), self.reader)
+        sheet = Sheet(str(file), lines, self.reader)
         self.sheets.append(sheet)
         if is_object_list(text):
             sheet.entries = [
@@ -87,51 +87,46 @@ class LintedFiles:
             ]
         elif "# From:" in text:  # units of a merged file name the places that they come from
             for unit in self.reader.listed_units(text, str(file)):
-                self._add(unit, unit.inputs[0].source.line - 1)
+                self._add(unit.motion.motion, unit.sides, unit.inputs[0].source.line - 1)
         else:
             for motion, inputs, outputs, sources in self.reader.units(text, str(file)):
-                self._add_nodes(motion, inputs, outputs, sources[0].line - 1)
+                self._add(motion, (inputs, outputs), sources[0].line - 1)
 
-    def _read_json(self, text: str, file: Path) -> None:
+    def _read_json(self, text: str, file: Path, source_lines: list[str]) -> None:
         lines: list[str] = []
         places: list[Source] = []
-        sheet = Sheet(str(file), lines, self.reader, places, source_lines=split_lines(text))
+        sheet = Sheet(str(file), lines, self.reader, places, source_lines=source_lines)
         self.sheets.append(sheet)
-        if is_object_list(text):
-            sheet.entries = self._read_json_list(text, file, lines, places)
+
+        def write(said: Iterable[Line], place: Source, *more: str) -> None:
+            written = [*map(_written, said), *more]
+            lines.extend(written)
+            places.extend([place] * len(written))
+
+        if not is_object_list(text):
+            for unit in self.reader.listed_units(text, str(file)):
+                self._add(unit.motion.motion, unit.sides, len(lines))
+                inputs, outputs = (
+                    [line for block in side for line in block.lines] for side in (unit.inputs, unit.outputs)
+                )
+                write([*inputs, unit.motion, *outputs], unit.motion_source, "//")
             return
-        for unit in self.reader.listed_units(text, str(file)):
-            self._add(unit, len(lines))
-            inputs = [line for block in unit.inputs for line in block.lines]
-            new = [*inputs, unit.motion, *(line for block in unit.outputs for line in block.lines)]
-            lines += [*map(_written, new), "//"]
-            places += [unit.motion_source] * (len(new) + 1)
-
-    def _read_json_list(self, text: str, file: Path, lines: list[str], places: list[Source]) -> list[Entry]:
         elements = JsonList(text, file)
-        entries = []
-        for block, pattern, left_out in read_objects(elements):
+        sheet.entries = []
+        for block, pattern, unknown in read_objects(elements):
             self.remarks += [
-                Diagnostic(Severity.WARNING, "json-value", message, block.source) for message in left_out
+                Diagnostic(Severity.WARNING, "json-value", message, block.source) for message in unknown
             ]
-            entries.append(Entry(pattern, len(lines)))
-            written = [*map(_written, block.lines)]
-            written += [f"S\tin\t[{pattern.container}]"] if pattern.container is not None else []
-            lines += written
-            places += [block.source] * len(written)
+            sheet.entries.append(Entry(pattern, len(lines)))
+            container = [] if pattern.container is None else [f"S\tin\t[{pattern.container}]"]
+            write(block.lines, block.source, *container)
         self.remarks += elements.errors
-        return entries
 
-    def _add(self, unit: ListedUnit, index: int) -> None:
-        self._add_nodes(unit.motion.motion, *unit.sides, index)
-
-    def _add_nodes(
-        self, motion: str, inputs: list[ObjectNode], outputs: list[ObjectNode], index: int
-    ) -> None:
-        unit = self._builder.add(motion, inputs, outputs)
+    def _add(self, motion: str, sides: tuple[list[ObjectNode], list[ObjectNode]], index: int) -> None:
+        unit = self._builder.add(motion, *sides)
         if unit == len(self.copies):
             self.copies.append([])
-        self.copies[unit].append(Copy(len(self.sheets) - 1, index, len(inputs), len(outputs)))
+        self.copies[unit].append(Copy(len(self.sheets) - 1, index, *map(len, sides)))
 
 
 def _written(line: Line) -> str:

@@ -20,7 +20,7 @@ def unheld(context: Context) -> Iterator[Diagnostic]:
 
     If it is in another one of the same name, that one is missing here.
     """
-    for side in context.sides():
+    for side in context.sides:
         for node, message in unheld_nodes(side, context.habits):
             yield context.at_node(context.files.copies[side.unit][0], side.number, node, message)
 
@@ -66,7 +66,7 @@ def other_place(context: Context) -> Iterator[Diagnostic]:
     labels = {node.label for node in objects}
     places = {place for node in objects for _, place in node.relations} - context.habits.ingredients
     is_usual = _places_are_usual(context)
-    for side in context.sides():
+    for side in context.sides:
         told = list(misplaced_nodes(side, labels, context.habits))
         if is_usual:
             told += _unplaced(side, places, context.habits)
@@ -98,7 +98,7 @@ def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Told
 def _places_are_usual(context: Context) -> bool:
     """Whether what a container contains is mostly said to be in or on it."""
     placed = unplaced = 0
-    for side in context.sides():
+    for side in context.sides:
         for holder in side.nodes:
             for node in side.nodes if holder.contents else ():
                 if node.label in held(holder):

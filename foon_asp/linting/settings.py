@@ -3,7 +3,7 @@
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
@@ -30,7 +30,7 @@ class LintSettings:
 
     select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
-    per_file: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    per_file: Mapping[str, Sequence[str]] = field(default_factory=dict)
     severity: Mapping[str, Severity] = field(default_factory=dict)
     file: Path | None = None
 
@@ -82,99 +82,82 @@ def read_settings(file: Path) -> LintSettings | None:
 
     Raises :class:`InputError` with line and column of everything that is not understood.
     """
-    return _Reading(file).settings()
+    text = read_plain_text(file)
+    try:
+        table: object = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        match = _PLACE.search(str(error))
+        place = (int(match[1]), int(match[2])) if match and match[1] else _line_and_column(text, len(text))
+        message = f"the file is not TOML: {_PLACE.sub('', str(error))}"
+        raise InputError([_error(file, text, place, message)]) from None
+    faults: list[_Fault] = []
+    if file.name == _FILES[0] and isinstance(table, dict) and "lint" in table:
+        faults.append((("lint",), f"found the table [lint], expected [{_TABLE}]"))
+    for key in _TABLE.split("."):
+        table = table.get(key) if isinstance(table, dict) else None
+    faults += [] if table is None else _faults(table)
+    if faults:
+        errors = [_error(file, text, _place(text, path), message) for path, message in faults]
+        raise InputError(sorted(errors, key=lambda error: error.source))
+    if not isinstance(table, dict):
+        return None
+    select, ignore = (tuple(table.get(key, ())) for key in ("select", "ignore"))
+    severity = {code: Severity(value) for code, value in table.get("severity", {}).items()}
+    return LintSettings(select, ignore, table.get("per-file", {}), severity, file)
 
 
-class _Reading:
-    """A file of settings while it is read, and the errors in it."""
+_Fault = tuple[tuple[str, ...], str]  # the keys that lead to what is wrong, and the message
 
-    def __init__(self, file: Path) -> None:
-        self.file = file
-        self.text = read_plain_text(file)
-        self.errors: list[Diagnostic] = []
-        self.codes: dict[str, tuple[str, ...]] = {"select": (), "ignore": ()}
-        self.per_file: dict[str, tuple[str, ...]] = {}
-        self.severity: dict[str, Severity] = {}
 
-    def settings(self) -> LintSettings | None:
-        document = self._document()
-        if self.file.name == _FILES[0] and "lint" in document:
-            self._wrong("lint", f"found the table [lint], expected [{_TABLE}]")
-        table: object = document
-        for key in _TABLE.split("."):
-            table = table.get(key) if isinstance(table, dict) else None
-        if isinstance(table, dict):
-            for key, value in table.items():
-                self._read(key, value)
-        elif table is not None:
-            self._wrong("lint", "expected a table of settings")
-        if self.errors:
-            raise InputError(sorted(self.errors, key=lambda error: error.source))
-        if table is None:
-            return None
-        return LintSettings(**self.codes, per_file=self.per_file, severity=self.severity, file=self.file)
-
-    def _document(self) -> dict[str, object]:
-        try:
-            return tomllib.loads(self.text)
-        except tomllib.TOMLDecodeError as error:
-            match = _PLACE.search(str(error))
-            lines = split_lines(self.text)
-            end = len(lines), len(lines[-1]) + 1
-            place = (int(match[1]), int(match[2])) if match and match[1] else end
-            self._error(f"the file is not TOML: {_PLACE.sub('', str(error))}", *place)
-            raise InputError(self.errors) from None
-
-    def _read(self, key: str, value: object) -> None:
-        """Read one setting."""
-        if key in self.codes:
-            self.codes[key] = self._codes(value, key)
+def _faults(table: object) -> Iterator[_Fault]:
+    """Yield what is not understood in the table of settings."""
+    if not isinstance(table, dict):
+        yield ("lint",), "expected a table of settings"
+        return
+    for key, value in table.items():
+        if key in {"select", "ignore"}:
+            yield from _faults_of_codes((key,), value)
         elif key not in {"per-file", "severity"}:
-            expected = ", ".join((*self.codes, "per-file", "severity"))
-            self._wrong(key, f"found the setting {key!r}, expected one of {expected}")
+            expected = "select, ignore, per-file, severity"
+            yield (key,), f"found the setting {key!r}, expected one of {expected}"
         elif not isinstance(value, dict):
-            self._wrong(key, f"expected a table [{_TABLE}.{key}]")
-        elif key == "per-file":
-            self.per_file = {pattern: self._codes(codes, key, pattern) for pattern, codes in value.items()}
+            yield (key,), f"expected a table [{_TABLE}.{key}]"
         else:
-            for code, severity in value.items():
-                if code not in CATALOG:
-                    self._wrong(key, code, unknown_code(code))
-                elif severity in list(Severity):
-                    self.severity[code] = Severity(str(severity))
-                else:
-                    expected = ", ".join(map(repr, map(str, Severity)))
-                    self._wrong(key, code, f"found {severity!r}, expected one of {expected}")
+            for name, inner in value.items():
+                if key == "per-file":
+                    yield from _faults_of_codes((key, name), inner)
+                elif name not in CATALOG:
+                    yield (key, name), unknown_code(name)
+                elif inner not in list(Severity):
+                    expected = ", ".join(repr(str(severity)) for severity in Severity)
+                    yield (key, name), f"found {inner!r}, expected one of {expected}"
 
-    def _codes(self, value: object, *path: str) -> tuple[str, ...]:
-        if not isinstance(value, list) or not all(isinstance(code, str) for code in value):
-            self._wrong(*path, f'expected a list of codes such as {path[-1]} = ["near-name"]')
-            return ()
-        for code in value:
-            if code not in CATALOG:
-                self._wrong(*path, code, unknown_code(code))
-        return tuple(value)
 
-    def _wrong(self, *path_and_message: str) -> None:
-        """Note an error about a key, or about a text in the list under it: the last but one of the words.
+def _faults_of_codes(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
+    if not isinstance(value, list) or not all(isinstance(code, str) for code in value):
+        yield path, f'expected a list of codes such as {path[-1]} = ["near-name"]'
+        return
+    for code in value:
+        if code not in CATALOG:
+            yield (*path, code), unknown_code(code)
 
-        Its place is where the words stand behind the name of the table, one after the other, and no comment.
-        """
-        *path, message = path_and_message
-        words = [
-            (match[0].strip("\"'"), match.start() + (match[0][0] in "\"'"))
-            for match in _WORD.finditer(self.text)
-            if match[0][0] != "#"
-        ]
-        names = [name for name, _ in words]
-        _, *table = _TABLE.split(".")
-        place = next((at for at in range(len(names)) if names[at : at + 2] == table), 0)
-        for key in path:
-            place = names.index(key, place) if key in names[place:] else place
-        before = self.text[: words[place][1]].replace("\r\n", "\n")
-        self._error(message, before.count("\n") + 1, len(before) - before.rfind("\n"))
 
-    def _error(self, message: str, line: int, column: int) -> None:
-        excerpt = split_lines(self.text)[line - 1]
-        source = Source(str(self.file), line, column)
-        self.errors.append(Diagnostic(Severity.ERROR, "settings", message, source, excerpt))
+def _place(text: str, path: tuple[str, ...]) -> tuple[int, int]:
+    """Return line and column of the last of the words that stand behind the name of the table, in order."""
+    found = [match for match in _WORD.finditer(text) if match[0][0] != "#"]
+    words = [match[0].strip("\"'") for match in found]
+    table = _TABLE.split(".")[1:]
+    at = next((at for at in range(len(words)) if words[at : at + 2] == table), 0)
+    for word in path:
+        at = words.index(word, at) if word in words[at:] else at
+    return _line_and_column(text, found[at].start() + (found[at][0][0] in "\"'"))
+
+
+def _line_and_column(text: str, offset: int) -> tuple[int, int]:
+    before = text[:offset].replace("\r\n", "\n")
+    return before.count("\n") + 1, len(before) - before.rfind("\n")
+
+
+def _error(file: Path, text: str, place: tuple[int, int], message: str) -> Diagnostic:
+    excerpt = split_lines(text)[place[0] - 1]
+    return Diagnostic(Severity.ERROR, "settings", message, Source(str(file), *place), excerpt)

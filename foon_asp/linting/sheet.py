@@ -3,9 +3,10 @@
 import json
 import re
 from bisect import bisect_left
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
@@ -58,7 +59,6 @@ class Sheet:
     places: Sequence[Source] | None = None
     entries: list[Entry] | None = None
     source_lines: Sequence[str] = field(default=(), repr=False)
-    _columns: tuple[int, dict[str, int]] = field(default_factory=lambda: (-1, {}), repr=False)
 
     @property
     def lists_goals(self) -> bool:
@@ -69,17 +69,15 @@ class Sheet:
     @cached_property
     def distinct_lines(self) -> list[WrittenLine]:
         """Every distinct line that says something, in order."""
-        lines = self.lines
-        first = dict(zip(reversed(lines), range(len(lines) - 1, -1, -1), strict=True))
-        counts: dict[str, int] = {}
-        for line in lines:
-            counts[line] = counts.get(line, 0) + 1
+        counts, first = Counter(self.lines), dict[str, int]()
+        for index, line in enumerate(self.lines):
+            first.setdefault(line, index)
         self.reader.parse_new(counts)
-        found = []
-        for line, count in counts.items():
-            if line[:1] in _LETTERS and not isinstance(parsed := self.reader.parse(line), LineError):
-                found.append(WrittenLine(parsed, first[line], count))
-        return found
+        return [
+            WrittenLine(parsed, first[line], often)
+            for line, often in counts.items()
+            if line[:1] in _LETTERS and not isinstance(parsed := self.reader.parse(line), LineError)
+        ]
 
     def blocks(self, start: int) -> Iterator[tuple[int, ObjectNode]]:
         """Yield the object nodes of the unit whose first line has that index, each with its object line."""
@@ -88,12 +86,22 @@ class Sheet:
                 return
             yield block.at, node_of(block.label, (attribute for _, attribute in block.attributes))
 
-    def written_blocks(self, start: int = 0) -> Iterator[WrittenBlock | None]:
+    @cached_property
+    def _parsed(self) -> dict[str, Line]:
+        """What the lines that are understood say."""
+        return {self.lines[first]: line for line, first, _ in self.distinct_lines}
+
+    @cached_property
+    def longer_blocks(self) -> list[WrittenBlock]:
+        """The objects of the sheet as they are written, with two lines or more under them."""
+        return [block for block in self.written_blocks(0) if block and len(block.attributes) > 1]
+
+    def written_blocks(self, start: int) -> Iterator[WrittenBlock | None]:
         """Yield the objects from a line on, as they are written, and ``None`` where a unit ends."""
         block: WrittenBlock | None = None
         for number in range(start, len(self.lines)):
             text = self.lines[number]
-            line = self.reader.parse(text) if text[:1] in _LETTERS else None
+            line = self._parsed.get(text)
             if isinstance(line, StateLine):
                 if block is not None:
                     block.attributes.append((number, line.attribute))
@@ -122,24 +130,9 @@ class Sheet:
         if self.places is not None:
             source, line = self._in_json(index, name)
         else:
-            source = self.place(index, self._column(index, name) if name else column)
             line = self.lines[index]
+            source = self.place(index, _column(line, name) if name else column)
         return Diagnostic(Severity.NOTE, "", message, source, line)
-
-    def _column(self, index: int, name: str) -> int:
-        """Return the column of a whole name in a line: ``rice`` is not where ``rice vinegar`` is.
-
-        The columns of the last line are kept: a long list is not searched anew for each of its names.
-        """
-        line = self.lines[index]
-        start = line.find("\t") + 1
-        if self._columns[0] != index:
-            columns: dict[str, int] = {}
-            for match in _NAME.finditer(line, start):
-                text = match[0]
-                columns.setdefault(text.strip(), match.end() - len(text.lstrip()) + 1)
-            self._columns = index, columns
-        return self._columns[1].get(name) or max(0, line.find(name, start)) + 1
 
     def _in_json(self, index: int, name: str) -> tuple[Source, str]:
         """Return the place and line of a name, in quotes, behind the place where its unit or entry begins."""
@@ -164,3 +157,16 @@ class Sheet:
                     text = json.loads(match[0], strict=False)
                 found.setdefault(text, []).append((number, match.start() + 2))
         return found
+
+
+def _column(line: str, name: str) -> int:
+    """Return the column of a whole name in a line: ``rice`` is not where ``rice vinegar`` is."""
+    return _columns(line).get(name) or max(0, line.find(name, line.find("\t") + 1)) + 1
+
+
+@lru_cache(1)  # a long list is not searched anew for each of its names
+def _columns(line: str) -> dict[str, int]:
+    columns: dict[str, int] = {}
+    for match in _NAME.finditer(line, line.find("\t") + 1):
+        columns.setdefault(match[0].strip(), match.end() - len(match[0].lstrip()) + 1)
+    return columns

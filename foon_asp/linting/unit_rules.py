@@ -1,6 +1,8 @@
 """Units and the objects in them: listed twice, changed by nothing, in two places at once."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
+from operator import eq
 
 from foon_asp.linting.context import Context
 from foon_asp.linting.linted_files import Copy
@@ -61,15 +63,8 @@ def repeated_object(context: Context) -> Iterator[Diagnostic]:
             if copy.inputs > len(network.inputs[unit]) or copy.outputs > len(network.outputs[unit]):
                 yield from _repeated_nodes(context, copy)
     for sheet in context.sheets:
-        told: dict[tuple[str, _Attribute], list[int]] = {}
-        for block in filter(None, sheet.written_blocks()):
-            seen = set()
-            for index, attribute in block.attributes:
-                if attribute in seen:
-                    told.setdefault((block.label, attribute), []).append(index)
-                seen.add(attribute)
-        for (label, attribute), indices in told.items():
-            message = f"{str(attribute)!r} is given twice for the object {label!r}; one line is enough"
+        for label, _, state, indices in _clashes(sheet, eq):
+            message = f"{str(state)!r} is given twice for the object {label!r}; one line is enough"
             yield _once(sheet, message, indices)
 
 
@@ -94,25 +89,29 @@ def second_relation(context: Context) -> Iterator[Diagnostic]:
     """
     for sheet in context.sheets:
         labels = {each.line.label for each in sheet.distinct_lines if isinstance(each.line, ObjectLine)}
-        told: dict[tuple[str, _Attribute, _Attribute], list[int]] = {}
-        for block in filter(None, sheet.written_blocks()):
-            firsts: dict[_Attribute, int] = {}
-            for index, attribute in block.attributes:
-                firsts.setdefault(attribute, index)
-            latest: dict[str, _Attribute] = {}
-            for attribute, index in firsts.items():
-                if kind := _kind(attribute):
-                    if kind in latest and _conflict(latest[kind], attribute, labels):
-                        told.setdefault((block.label, latest[kind], attribute), []).append(index)
-                    latest[kind] = attribute
-        for (label, first, second), indices in told.items():
+        for label, first, second, indices in _clashes(sheet, partial(_exclude_each_other, labels)):
             if isinstance(second, Contents):
-                message = f"{label!r} has {str(second)!r} beside {str(first)!r}; both count: if they are one "
-                message += "list, write one line"
+                message = f"{label!r} has {str(second)!r} beside {str(first)!r}; both count: if they are "
+                message += "one list, write one line"
             else:
                 message = f"{label!r} is {str(second)!r} besides {str(first)!r}; both count: if one is "
                 message += "outdated, take it out"
             yield _once(sheet, message, indices)
+
+
+def _clashes(
+    sheet: Sheet, clash: Callable[[_Attribute, _Attribute], bool]
+) -> Iterator[tuple[str, _Attribute, _Attribute, list[int]]]:
+    """Yield each label with two attributes under it that clash, and the lines that have the second."""
+    told: dict[tuple[str, _Attribute, _Attribute], list[int]] = {}
+    for block in sheet.longer_blocks:
+        for number, (index, second) in enumerate(block.attributes):
+            for _, first in block.attributes[:number]:
+                if clash(first, second):
+                    told.setdefault((block.label, first, second), []).append(index)
+                    break
+    for (label, first, second), indices in told.items():
+        yield label, first, second, indices
 
 
 def _once(sheet: Sheet, message: str, indices: list[int]) -> Diagnostic:
@@ -121,17 +120,11 @@ def _once(sheet: Sheet, message: str, indices: list[int]) -> Diagnostic:
     return sheet.finding(message + count, indices[0])
 
 
-def _kind(attribute: _Attribute) -> str:
-    """Return what an object has one of: a list or a relation by one word, or a place; else nothing."""
-    if isinstance(attribute, Contents):
-        return "{" + attribute.word
-    if isinstance(attribute, Relation):
-        return "[" if attribute.word in _PLACES else "[" + attribute.word
-    return ""
-
-
-def _conflict(first: _Attribute, second: _Attribute, labels: Collection[str]) -> bool:
-    """Whether two attributes of a kind cannot both be true: of places by two words, both must be objects."""
-    if not isinstance(first, Relation) or not isinstance(second, Relation):
-        return True
-    return first.word == second.word or (first.object in labels and second.object in labels)
+def _exclude_each_other(labels: set[str], first: _Attribute, second: _Attribute) -> bool:
+    """Whether two attributes cannot both be true: two by one word, or two places that are objects."""
+    if isinstance(first, Contents) and isinstance(second, Contents):
+        return first.word == second.word and first != second
+    if not isinstance(first, Relation) or not isinstance(second, Relation) or first == second:
+        return False
+    are_places = {first.word, second.word} <= _PLACES and {first.object, second.object} <= labels
+    return first.word == second.word or are_places
