@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from foon_asp.linting.context import Context
 from foon_asp.linting.habits import Changes, Habit, mentioned
 from foon_asp.linting.rule import WARNING, rule
+from foon_asp.network import ObjectNode
 from foon_asp.text.diagnostics import Diagnostic
 
 _MIN_UNITS = 3  # of a motion, before it has habits
@@ -64,22 +65,23 @@ def from_nothing(context: Context) -> Iterator[Diagnostic]:
     for unit, motion, changes, habit in _units(context):
         for node in changes.new:
             message = f"comes from no input of {motion!r}"
-            if node in made_of_itself:
-                copy = context.files.copies[made_of_itself[node]][0]
+            maker = made_of_itself.get(context.network.objects[node])
+            if maker is not None:
+                copy = context.files.copies[maker][0]
                 message += f"; the unit on {context.sheets[copy.sheet].where(copy.at)} makes it"
             elif not _is_seldom(habit.make, habit.units):
                 continue
             yield _finding(context, unit, 1, node, message)
 
 
-def _made_of_itself(context: Context) -> dict[int, int]:
+def _made_of_itself(context: Context) -> dict[ObjectNode, int]:
     """Return the first unit that makes each node out of what is called so."""
-    network, units = context.network, dict[int, int]()
-    for unit, (inputs, outputs) in enumerate(zip(network.inputs, network.outputs, strict=True)):
-        before = mentioned([network.objects[node] for node in inputs])
-        for node in set(outputs).difference(inputs):
-            if network.objects[node].label in before:
-                units.setdefault(node, unit)
+    units: dict[ObjectNode, int] = {}
+    for side in context.sides:
+        before = mentioned(side.others) if side.number == 1 else set()
+        for node in set(side.nodes).difference(side.others):
+            if node.label in before:
+                units.setdefault(node, side.unit)
     return units
 
 

@@ -28,14 +28,14 @@ class Side(NamedTuple):
 class Context:
     """The files with their network and names, and the names of a vocabulary.
 
-    ``found`` are the findings of all rules but ``noqa``, once these have run.
+    ``findings`` are those of all rules but ``noqa``, once these have run.
     """
 
     def __init__(self, files: LintedFiles, vocabulary: Path | None = None) -> None:
         self.files, self.sheets, self.network = files, files.sheets, files.network
         self.names = Names(files)
         self.vocabulary = read_vocabulary(vocabulary or bundled_vocabulary())
-        self.found: list[Diagnostic] = []
+        self.findings: list[Diagnostic] = []
 
     @cached_property
     def habits(self) -> Habits:
@@ -69,17 +69,16 @@ class Context:
     @cached_property
     def made(self) -> set[int]:
         """The nodes that a unit makes: those among its outputs and not among its inputs."""
-        sides = zip(self.network.inputs, self.network.outputs, strict=True)
-        return {node for inputs, outputs in sides for node in set(outputs).difference(inputs)}
+        return {node for chain in self.chains for node in chain.makers}
 
     @cached_property
     def sides(self) -> list[Side]:
         """Both sides of each unit."""
-        objects, found = self.network.objects, []
+        objects, both = self.network.objects, []
         for unit, sides in enumerate(zip(self.network.inputs, self.network.outputs, strict=True)):
             inputs, outputs = ([objects[node] for node in side] for side in sides)
-            found += [Side(unit, 0, inputs, outputs), Side(unit, 1, outputs, inputs)]
-        return found
+            both += [Side(unit, 0, inputs, outputs), Side(unit, 1, outputs, inputs)]
+        return both
 
     @cached_property
     def chains(self) -> list[Chain]:

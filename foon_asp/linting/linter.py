@@ -35,7 +35,7 @@ def lint_context(context: Context) -> list[Diagnostic]:
     """Return the findings about files that were read, as :func:`lint` does."""
     for rule in CATALOG.values():
         if rule.code != _ABOUT_FINDINGS:
-            context.found += rule.findings(context)
+            context.findings += rule.findings(context)
     findings = [*unsilenced(context), *CATALOG[_ABOUT_FINDINGS].findings(context)]
     order = {sheet.file: number for number, sheet in enumerate([*context.sheets, *context.files.tables])}
     return sorted(

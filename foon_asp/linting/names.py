@@ -32,7 +32,6 @@ class Names:
     def __init__(self, files: LintedFiles) -> None:
         self.files = files
         self.network = files.network
-        self.has_network = any(sheet.entries is None for sheet in files.sheets)
         self.mentions: dict[Kind, dict[str, list[Mention]]] = {kind: {} for kind in Kind}
         self.counts: dict[Kind, dict[str, int]] = {kind: {} for kind in Kind}
         self.objects: dict[str, int] = {}

@@ -32,7 +32,7 @@ def silencing(code: str) -> str:
 def unsilenced(context: Context) -> Iterator[Diagnostic]:
     """Yield the findings that no comment silences."""
     comments = {sheet.file: _comments(sheet) for sheet in _commented(context)}
-    for finding in context.found:
+    for finding in context.findings:
         if not any(comment.silences(finding) for comment in comments.get(finding.source.file, ())):
             yield finding
 
@@ -45,7 +45,7 @@ def noqa(context: Context) -> Iterator[Diagnostic]:
     that line.
     """
     for sheet in _commented(context):
-        here = [finding for finding in context.found if finding.source.file == sheet.file]
+        here = [finding for finding in context.findings if finding.source.file == sheet.file]
         for comment in _comments(sheet):
             for code in comment.codes:
                 if code not in RULES:

@@ -21,19 +21,19 @@ _MUCH_LONGER = 20  # times as long as most steps
 
 
 class _Clock(NamedTuple):
-    """A time as it is written, its column, and its seconds."""
+    """A time in seconds, its column, and how it is written."""
 
-    text: str
-    column: int
     seconds: int
+    column: int
+    text: str
 
     @classmethod
     def of(cls, match: re.Match[str], group: int = 0) -> "_Clock":
         """Read the time that a group of a match is."""
         seconds = 0
-        for part in match[group].split(":"):
-            seconds = 60 * seconds + int(part)
-        return cls(match[group], match.start(group) + 1, seconds)
+        for number in match[group].split(":"):
+            seconds = 60 * seconds + int(number)
+        return cls(seconds, match.start(group) + 1, match[group])
 
 
 class _Step(NamedTuple):
@@ -45,11 +45,11 @@ class _Step(NamedTuple):
 
     @property
     def first(self) -> _Clock:
-        return min((start for start, _ in self.spans), key=lambda clock: clock.seconds)
+        return min(start for start, _ in self.spans)
 
     @property
     def last(self) -> _Clock:
-        return max((end for _, end in self.spans), key=lambda clock: clock.seconds)
+        return max(end for _, end in self.spans)
 
 
 def _timed_sheets(context: Context) -> Iterator[tuple[Sheet, list[_Step], dict[int, tuple[str, int]]]]:
@@ -152,4 +152,4 @@ def time_order(context: Context) -> Iterator[Diagnostic]:
                 )
                 yield sheet.finding(message, step.motion, column=step.first.column)
             for node in set(network.outputs[step.unit]).difference(inputs):
-                makers[node] = min(makers.get(node, step), step, key=lambda maker: maker.first.seconds)
+                makers[node] = min(makers.get(node, step), step, key=lambda maker: maker.first)
