@@ -210,7 +210,10 @@ def _makers(checked: CheckedText, parameters: object) -> list[Json]:
     if node is None:
         return []
     sheet = Sheet("", text.lines, checked.names.files.reader)
-    lines = (sheet.line_of(node, first) for first, _ in _makers_and_needers(checked, node)[0])
+    lines = (
+        next((index for index, listed in sheet.blocks(first) if listed == node), first)
+        for first, _ in _makers_and_needers(checked, node)[0]
+    )
     return [{"uri": text.uri, "range": text.range(line)} for line in lines]
 
 
