@@ -67,7 +67,6 @@ class Sheet:
         counts: dict[str, int] = {}
         for line in lines:
             counts[line] = counts.get(line, 0) + 1
-        self.reader.parse_new(counts)
         found = []
         for line, count in counts.items():
             if line[:1] in _LETTERS and not isinstance(parsed := self.reader.parse(line), LineError):

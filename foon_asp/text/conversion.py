@@ -94,7 +94,6 @@ class Converter:
                 self._numbering.learn(line)
             return
         lines = dict.fromkeys(split_lines(text))
-        self._reader.parse_new(lines)
         for written in lines:
             if written[:1] in {"O", "S", "M"}:
                 parsed = self._reader.parse(written)

@@ -52,7 +52,6 @@ def dialect_of(text: str, reader: FoonReader, file: str = "") -> Dialect:
         return Dialect.JSON if by_its_name or text.lstrip(" \t\r\n")[0] == "{" else Dialect.JSON_LIST
     found = Dialect.PLAIN
     lines = dict.fromkeys(split_lines(text))
-    reader.parse_new(lines)
     for line in lines:
         if line[:1] not in {"O", "S", "M"}:
             continue

@@ -49,7 +49,6 @@ def format_text(
     end = _usual(ends)
     lines = split_lines(text)
     reader = reader or FoonReader()
-    reader.parse_new(lines)
     errors: list[Diagnostic] = []
     written: dict[str, str] = {}
     new: list[str] = []

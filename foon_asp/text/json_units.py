@@ -16,6 +16,7 @@ from foon_asp.text.json_object import check_keys, number, optional_name, read_ob
 from foon_asp.text.line import LineError, MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import is_rate, is_time
+from foon_asp.text.text_units import no_motion
 
 _NEEDED = {"input_nodes", "motion_node", "output_nodes"}
 _KEYS = {*_NEEDED, "price"}
@@ -34,8 +35,7 @@ def read_json_units(
     listed = list(elements)
     videos = _videos(elements.others.get("source"))
     if listed and not elements.errors and all(_is_object(element.value) for element in listed):
-        objects = "one object" if len(listed) == 1 else f"{len(listed)} objects"
-        message = f"{objects} and no motion: a list such as a kitchen or goals, without units"
+        message = no_motion(len(listed))
         diagnostics.append(Diagnostic(Severity.WARNING, "no-motion", message, listed[0].source))
         return
     for element in listed:

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 from foon_asp.escapes import note_line_end
 from foon_asp.network import Source
-from foon_asp.text.bytes_read import told
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.exact_price import LONGEST, read_price
 from foon_asp.text.json_fault import json_fault
@@ -21,6 +20,7 @@ from foon_asp.text.json_object import check_keys, shown
 from foon_asp.text.json_value import json_line
 from foon_asp.text.line import LineError
 from foon_asp.text.plain_file import not_utf_8, opened
+from foon_asp.text.reading import told
 
 _NEEDED = {"id", "inputs", "outputs"}
 _KEYS = {*_NEEDED, "price"}

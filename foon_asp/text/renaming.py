@@ -226,7 +226,6 @@ def mentioned(text: str, file: str, reader: FoonReader) -> Iterator[tuple[NameKi
                 yield from line_names(state)
         return
     lines = _lines(text)
-    reader.parse_new(lines)
     for written in lines:
         if written[:1] in {"O", "S", "M"} and not isinstance(parsed := reader.parse(written), LineError):
             yield from line_names(parsed)

@@ -233,7 +233,6 @@ def test_an_import_that_remembers_little(tmp_path: Path, monkeypatch: pytest.Mon
     stores = [tmp_path / "one.foon", tmp_path / "other.foon"]
     import_files(find_data(KITCHEN), stores[0])
     monkeypatch.setattr(builder, "_REMEMBERED", 3)
-    monkeypatch.setattr(reader, "_REMEMBERED", 3)
     monkeypatch.setattr(reader, "_PIECE", 50)
     monkeypatch.setattr(numbering, "_LEAST", 1)
     import_files(find_data(KITCHEN), stores[1])

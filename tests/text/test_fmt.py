@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.formatter import format_text
 from foon_asp.text.json_layout import lay_out
+from foon_asp.text.listed_unit import ReadUnit
 from foon_asp.text.plain_file import read_plain_text
-from foon_asp.text.reader import FoonReader, ReadUnit
+from foon_asp.text.reader import FoonReader
 from tests.conftest import CORPUS, Cli
 from tests.text.foon_strategies import steady, texts
 
