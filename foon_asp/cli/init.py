@@ -17,8 +17,8 @@ from foon_asp.text.data_folder import DataFiles, network_files, read_data
 from foon_asp.text.diagnostics import summarize
 from foon_asp.text.formatter import format_text
 from foon_asp.text.plain_file import is_json, is_store, read_plain_text
-from foon_asp.text.rate_table import read_rates
 from foon_asp.text.starter import starter_files
+from foon_asp.text.tables import RATES
 from foon_asp.text.writer import write_units
 
 
@@ -77,7 +77,7 @@ def _files(recipe: Path | None) -> dict[str, str]:
     recipe_text = write_units(map(network.unit, range(len(network))))
     if text and not is_json(text):
         recipe_text = format_text(text, str(source))
-    rates = None if recipe else read_rates(starter_recipe() / "motion.txt")
+    rates = None if recipe else RATES.read(starter_recipe() / "motion.txt")
     goals = [network.objects[o] for entry in data.goals for o in network.find(entry.pattern)]
     kitchen = starting_nodes(network, [o for entry in data.goals for o in network.find(entry.pattern)])
     return starter_files(recipe_text, network, kitchen, goals, rates)

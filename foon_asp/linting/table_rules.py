@@ -11,16 +11,14 @@ from foon_asp.linting.vocabulary import Vocabulary
 from foon_asp.network import counted
 from foon_asp.network.spelling import near_labels
 from foon_asp.text.diagnostics import Diagnostic, InputError
-from foon_asp.text.duration_list import read_durations
-from foon_asp.text.rate_table import read_rates
-from foon_asp.text.tool_list import read_tools
+from foon_asp.text.tables import DURATIONS, RATES, TOOLS
 from foon_asp.text.unit_price_list import read_unit_prices
 
 # by the name of the file: what the names in it are, and how the numbers behind them are read
 _TABLES: dict[str, tuple[Kind, Callable[[Path], object] | None]] = {
-    "durations.txt": (Kind.MOTION, read_durations),
-    "motion.txt": (Kind.MOTION, read_rates),
-    "tools.txt": (Kind.OBJECT, read_tools),
+    "durations.txt": (Kind.MOTION, DURATIONS.read),
+    "motion.txt": (Kind.MOTION, RATES.read),
+    "tools.txt": (Kind.OBJECT, TOOLS.read),
     "unit_prices.txt": (Kind.MOTION, read_unit_prices),
     "utensils.txt": (Kind.OBJECT, None),
 }

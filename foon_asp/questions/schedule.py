@@ -37,11 +37,16 @@ from foon_asp.results.timed_step import TimedStep, Tool
 from foon_asp.results.values import Value
 from foon_asp.results.values_of import head_of, lack_of
 from foon_asp.text.clip_times import median_clips
-from foon_asp.text.duration_list import Duration, read_default, read_durations, template_text
-from foon_asp.text.item_list import stated_name
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.line import LineError
-from foon_asp.text.tool_list import read_tools
+from foon_asp.text.tables import (
+    DURATIONS,
+    TOOLS,
+    Duration,
+    read_default_duration,
+    stated_name,
+    template_text,
+)
 
 Durations = str | PathLike[str] | Mapping[str, Number | Duration]
 Tools = str | PathLike[str] | Mapping[ToolName, int | None]
@@ -413,7 +418,7 @@ def _known_durations(
 ) -> dict[str, Duration]:
     """Return the durations that are known: stated, of clips, or the default; a warning tells the last two."""
     if isinstance(given, str | PathLike):
-        known = dict(read_durations(Path(given)))
+        known = dict(DURATIONS.read(Path(given)))
     else:
         known = {motion: _duration(each, motion) for motion, each in (given or {}).items()}
     motions = dict.fromkeys(unit.motion for unit in tree.units)
@@ -429,7 +434,11 @@ def _known_durations(
             )
         known |= {motion: Duration(clips[motion]) for motion in timed}
     if default is not None:
-        each = Duration(read_default(default)) if isinstance(default, str) else _duration(default, "default")
+        each = (
+            Duration(read_default_duration(default))
+            if isinstance(default, str)
+            else _duration(default, "default")
+        )
         others = [motion for motion in motions if motion not in known]
         if others:
             time = time_text(Fraction(each.seconds))
@@ -450,7 +459,7 @@ def _tools(given: Tools | None) -> dict[ToolName, int | None]:
     if given is None:
         return {}
     if isinstance(given, str | PathLike):
-        return read_tools(Path(given))
+        return TOOLS.read(Path(given))
     found: dict[ToolName, int | None] = {}
     for name, count in given.items():
         if count is not None and (isinstance(count, bool) or not isinstance(count, int) or count < 1):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from foon_asp.network import Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
-from foon_asp.text.exact_price import read_price
+from foon_asp.text.exact_number import read_price
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
 from foon_asp.text.json_object import check_keys, number, optional_name, read_object
 from foon_asp.text.line import LineError, MotionLine, StateLine

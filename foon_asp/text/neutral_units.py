@@ -13,7 +13,7 @@ from typing import NamedTuple
 from foon_asp.escapes import note_line_end
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
-from foon_asp.text.exact_price import LONGEST, read_price
+from foon_asp.text.exact_number import LONGEST, read_price
 from foon_asp.text.json_fault import json_fault
 from foon_asp.text.json_list import DECODER, JsonFaultError, JsonNumber
 from foon_asp.text.json_object import check_keys, shown

@@ -189,7 +189,7 @@ class FoonReader(Reading):
 
     def _json_units(self, text: str, file: str) -> Iterator[ListedUnit]:
         # most networks are none
-        from foon_asp.text.exact_price import read_price  # noqa: PLC0415
+        from foon_asp.text.exact_number import read_price  # noqa: PLC0415
         from foon_asp.text.json_units import read_json_units  # noqa: PLC0415
 
         self._plain.add(file)
@@ -200,7 +200,7 @@ class FoonReader(Reading):
             yield unit
 
     def _neutral_units(self, lines: Iterable[str], file: str) -> Iterator[ReadUnit]:
-        from foon_asp.text.exact_price import read_price  # noqa: PLC0415 (most networks are none)
+        from foon_asp.text.exact_number import read_price  # noqa: PLC0415 (most networks are none)
         from foon_asp.text.neutral_units import read_neutral_units  # noqa: PLC0415
 
         self._plain.add(file)
