@@ -20,7 +20,7 @@ from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIV
 from foon_asp.questions.posing_plan import a_tree
 from foon_asp.questions.result import AboutGoals, Ending
 from foon_asp.questions.tree import Tree, posed_tree
-from foon_asp.report.verdict import Listed, Stop, verdict_text, verdict_values
+from foon_asp.report.verdict import Listed, Stop, verdict_lines, verdict_values
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values import ListedConstraint, UsedUpRun
 from foon_asp.results.values_of import head_of
@@ -123,7 +123,7 @@ class Checked(AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
 
     def show(self) -> Iterator[Shown]:
         """Return whether the tree executes, in which order, what stops it, and which rules it breaks."""
-        yield verdict_text(self.problem, _listed(self.tree), self.__dict__["simulation"]).rstrip("\n")
+        yield from verdict_lines(self.problem, _listed(self.tree), self.__dict__["simulation"])
         yield from (*self._about_rules(), *self.notes)
 
     def _about_rules(self) -> Iterator[str]:

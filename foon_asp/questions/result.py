@@ -71,7 +71,7 @@ class Result:
     def show(self) -> Iterator[Part]:
         """Return the lines and tables that the result is for people."""
         if text := self.text():
-            yield text.removesuffix("\n")
+            yield from text.removesuffix("\n").split("\n")
 
     def json_dict(self) -> object:
         """Give the result as plain values, in the order in which JSON has them."""

@@ -11,6 +11,7 @@ from msgspec import field
 from foon_asp.asp import Status
 from foon_asp.dataset.paths import File
 from foon_asp.errors import BugError, UserError
+from foon_asp.escapes import escaped
 from foon_asp.network import FunctionalUnit, counted
 from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
@@ -405,7 +406,7 @@ def _durations(
             "--default-duration 60 counts each as 60 seconds",
             "--durations-template FILE writes these lines into a file",
         ]
-        lines = "".join(f"\n  {motion}\tSECONDS" for motion in missing)
+        lines = "".join(f"\n  {escaped(motion)}\tSECONDS" for motion in missing)
         raise UserError(
             f"no duration is known of {counted(len(missing), 'motion')} of the plan: say how long they take, "
             f"{place}, a tab before the seconds{lines}\n" + "\n".join(ways)
@@ -428,7 +429,7 @@ def _known_durations(
         clips = median_clips((file for file in files if file.is_file()), caller().lenient)
         timed = [motion for motion in motions if motion in clips and motion not in known]
         if timed:
-            shown = ", ".join(f"{motion} {time_text(Fraction(clips[motion]))}" for motion in timed)
+            shown = ", ".join(f"{escaped(motion)} {time_text(Fraction(clips[motion]))}" for motion in timed)
             caller().reporter.warning(
                 f"warning: these durations are medians of clips, and not of what happens in them: {shown}"
             )
@@ -442,7 +443,8 @@ def _known_durations(
         others = [motion for motion in motions if motion not in known]
         if others:
             time = time_text(Fraction(each.seconds))
-            caller().reporter.warning(f"warning: these motions count as {time} each: {', '.join(others)}")
+            motions_named = ", ".join(map(escaped, others))
+            caller().reporter.warning(f"warning: these motions count as {time} each: {motions_named}")
         known |= dict.fromkeys(others, each)
     return known
 

@@ -18,7 +18,7 @@ from foon_asp.questions.searching import COUNT, DEPTH, TIES, search_settings, se
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text
 from foon_asp.report.used_up_note import used_up_note
-from foon_asp.report.verdict import Stop, verdict_text, verdict_values
+from foon_asp.report.verdict import Stop, verdict_lines, verdict_values
 from foon_asp.results.table import Part
 from foon_asp.results.values import Node, Step, UsedUpRun
 from foon_asp.results.values_of import head_of, node_of, steps_of
@@ -92,8 +92,8 @@ class Retrieved(AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")
             costs=problem.costs(ids) if found else None,
             units=steps_of(problem, ids) if found else None,
         )
-        text = "" if simulation is None else verdict_text(problem, listed, simulation)
-        retrieved.__dict__.update(problem=problem, ids=ids, promise=search.promise, said=text)
+        lines = [""] if simulation is None else verdict_lines(problem, listed, simulation)
+        retrieved.__dict__.update(problem=problem, ids=ids, promise=search.promise, said=lines)
         return retrieved
 
     @property
@@ -131,7 +131,7 @@ class Retrieved(AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")
         if self.units is None:
             yield self._without()
             return
-        yield from (self.__dict__["said"].rstrip("\n"), "")
+        yield from (*self.__dict__["said"], "")
         yield from (line for step in self.units for line in step.lines())
 
     def foon(self) -> str:

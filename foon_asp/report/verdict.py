@@ -34,7 +34,7 @@ class Stop(Value, frozen=True):
     used_up_by: tuple[int, ...] | UnsetType = UNSET
 
 
-def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> str:
+def verdict_lines(problem: Problem, listed: Listed, simulation: Simulation) -> list[str]:
     """Say whether the listed units execute, in which order, and what stops them."""
     lines = [f"{simulation.verdict} ({problem.conditions})"]
     if simulation.as_listed is not None:
@@ -55,7 +55,7 @@ def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> st
     if simulation.verdict is Verdict.REORDERED:
         lines.append("an order that executes:")
         lines += [f"  {position + 1:>3}  {_unit_text(listed, position)}" for position in simulation.order]
-    return "\n".join(lines) + "\n"
+    return lines
 
 
 def _unit_text(listed: Listed, position: int) -> str:

@@ -4,7 +4,6 @@ import json
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from foon_asp.escapes import note_line_end
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_node import read_node_json
@@ -205,7 +204,6 @@ def _list(value: dict[str, object], key: str, found: object) -> list[object]:
 def _name(value: object, key: str, expected: str = "a name") -> str:
     if not isinstance(value, str):
         raise ValueError(f'found {shown(value)} as "{key}", expected {expected}')
-    note_line_end(value.strip(" "))
     return value
 
 

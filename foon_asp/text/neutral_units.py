@@ -10,7 +10,6 @@ from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.escapes import note_line_end
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.exact_number import LONGEST, read_price
@@ -139,7 +138,6 @@ def _names(value: object, key: str, known: set[str]) -> tuple[str, ...]:
 def _name(value: object, key: str) -> str:
     if not isinstance(value, str) or not value or value != value.strip(" "):
         raise ValueError(f'found {shown(value)} in "{key}", expected a name, without blanks around it')
-    note_line_end(value)
     return value
 
 
