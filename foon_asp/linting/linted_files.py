@@ -10,12 +10,13 @@ from foon_asp.linting.catalog import CATALOG
 from foon_asp.linting.sheet import Entry, Sheet
 from foon_asp.network import Network, NetworkBuilder, NodePattern, ObjectNode, Source
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.dialect import is_object_list
+from foon_asp.text.format import Format
+from foon_asp.text.formats import format_of
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_object import read_objects
 from foon_asp.text.line import Line, LineError
 from foon_asp.text.listed_unit import ListedUnit
-from foon_asp.text.plain_file import is_json, split_lines
+from foon_asp.text.plain_file import split_lines
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line
 
@@ -73,12 +74,13 @@ class LintedFiles:
 
     def _read(self, file: Path) -> None:
         text = self.reader.text(file, self._contents.get(file))
-        if is_json(text):
-            self._read_json(text, file)
+        format_ = format_of(text, str(file))
+        if not format_.has_comments:
+            self._read_json(text, file, format_)
             return
         sheet = Sheet(str(file), split_lines(text), self.reader)
         self.sheets.append(sheet)
-        if is_object_list(text):
+        if format_.lists_objects(text):
             sheet.entries = [
                 Entry(NodePattern.of(block.node), block.source.line - 1)
                 for block in self.reader.object_blocks(text, str(file))
@@ -90,12 +92,12 @@ class LintedFiles:
             for motion, inputs, outputs, sources in self.reader.units(text, str(file)):
                 self._add_nodes(motion, inputs, outputs, sources[0].line - 1)
 
-    def _read_json(self, text: str, file: Path) -> None:
+    def _read_json(self, text: str, file: Path, format_: Format) -> None:
         lines: list[str] = []
         places: list[Source] = []
         sheet = Sheet(str(file), lines, self.reader, places, source_lines=split_lines(text))
         self.sheets.append(sheet)
-        if is_object_list(text):
+        if format_.lists_objects(text):
             sheet.entries = self._read_json_list(text, file, lines, places)
             return
         for unit in self.reader.listed_units(text, str(file)):

@@ -20,8 +20,9 @@ from foon_asp.network import (
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.assumed_goals import LAST, MARKED, as_entry, last_goals
 from foon_asp.text.diagnostics import Diagnostic, Severity
+from foon_asp.text.formats import NEUTRAL
 from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, begins_neutral, read_content
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, beginning, read_content
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.repeated_node import RepeatedNode
 from foon_asp.text.stated_prices import StatedPrices
@@ -152,7 +153,7 @@ def _may_be_network(file: Path) -> bool:
     if file.suffix == ".json":
         return _OBJECT_KEY.search(read_content(file)) is not None
     if file.name.endswith(NEUTRAL_SUFFIXES):
-        return begins_neutral(file)
+        return NEUTRAL.recognises(beginning(file), "")
     return file.suffix == ".txt"
 
 

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
@@ -11,6 +12,7 @@ from foon_asp.text.json_value import json_line
 from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number
 from foon_asp.text.line_parser import parse_node, read_state
 from foon_asp.text.listed_unit import ObjectBlock
+from foon_asp.text.reading import Reading
 
 # The names that say the same, and which of them are read at all.
 _LABEL, _STATES = ("label", "object_label"), ("states", "object_states")
@@ -58,6 +60,19 @@ def read_object(value: object) -> JsonObject:
     remarks = [remark.message for state in states for remark in state.remarks]
     plain = [state._replace(remarks=()) for state in states] if remarks else states
     return JsonObject(line, tuple(plain), container, (*remarks, *_left_out(value, flag, category, listed)))
+
+
+def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
+    """Read a list of objects; what there is to say about them is noted in ``reading``.
+
+    A ``container`` is in what an object stands for, and not among its states.
+    """
+    elements = JsonList(text, Path(file))
+    for block, pattern, remarks in read_objects(elements):
+        for remark in remarks:
+            reading.warn("json-value", remark, block.source)
+        yield block, pattern
+    reading.diagnostics += elements.errors
 
 
 def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern, tuple[str, ...]]]:

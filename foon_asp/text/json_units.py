@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from foon_asp.network import Relation, Source
-from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.exact_number import read_price
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
 from foon_asp.text.json_object import check_keys, number, optional_name, read_object
 from foon_asp.text.line import LineError, MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import is_rate, is_time
+from foon_asp.text.reading import Reading
 from foon_asp.text.text_units import no_motion
 
 _NEEDED = {"input_nodes", "motion_node", "output_nodes"}
@@ -24,10 +24,8 @@ _LABELS = {"label", "object_label"}
 _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_type", "weight_success"}
 
 
-def read_json_units(
-    text: str, file: str, diagnostics: list[Diagnostic], lenient: bool
-) -> Iterator[ListedUnit]:
-    """Give the units in order; what is wrong goes to ``diagnostics``, under ``lenient`` as warnings.
+def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
+    """Give the units in order; what there is to say about them is noted in ``reading``.
 
     An object whose ``container`` is named without a word is ``in`` it.
     """
@@ -35,8 +33,7 @@ def read_json_units(
     listed = list(elements)
     videos = _videos(elements.others.get("source"))
     if listed and not elements.errors and all(_is_object(element.value) for element in listed):
-        message = no_motion(len(listed))
-        diagnostics.append(Diagnostic(Severity.WARNING, "no-motion", message, listed[0].source))
+        reading.warn("no-motion", no_motion(len(listed)), listed[0].source)
         return
     for element in listed:
         try:
@@ -44,22 +41,17 @@ def read_json_units(
         except ValueError as problem:
             elements.error(element.source, str(problem))
             continue
-        diagnostics += [Diagnostic(Severity.WARNING, "json-value", text, element.source) for text in remarks]
+        for remark in remarks:
+            reading.warn("json-value", remark, element.source)
+        motion = unit.motion.motion
         if not unit.inputs:
-            message = f"the unit {unit.motion.motion!r} has no input objects; left out"
-            diagnostics.append(Diagnostic(Severity.WARNING, "no-inputs", message, element.source))
+            reading.warn("no-inputs", f"the unit {motion!r} has no input objects; left out", element.source)
             continue
         if not unit.outputs:
-            message = f"the unit {unit.motion.motion!r} has no output objects"
-            diagnostics.append(Diagnostic(Severity.WARNING, "no-outputs", message, element.source))
+            reading.warn("no-outputs", f"the unit {motion!r} has no output objects", element.source)
         yield unit
-    if lenient:
-        diagnostics += [
-            error._replace(severity=Severity.WARNING, message=f"{error.message}; left out")
-            for error in elements.errors
-        ]
-    else:
-        diagnostics += elements.errors
+    for error in elements.errors:
+        reading.reject(error.code, error.message, error.source, error.excerpt)
 
 
 def _is_object(value: object) -> bool:

@@ -10,10 +10,11 @@ from itertools import chain
 from typing import cast
 
 from foon_asp.network import ObjectNode, Source
+from foon_asp.text.json_list import before_json
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit, node_of
-from foon_asp.text.plain_file import before_json, split_lines
+from foon_asp.text.plain_file import split_lines
 from foon_asp.text.provenance import is_video, read_copy, read_video
 from foon_asp.text.reading import Reading, told
 from foon_asp.text.writer import write_line

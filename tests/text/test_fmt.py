@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.formatter import format_text
+from foon_asp.text.formats import format_of
 from foon_asp.text.json_layout import lay_out
 from foon_asp.text.listed_unit import ReadUnit
 from foon_asp.text.plain_file import read_plain_text
@@ -36,6 +36,10 @@ LEFT_ALONE = [
     "O tea",
     "M\tpour\t3:0s7",
 ]
+
+
+def format_text(text: str, file: str, lenient: bool = False) -> str:
+    return format_of(text, file).normalised(text, file, lenient)
 
 
 def network(text: str) -> list[ReadUnit]:

@@ -7,19 +7,25 @@ is the label of an object node without states, to the letter; nothing in it is n
 import json
 from collections.abc import Iterable, Iterator
 from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from foon_asp.network import Source
-from foon_asp.text.diagnostics import Diagnostic, Severity
+from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.text.exact_number import LONGEST, read_price
-from foon_asp.text.json_fault import json_fault
-from foon_asp.text.json_list import DECODER, JsonFaultError, JsonNumber
+from foon_asp.text.foon_json import FoonJson
+from foon_asp.text.format import Dialect, Writer
+from foon_asp.text.json_layout import on_one_line
+from foon_asp.text.json_list import DECODER, JsonFaultError, JsonNumber, json_fault
+from foon_asp.text.json_names import json_mentions
 from foon_asp.text.json_object import check_keys, shown
-from foon_asp.text.json_value import json_line
-from foon_asp.text.line import LineError
-from foon_asp.text.plain_file import not_utf_8, opened
-from foon_asp.text.reading import told
+from foon_asp.text.line import LineError, Mention, MotionLine, ObjectLine
+from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, not_utf_8, opened, split_lines, usual_line_end
+from foon_asp.text.reading import Reading, told
+
+if TYPE_CHECKING:
+    from foon_asp.text.conversion_ids import Numbering
 
 _NEEDED = {"id", "inputs", "outputs"}
 _KEYS = {*_NEEDED, "price"}
@@ -36,7 +42,88 @@ class NeutralUnit(NamedTuple):
     source: Source
 
 
-def lines_of(file: Path) -> Iterator[str]:
+class NeutralLines(FoonJson):
+    """Neutral units, read line by line."""
+
+    dialects: tuple[Dialect, ...] = (Dialect.NEUTRAL,)
+    suffix = NEUTRAL_SUFFIXES[0]
+
+    def recognises(self, text: str, file: str) -> bool:
+        """Whether the file is named as neutral ones are, or its first line is one of their units."""
+        if file.endswith(NEUTRAL_SUFFIXES):
+            return True
+        start = len(text[:1_000]) - len(text[:1_000].lstrip("\ufeff \t\r\n"))
+        line = text[start:].split("\n", 1)[0] if text[start : start + 1] == "{" else ""
+        if '"outputs"' not in line:
+            return False
+        try:
+            unit = json.loads(line, parse_int=str, parse_float=str)
+        except (ValueError, RecursionError):
+            return False
+        return isinstance(unit, dict) and unit.keys() >= {"inputs", "outputs"} and "schema" not in unit
+
+    def dialect(self, text: str) -> Dialect:
+        """Return the neutral form."""
+        return Dialect.NEUTRAL
+
+    def lists_objects(self, text: str) -> bool:
+        """Return false."""
+        return False
+
+    def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
+        """Give the units of a file in order, a line at a time."""
+        return _read_units(_lines_of(file), str(file), reading)
+
+    def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
+        """Give the units of a text in order."""
+        return _read_units(split_lines(text), file, reading)
+
+    def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
+        """Give the units of a text in order, with the lines that they would have."""
+        for id_, *sides, price, source in read_neutral_units(split_lines(text), file, reading):
+            inputs, outputs = (
+                tuple(ObjectBlock(ObjectLine(name), (), source) for name in side) for side in sides
+            )
+            yield ListedUnit(MotionLine(id_), inputs, outputs, (source,), source, price)
+
+    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
+        """Return each line laid out anew; one that cannot be understood stays if ``lenient``."""
+        lines = split_lines(text.removeprefix("\ufeff"))
+        reading = Reading(lenient)
+        understood = {unit.source.line for unit in read_neutral_units(lines, file, reading)}
+        reading.raise_errors()
+        new = [on_one_line(line) if number in understood else line for number, line in enumerate(lines, 1)]
+        if new[-1]:
+            new.append("")
+        return usual_line_end(text).join(new)
+
+    def names(self, text: str, file: str) -> Iterator[Mention]:
+        """Give every mention of a name."""
+        return json_mentions(text)
+
+    def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
+        """Return what writes a network, or a list of its names."""
+        from foon_asp.text.neutral_writer import NeutralWriter  # noqa: PLC0415 (for conversions alone)
+
+        return NeutralWriter()
+
+
+def _read_units(lines: Iterable[str], file: str, reading: Reading) -> Iterator[ReadUnit]:
+    """Give units with their nodes; of copies with prices, the cheapest counts."""
+    nodes: dict[str, ObjectNode] = {}
+    prices: dict[str, Fraction] = {}
+    for id_, *sides, price, source in read_neutral_units(lines, file, reading):
+        inputs, outputs = (
+            [nodes.get(name) or nodes.setdefault(name, ObjectNode(name)) for name in side] for side in sides
+        )
+        if price:
+            if price not in prices:
+                prices[price] = read_price(price)
+            reading.prices.add_least(FunctionalUnit.of(id_, inputs, outputs), prices[price])
+        yield ReadUnit(id_, inputs, outputs, (source,))
+
+
+def _lines_of(file: Path) -> Iterator[str]:
     """Give the lines of a file as they are asked for.
 
     Raises :class:`InputError` with line and column of the first byte that is not UTF-8.
@@ -56,11 +143,8 @@ def lines_of(file: Path) -> Iterator[str]:
         tell(untold)
 
 
-def read_neutral_units(
-    lines: Iterable[str], file: str, diagnostics: list[Diagnostic], lenient: bool
-) -> Iterator[NeutralUnit]:
-    """Give the units in order; what is wrong goes to ``diagnostics``, under ``lenient`` as warnings."""
-    severity, ending = (Severity.WARNING, "; left out") if lenient else (Severity.ERROR, "")
+def read_neutral_units(lines: Iterable[str], file: str, reading: Reading) -> Iterator[NeutralUnit]:
+    """Give the units in order; what there is to say about them is noted in ``reading``."""
     known: set[str] = set()  # names that are as they should be
     prices: dict[str, str] = {}  # without an exponent, by how they are written
     for number, line in enumerate(lines, 1):
@@ -70,21 +154,11 @@ def read_neutral_units(
         try:
             unit = _unit(line, Source(file, number), known, prices)
         except _LineError as fault:
-            place = Source(file, number, fault.column)
-            message = f"{fault}{ending}"
-            diagnostics.append(Diagnostic(severity, "json", message, place, line))
+            reading.reject("json", str(fault), Source(file, number, fault.column), line)
             continue
         if not unit.outputs:
-            message = f"the unit {unit.id!r} has no output objects"
-            diagnostics.append(Diagnostic(Severity.WARNING, "no-outputs", message, unit.source))
+            reading.warn("no-outputs", f"the unit {unit.id!r} has no output objects", unit.source)
         yield unit
-
-
-def write_neutral_unit(id_: str, inputs: Iterable[str], outputs: Iterable[str], price: str) -> str:
-    """Write a unit as one line."""
-    needs, gives = (", ".join(map(json_line, side)) for side in (inputs, outputs))
-    last = f', "price": {Decimal(price):f}' if price else ""
-    return f'{{"id": {json_line(id_)}, "inputs": [{needs}], "outputs": [{gives}]{last}}}\n'
 
 
 class _LineError(Exception):
