@@ -115,7 +115,8 @@ class Converter:
     def _units(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
         listed = list(format_.listed_units(text, file, self._reading))
         videos = self._videos(text, format_, listed, lost)
-        return self._writer.network([self._unit(unit, lost) for unit in listed], videos)
+        written = [self._unit(unit, lost) for unit in listed]
+        return self._writer.network([unit for unit in written if unit], videos)
 
     def _unit(self, unit: ListedUnit, lost: "_Tally") -> str:
         """Write a unit; it is empty where the target cannot hold it, which is noted."""

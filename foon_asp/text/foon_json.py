@@ -7,29 +7,27 @@ from typing import TYPE_CHECKING
 from foon_asp.network import FunctionalUnit, NodePattern
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.exact_number import read_price
-from foon_asp.text.format import Dialect, Writer
+from foon_asp.text.format import Dialect, Format, Writer
 from foon_asp.text.json_layout import check_json, lay_out
 from foon_asp.text.json_list import JsonList, begins_json
 from foon_asp.text.json_names import json_mentions, renamed_json
 from foon_asp.text.json_object import read_json_objects
 from foon_asp.text.json_units import read_json_units
 from foon_asp.text.line import Line, Mention
-from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
-from foon_asp.text.plain_file import read_plain_text, usual_line_end
+from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
+from foon_asp.text.plain_file import usual_line_end
 from foon_asp.text.reading import Reading
 
 if TYPE_CHECKING:
     from foon_asp.text.conversion_ids import Numbering
-    from foon_asp.text.diagnostics import Diagnostic
     from foon_asp.text.renaming import Renaming
 
 
-class FoonJson:
+class FoonJson(Format):
     """JSON, whose form is told by its keys."""
 
     dialects: tuple[Dialect, ...] = (Dialect.JSON, Dialect.JSON_LIST)
     suffix = list_suffix = ".json"
-    has_comments = False
     machine_written = True
 
     def recognises(self, text: str, file: str) -> bool:
@@ -47,14 +45,6 @@ class FoonJson:
         if first is None or not isinstance(first.value, dict | str):
             return False
         return isinstance(first.value, str) or "input_nodes" not in first.value
-
-    def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
-        """Give the units of a file in order."""
-        yield from self.units(read_plain_text(file), str(file), reading)
-
-    def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Give the units of a text in order."""
-        return (unit.identity for unit in self.listed_units(text, file, reading))
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
         """Give the units of a text in order, with the lines that they would have."""
@@ -90,10 +80,6 @@ class FoonJson:
             return text
         laid_out = lay_out(text) + ("\n" if text.rstrip(" \t")[-1:] in {"\r", "\n"} else "")
         return laid_out.replace("\n", usual_line_end(text))
-
-    def not_understood(self, text: str, file: str) -> "list[Diagnostic]":
-        """Return nothing: names are found in whatever is JSON."""
-        return []
 
     def names(self, text: str, file: str) -> Iterator[Mention]:
         """Give every mention of a name; raises :class:`InputError` for what is not JSON."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from foon_asp.network import NodePattern, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
-from foon_asp.text.format import Dialect, Writer
+from foon_asp.text.format import Dialect, Format, Writer
 from foon_asp.text.line import Line, LineError, Mention, MotionLine, ObjectLine, line_names
 from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
@@ -27,13 +27,12 @@ Rewrite = Callable[[Line, str], str]
 """What becomes of a line, given what it says and how it is written."""
 
 
-class FoonText:
+class FoonText(Format):
     """FOON text in any of its dialects; what is in no other format is in this one."""
 
     dialects: tuple[Dialect, ...] = (Dialect.PLAIN, Dialect.NO_IDS, Dialect.IDS)
     suffix = list_suffix = ".txt"
     has_comments = True
-    machine_written = False
 
     def recognises(self, text: str, file: str) -> bool:
         """Return true."""

@@ -9,6 +9,7 @@ from foon_asp.network import NodePattern
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import Line, Mention, MotionLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
+from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reading import Reading
 
 if TYPE_CHECKING:
@@ -44,11 +45,11 @@ class Format(Protocol):
     A ``file`` is named in places and messages.
     """
 
-    dialects: tuple[Dialect, ...]
+    dialects: tuple[Dialect, ...] = ()
     suffix: str
     list_suffix: str
-    has_comments: bool
-    machine_written: bool
+    has_comments: bool = False
+    machine_written: bool = False
 
     def recognises(self, text: str, file: str) -> bool:
         """Whether a text is in this format; of a long one, its beginning is enough."""
@@ -61,9 +62,11 @@ class Format(Protocol):
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
         """Give the units of a file in order; raises :class:`InputError` for one that is no text."""
+        yield from self.units(read_plain_text(file), str(file), reading)
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
         """Give the units of a text in order; what there is to say about it is noted in ``reading``."""
+        return (unit.identity for unit in self.listed_units(text, file, reading))
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
         """Give the units of a text in order, with their lines as written."""
@@ -82,6 +85,7 @@ class Format(Protocol):
 
     def not_understood(self, text: str, file: str) -> list[Diagnostic]:
         """Return the errors of all in which names cannot be told."""
+        return []
 
     def names(self, text: str, file: str) -> Iterator[Mention]:
         """Give every mention of a name; raises :class:`InputError` for a text that is broken."""

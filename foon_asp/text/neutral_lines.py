@@ -45,7 +45,7 @@ class NeutralUnit(NamedTuple):
 class NeutralLines(FoonJson):
     """Neutral units, read line by line."""
 
-    dialects: tuple[Dialect, ...] = (Dialect.NEUTRAL,)
+    dialects = (Dialect.NEUTRAL,)
     suffix = NEUTRAL_SUFFIXES[0]
 
     def recognises(self, text: str, file: str) -> bool:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from foon_asp.errors import UserError
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.foon_text import FoonText
-from foon_asp.text.format import Dialect
 from foon_asp.text.line import Mention, NameKind
 from foon_asp.text.plain_file import each_line, split_lines
 
@@ -27,7 +26,7 @@ TABLES = {
 class SideTable(FoonText):
     """A table, as the files of a folder are renamed together; as FOON text, it has no units."""
 
-    dialects: tuple[Dialect, ...] = ()
+    dialects = ()
 
     def recognises(self, text: str, file: str) -> bool:
         """Whether the file has the name of a table."""

@@ -122,6 +122,14 @@ def test_json_of_both_forms_with_its_ids() -> None:
     assert '"clean"' in renamed(text, "state", "empty", "clean", "a.json")
 
 
+def test_broken_json_is_refused_in_place(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "a.json"
+    for text in ('[{"label": "pot"}]]', '[{"label" "pot"}]', '[O "label": "pot"}]'):
+        file.write_text(text)
+        ran = cli("rename", "pot", "pan", file)
+        assert (ran.code, "not JSON" in ran.err) == (2, True), ran.err
+
+
 def folder_of_data(folder: Path) -> dict[str, str]:
     texts = {
         "FOON.txt": "\ufeffO\tpot\nM\tstir\nO\tpot\nS\thot\n//\n",
