@@ -64,7 +64,10 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
     for file, text in texts.items():
         format_ = format_of(text, str(file))
         renaming.learn(format_.names(text, str(file)))
-        errors += [error for error in format_.not_understood(text, str(file)) if old in error.excerpt]
+        try:
+            format_.normalised(text, str(file))
+        except InputError as error:
+            errors += [each for each in error.diagnostics if old in each.excerpt]
     if errors:
         raise InputError(errors)
     changed = {}

@@ -80,14 +80,6 @@ class FoonText(Format):
         """Return a text in canonical form, line by line, as :func:`rewritten` does."""
         return rewritten(text, file, lenient, _mended)
 
-    def not_understood(self, text: str, file: str) -> list[Diagnostic]:
-        """Return the errors of the lines that are no comment and cannot be understood."""
-        return [
-            Diagnostic(Severity.ERROR, "syntax", str(error), Source(file, number, error.column), line)
-            for number, line in enumerate(split_lines(text), 1)
-            if line[:1] not in {"#", "/"} and isinstance(error := read_line(line), LineError)
-        ]
-
     def names(self, text: str, file: str) -> Iterator[Mention]:
         """Give every mention of a name."""
         for line in self.lines(text):

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from foon_asp.network import NodePattern
-from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import Line, Mention, MotionLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
 from foon_asp.text.plain_file import read_plain_text
@@ -82,10 +81,6 @@ class Format(Protocol):
 
         Raises :class:`InputError` with all that cannot be understood; with ``lenient`` it stays as it is.
         """
-
-    def not_understood(self, text: str, file: str) -> list[Diagnostic]:
-        """Return the errors of all in which names cannot be told."""
-        return []
 
     def names(self, text: str, file: str) -> Iterator[Mention]:
         """Give every mention of a name; raises :class:`InputError` for a text that is broken."""

@@ -2,10 +2,12 @@
 
 import json
 from collections.abc import Iterator
+from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
+from foon_asp.text.exact_number import LONGEST, read_price
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import json_line
@@ -160,6 +162,28 @@ def number(value: dict[str, object], key: str) -> str:
     if isinstance(written, str) and is_number(written):
         return written
     raise ValueError(f'found {shown(found)} as "{key}", expected a number')
+
+
+def price_of(value: object, exponents: bool = False) -> str:
+    """Return the price of a unit as it is written, a number or text; empty where there is none.
+
+    A number may have an exponent where the form has ``exponents``; the price is without it.
+    """
+    if value is None:
+        return ""
+    written = value.text if isinstance(value, JsonNumber) else value
+    if not isinstance(written, str):
+        raise ValueError('found no number as "price", expected a price from 0, as a decimal such as 1.99')
+    if exponents and isinstance(value, JsonNumber) and "e" in written.lower():
+        exact = Decimal(written)
+        if abs(exact.adjusted()) + len(written) >= LONGEST:
+            raise ValueError(f'found {written[:40]!r} as "price", expected one of at most {LONGEST} letters')
+        written = f"{exact:f}"
+    try:
+        read_price(written)
+    except LineError as error:
+        raise ValueError(f'in "price": {error}') from None
+    return written
 
 
 def _state(value: object) -> StateLine:

@@ -9,10 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from foon_asp.network import Relation, Source
-from foon_asp.text.exact_number import read_price
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
-from foon_asp.text.json_object import check_keys, number, optional_name, read_object
-from foon_asp.text.line import LineError, MotionLine, StateLine
+from foon_asp.text.json_object import check_keys, number, optional_name, price_of, read_object
+from foon_asp.text.line import MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import is_rate, is_time
 from foon_asp.text.reading import Reading
@@ -73,23 +72,9 @@ def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, li
     remarks: list[str] = []
     inputs, outputs = (_side(value, key, source, remarks) for key in ("input_nodes", "output_nodes"))
     motion = _motion(value["motion_node"], remarks)
-    price = _price(value.get("price"))
+    price = price_of(value.get("price"))
     unit = ListedUnit(motion, inputs, outputs, (source._replace(videos=videos),), source, price)
     return unit, list(dict.fromkeys(remarks))
-
-
-def _price(value: object) -> str:
-    """Give the price of a unit as it is written, a number or text; empty where there is none."""
-    if value is None:
-        return ""
-    written = value.text if isinstance(value, JsonNumber) else value
-    if not isinstance(written, str):
-        raise ValueError('found no number as "price", expected a price from 0, as a decimal such as 1.99')
-    try:
-        read_price(written)
-    except LineError as error:
-        raise ValueError(f'in "price": {error}') from None
-    return written
 
 
 def _side(unit: dict[str, object], key: str, source: Source, remarks: list[str]) -> tuple[ObjectBlock, ...]:

@@ -6,20 +6,19 @@ is the label of an object node without states, to the letter; nothing in it is n
 
 import json
 from collections.abc import Iterable, Iterator
-from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
-from foon_asp.text.exact_number import LONGEST, read_price
+from foon_asp.text.exact_number import read_price
 from foon_asp.text.foon_json import FoonJson
 from foon_asp.text.format import Dialect, Writer
 from foon_asp.text.json_layout import on_one_line
 from foon_asp.text.json_list import DECODER, JsonFaultError, JsonNumber, json_fault
 from foon_asp.text.json_names import json_mentions
-from foon_asp.text.json_object import check_keys, shown
-from foon_asp.text.line import LineError, Mention, MotionLine, ObjectLine
+from foon_asp.text.json_object import check_keys, price_of, shown
+from foon_asp.text.line import Mention, MotionLine, ObjectLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
 from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, not_utf_8, opened, split_lines, usual_line_end
 from foon_asp.text.reading import Reading, told
@@ -192,9 +191,9 @@ def _unit(line: str, source: Source, known: set[str], prices: dict[str, str]) ->
         key = "price"
         price = value.get(key)
         if not isinstance(price, JsonNumber):
-            return NeutralUnit(name, inputs, outputs, "" if price is None else _price(price), source)
+            return NeutralUnit(name, inputs, outputs, price_of(price), source)
         if price.text not in prices:
-            prices[price.text] = _price(price)
+            prices[price.text] = price_of(price, exponents=True)
         return NeutralUnit(name, inputs, outputs, prices[price.text], source)
     except ValueError as problem:
         raise _LineError(str(problem), line.find(f'"{key}"') + 1 if key else 1) from None
@@ -213,20 +212,3 @@ def _name(value: object, key: str) -> str:
     if not isinstance(value, str) or not value or value != value.strip(" "):
         raise ValueError(f'found {shown(value)} in "{key}", expected a name, without blanks around it')
     return value
-
-
-def _price(value: object) -> str:
-    """Give a price without an exponent; a number in JSON may have one."""
-    written = value.text if isinstance(value, JsonNumber) else value
-    if not isinstance(written, str):
-        raise ValueError('found no number as "price", expected a price from 0, as a decimal such as 1.99')
-    if isinstance(value, JsonNumber) and "e" in written.lower():
-        number = Decimal(written)
-        if abs(number.adjusted()) + len(written) >= LONGEST:
-            raise ValueError(f'found {written[:40]!r} as "price", expected one of at most {LONGEST} letters')
-        written = f"{number:f}"
-    try:
-        read_price(written)
-    except LineError as error:
-        raise ValueError(f'in "price": {error}') from None
-    return written

@@ -9,11 +9,12 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 from foon_asp.text.exact_number import decimal_text, read_decimal
-from foon_asp.text.line import LineError
+from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_name, parse_node
-from foon_asp.text.plain_file import read_plain_text
-from foon_asp.text.reader import FoonReader
+from foon_asp.text.plain_file import read_plain_text, split_lines
+from foon_asp.text.reading import Reading
 from foon_asp.text.table import Table
+from foon_asp.text.text_units import TextUnits
 
 _TIME_UNITS = {"": 1, "s": 1, "min": 60, "h": 3600}
 _DURATION = "a number of seconds such as 90 or 1.5, or of minutes or hours such as 25 min"
@@ -115,25 +116,29 @@ def _label(name: str, _: str, __: int) -> tuple[str, None]:
     return name, None
 
 
-RATES = Table("rate", "a success rate", _rate, "a second success rate for {name!r}")
+RATES = Table("rate", NameKind.MOTION, "a success rate", _rate, "a second success rate for {name!r}")
 """``motion⇥0.85``: success rates of motions, decimals above 0 and at most 1, kept exactly."""
 
-DURATIONS = Table("duration", "a number of seconds", _duration, "a second duration for {name!r}")
+DURATIONS = Table(
+    "duration", NameKind.MOTION, "a number of seconds", _duration, "a second duration for {name!r}"
+)
 """``motion⇥90`` and ``motion⇥25 min⇥passive``: durations of motions, above 0, kept exactly."""
 
-TOOLS = Table("tool", "a number from 1, or free,", _tool, "{value}, and something else above")
+TOOLS = Table(
+    "tool", NameKind.OBJECT, "a number from 1, or free,", _tool, "{value}, and something else above"
+)
 """``NAME⇥2`` and ``NAME⇥free``: how many there are of tools and vessels; ``None`` is for what is free."""
 
-STAYS = Table("stays", "stays or used-up", _stays, "{value}, and the opposite above")
+STAYS = Table("stays", NameKind.OBJECT, "stays or used-up", _stays, "{value}, and the opposite above")
 """``NAME⇥stays`` and ``NAME⇥used-up``: of items that are used up, which of them stay."""
 
-STOCK = Table("stock", "a number of copies", _copies, "a second count for {name!r}")
+STOCK = Table("stock", NameKind.OBJECT, "a number of copies", _copies, "a second count for {name!r}")
 """``NODE⇥12``: how many copies of an object node there are."""
 
-PRICES = Table("price", "a price", _price, "a second price for {name!r}")
+PRICES = Table("price", NameKind.OBJECT, "a price", _price, "a second price for {name!r}")
 """``NAME⇥1.99``: prices of things to buy, with up to nine digits before the point and six behind it."""
 
-UTENSILS = Table("utensil", "", _label)
+UTENSILS = Table("utensil", NameKind.OBJECT, "", _label)
 """``LABEL``: labels of utensils, one on each line."""
 
 
@@ -147,12 +152,12 @@ def read_stock(file: Path) -> dict[ObjectNode, int]:
 
     Raises :class:`InputError` for a line of another form, and for a node with two different counts.
     """
-    text = read_plain_text(file)
+    text = "\n".join(split_lines(read_plain_text(file)))
     if not _OBJECT_LINE.search(text):
         return STOCK.read(file)
-    reader = FoonReader()
-    blocks = reader.object_blocks(text, str(file))
-    reader.raise_errors()
+    reading = Reading()
+    blocks = TextUnits([text], str(file), reading).objects()
+    reading.raise_errors()
     found: dict[ObjectNode, int] = {}
     for block in blocks:
         found[block.node] = found.get(block.node, 0) + 1

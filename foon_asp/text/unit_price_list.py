@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices, in_quotes
 from foon_asp.text.exact_number import decimal_text, read_price
-from foon_asp.text.line import LineError
+from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_node
 from foon_asp.text.table import Table
 from foon_asp.text.tables import motion_column
@@ -44,7 +44,7 @@ def _row(name: str, value: str, column: int) -> tuple[str | FunctionalUnit, Frac
     return _unit(motion, fields, column) if fields else motion, price
 
 
-UNIT_PRICES = Table("unit-price", "a price", _row, "a second price for {name!r}")
+UNIT_PRICES = Table("unit-price", NameKind.MOTION, "a price", _row, "a second price for {name!r}")
 
 
 def write_unit_prices(prices: UnitPrices) -> str:
