@@ -26,11 +26,11 @@ from foon_asp.problem import Changes, Names, Number, Problem, UnitPricesNamed
 from foon_asp.problem.progress import OnProgress, Progress
 from foon_asp.rules.measure import read_measures
 from foon_asp.text.assumed_goals import LAST, as_entry, last_goals
-from foon_asp.text.bytes_read import size_of, telling
 from foon_asp.text.data_folder import STARTING, Data, find_data
 from foon_asp.text.goal_name import GoalError
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_node
+from foon_asp.text.reading import size_of, telling
 from foon_asp.typed import typed
 from foon_asp.warning import warn
 

@@ -13,8 +13,9 @@ from foon_asp.cli.output_file import check_outputs
 from foon_asp.errors import UserError
 from foon_asp.text.conversion import Converted, Converter
 from foon_asp.text.diagnostics import Diagnostic, InputError, summarize
-from foon_asp.text.dialect import Dialect, is_object_list
 from foon_asp.text.folder_files import FolderFile, foon_files
+from foon_asp.text.format import Dialect
+from foon_asp.text.formats import format_of, format_with
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.whole_file import utf_8, write_whole
 
@@ -129,9 +130,8 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
 
 def _suffix(file: Path, target: Dialect) -> str:
     """Return the ending for what a file becomes; beside a neutral network, lists are a JSON list of names."""
-    if target is Dialect.NEUTRAL and is_object_list(read_plain_text(file)):
-        return Dialect.JSON_LIST.suffix
-    return target.suffix
+    text, format_ = read_plain_text(file), format_with(target)
+    return format_.list_suffix if format_of(text, str(file)).lists_objects(text) else format_.suffix
 
 
 def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left_out: int) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TextIO, cast
 import click
 
 from foon_asp.errors import UserError
-from foon_asp.escapes import encodable, escaped_lines, forget_line_ends
+from foon_asp.escapes import encodable, escaped_lines
 from foon_asp.results.table import Part, rendered
 
 if TYPE_CHECKING:
@@ -96,7 +96,6 @@ class SafeStream:
 @contextlib.contextmanager
 def safe_streams() -> Iterator[None]:
     """Send everything that is printed through :class:`SafeStream`."""
-    forget_line_ends()
     out, err = sys.stdout, sys.stderr
     sys.stdout = cast(TextIO, SafeStream(out))
     sys.stderr = cast(TextIO, SafeStream(err, remarks=True))
@@ -164,7 +163,7 @@ def write_parts(parts: Iterable[Part]) -> None:
 def say(text: str) -> None:
     """Write a remark to standard error, folded between words where that is a terminal."""
     width = shutil.get_terminal_size().columns if sys.stderr.isatty() else None
-    click.echo(rendered([text], width), err=True, nl=False)
+    click.echo(rendered(text.split("\n"), width), err=True, nl=False)
 
 
 def with_plain_signs(text: str) -> str:

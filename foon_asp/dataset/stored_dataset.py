@@ -43,10 +43,9 @@ from foon_asp.text.data_folder import (
     unit_price_warning,
 )
 from foon_asp.text.diagnostics import Diagnostic, in_brief, summarize
-from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.rate_table import read_rates
 from foon_asp.text.repeated_node import repeated_note
+from foon_asp.text.tables import RATES, read_utensils
 from foon_asp.text.unit_price_list import read_unit_prices
 
 if TYPE_CHECKING:  # plain answers do not need it
@@ -75,8 +74,8 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
     goals = read_object_list(files.goals, warnings) if files.goals else store.goals
     rates = store.rates
     if files.rates:
-        rates = read_rates(files.rates)
-    utensils = read_labels(files.utensils) if files.utensils else store.utensils
+        rates = RATES.read(files.rates)
+    utensils = read_utensils(files.utensils) if files.utensils else store.utensils
     prices = _own_prices(store)
     if files.unit_prices:
         read = read_unit_prices(files.unit_prices)

@@ -16,12 +16,12 @@ from foon_asp.linting.sheet import Sheet
 from foon_asp.network import Contents, ObjectNode, counted
 from foon_asp.text.data_folder import kitchen_file
 from foon_asp.text.diagnostics import InputError, Rename, Severity
-from foon_asp.text.formatter import format_text
+from foon_asp.text.formats import format_of
 from foon_asp.text.json_value import Json
-from foon_asp.text.line import Line, StateLine
+from foon_asp.text.line import Line, NameKind, StateLine, line_names
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import split_lines
-from foon_asp.text.renaming import NameKind, Renaming, is_name, line_names
+from foon_asp.text.renaming import Renaming, is_name
 
 _OFFERED = 100  # names: what is typed next leaves fewer
 _SHOWN = 8  # units in what is shown of a node
@@ -269,7 +269,7 @@ def _rename(checked: CheckedText, parameters: object) -> Json:
 
 
 def _renamed(checked: CheckedText, rename: Rename) -> list[Json]:
-    renaming = Renaming(rename, checked.names.files.reader)
+    renaming = Renaming(rename)
     renaming.learn_ids(_ids(checked.names, NameKind(rename.kind), rename.new))
     return checked.text.edits([renaming.line(line) for line in checked.text.lines])
 
@@ -277,7 +277,7 @@ def _renamed(checked: CheckedText, rename: Rename) -> list[Json]:
 def formatted(text: EditedText) -> list[Json]:
     """Bring the text into canonical form."""
     try:
-        return text.edits(split_lines(format_text(text.text, "", lenient=True)))
+        return text.edits(split_lines(format_of(text.text).normalised(text.text, "", lenient=True)))
     except InputError:
         return []
 

@@ -10,13 +10,14 @@ from typing import NamedTuple
 from foon_asp.linting.sheet import Entry, Sheet
 from foon_asp.network import Network, NetworkBuilder, NodePattern, ObjectNode, Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
-from foon_asp.text.dialect import is_object_list
+from foon_asp.text.format import Format
+from foon_asp.text.formats import format_of
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_object import read_objects
 from foon_asp.text.line import Line
-from foon_asp.text.plain_file import is_json, split_lines
+from foon_asp.text.plain_file import split_lines
 from foon_asp.text.reader import FoonReader
-from foon_asp.text.renaming import TABLES
+from foon_asp.text.side_table import TABLES
 from foon_asp.text.writer import write_line
 
 _LINE_BREAK = re.compile(r"[\r\n]")
@@ -75,12 +76,13 @@ class LintedFiles:
     def _read(self, file: Path) -> None:
         text = self.reader.text(file, self._contents.get(file))
         lines = split_lines(text)
-        if is_json(text):
-            self._read_json(text, file, lines)
+        format_ = format_of(text, str(file))
+        if not format_.has_comments:
+            self._read_json(text, file, format_, lines)
             return
         sheet = Sheet(str(file), lines, self.reader)
         self.sheets.append(sheet)
-        if is_object_list(text):
+        if format_.lists_objects(text):
             sheet.entries = [
                 Entry(NodePattern.of(block.node), block.source.line - 1)
                 for block in self.reader.object_blocks(text, str(file))
@@ -92,7 +94,7 @@ class LintedFiles:
             for motion, inputs, outputs, sources in self.reader.units(text, str(file)):
                 self._add(motion, (inputs, outputs), sources[0].line - 1)
 
-    def _read_json(self, text: str, file: Path, source_lines: list[str]) -> None:
+    def _read_json(self, text: str, file: Path, format_: Format, source_lines: list[str]) -> None:
         lines: list[str] = []
         places: list[Source] = []
         sheet = Sheet(str(file), lines, self.reader, places, source_lines=source_lines)
@@ -103,7 +105,7 @@ class LintedFiles:
             lines.extend(written)
             places.extend([place] * len(written))
 
-        if not is_object_list(text):
+        if not format_.lists_objects(text):
             for unit in self.reader.listed_units(text, str(file)):
                 self._add(unit.motion.motion, unit.sides, len(lines))
                 inputs, outputs = (

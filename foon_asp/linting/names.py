@@ -7,8 +7,7 @@ from typing import NamedTuple
 from foon_asp.linting.linted_files import LintedFiles
 from foon_asp.linting.sheet import Sheet
 from foon_asp.network import ObjectNode
-from foon_asp.text.line import Line, ObjectLine
-from foon_asp.text.renaming import NameKind, line_names
+from foon_asp.text.line import Line, NameKind, ObjectLine, line_names
 
 _ALIKE = 3  # labels that are named where another may be meant
 _WORDS = 4  # of their ends are compared

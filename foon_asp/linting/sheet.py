@@ -72,7 +72,6 @@ class Sheet:
         counts, first = Counter(self.lines), dict[str, int]()
         for index, line in enumerate(self.lines):
             first.setdefault(line, index)
-        self.reader.parse_new(counts)
         return [
             WrittenLine(parsed, first[line], often)
             for line, often in counts.items()

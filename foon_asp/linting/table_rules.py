@@ -1,7 +1,7 @@
 """The tables beside a network: rates, utensils, durations, tools, prices."""
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 from foon_asp.linting.context import Context
@@ -11,19 +11,9 @@ from foon_asp.linting.sheet import Sheet
 from foon_asp.network import counted
 from foon_asp.network.spelling import near_labels
 from foon_asp.text.diagnostics import Diagnostic, InputError
-from foon_asp.text.duration_list import read_durations
-from foon_asp.text.rate_table import read_rates
-from foon_asp.text.renaming import TABLES
-from foon_asp.text.tool_list import read_tools
-from foon_asp.text.unit_price_list import read_unit_prices
+from foon_asp.text.side_table import TABLES
 
 _RATES = "motion.txt"
-_READERS: dict[str, Callable[[Path], object]] = {
-    "durations.txt": read_durations,
-    _RATES: read_rates,
-    "tools.txt": read_tools,
-    "unit_prices.txt": read_unit_prices,
-}
 _MANY = 10  # rows: if most of them are of no use, they are told together
 
 
@@ -35,14 +25,14 @@ def table(context: Context) -> Iterator[Diagnostic]:
 
 
 def _faults(sheet: Sheet) -> Iterator[Diagnostic]:
-    read = _READERS.get(Path(sheet.file).name)
-    if read is None:
+    table = TABLES[Path(sheet.file).name]
+    if not table.expected:  # names alone
         return
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "table.txt"
         copy.write_text("\n".join(sheet.lines), encoding="utf-8")
         try:
-            read(copy)
+            table.rows(copy)
         except InputError as error:
             for fault in error.diagnostics:
                 yield fault._replace(source=fault.source._replace(file=sheet.file))
@@ -56,7 +46,7 @@ def unknown_row(context: Context) -> Iterator[Diagnostic]:
     not reported.
     """
     for sheet in context.files.tables if len(context.network) else ():
-        kind = TABLES[Path(sheet.file).name]
+        kind = TABLES[Path(sheet.file).name].names
         there = context.names.counts[kind].keys()
         known = context.vocabulary.names[kind] if kind is Kind.OBJECT else set()
         rows = _rows(sheet)

@@ -11,7 +11,7 @@ from foon_asp.linting.names import Kind, Names
 from foon_asp.linting.near_names import by_what_is_left, near_word
 from foon_asp.network import Contents, Relation, counted
 from foon_asp.text.line import LineError, StateLine
-from foon_asp.text.table_rows import read_rows
+from foon_asp.text.table import read_rows
 
 _UTENSILS = "utensils.txt"
 UTENSIL, HABIT = "utensil", "habit"

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from foon_asp.network import Contents, FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem, given_outputs, needed_inputs
-from foon_asp.text.duration_list import Duration
+from foon_asp.text.tables import Duration
 
 ToolName = str | ObjectNode
 """What tools are counted by: a label, or one that the kitchen has with something in it."""

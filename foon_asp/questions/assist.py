@@ -25,7 +25,7 @@ from foon_asp.results.table import Part, Table
 from foon_asp.results.values import Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
 from foon_asp.text.json_value import schema_name
-from foon_asp.text.rate_table import read_rates
+from foon_asp.text.tables import RATES
 
 
 class AssistedTree(Value, frozen=True):
@@ -257,7 +257,7 @@ def _rates(problem: Problem, person: File | Mapping[str, Number] | None) -> dict
         return None
     place = ""
     if isinstance(person, str | PathLike):
-        rates, place = read_rates(Path(person)), f"{person}: warning: "
+        rates, place = RATES.read(Path(person)), f"{person}: warning: "
     else:
         rates = {motion: success_rate(rate, f"the rate of {motion!r}") for motion, rate in person.items()}
     for motion in rates:

@@ -15,7 +15,7 @@ from foon_asp.problem import Problem
 from foon_asp.proof.verify import digests
 from foon_asp.results.plain import exact_measures, plain
 from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint
-from foon_asp.text.exact_price import decimal_text
+from foon_asp.text.exact_number import decimal_text
 from foon_asp.text.json_value import Json, json_text
 from foon_asp.text.unit_price_list import write_unit_prices
 from foon_asp.text.writer import write_units

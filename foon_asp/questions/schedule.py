@@ -11,6 +11,7 @@ from msgspec import field
 from foon_asp.asp import Status
 from foon_asp.dataset.paths import File
 from foon_asp.errors import BugError, UserError
+from foon_asp.escapes import escaped
 from foon_asp.network import FunctionalUnit, counted
 from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
@@ -37,11 +38,16 @@ from foon_asp.results.timed_step import TimedStep, Tool
 from foon_asp.results.values import Value
 from foon_asp.results.values_of import head_of, lack_of
 from foon_asp.text.clip_times import median_clips
-from foon_asp.text.duration_list import Duration, read_default, read_durations, template_text
-from foon_asp.text.item_list import stated_name
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.line import LineError
-from foon_asp.text.tool_list import read_tools
+from foon_asp.text.tables import (
+    DURATIONS,
+    TOOLS,
+    Duration,
+    read_default_duration,
+    stated_name,
+    template_text,
+)
 from foon_asp.whole_file import utf_8, write_whole
 
 Durations = str | PathLike[str] | Mapping[str, Number | Duration]
@@ -391,7 +397,7 @@ def _durations(
             "--default-duration 60 counts each as 60 seconds",
             "--durations-template FILE writes these lines into a file",
         ]
-        lines = "".join(f"\n  {motion}\tSECONDS" for motion in missing)
+        lines = "".join(f"\n  {escaped(motion)}\tSECONDS" for motion in missing)
         raise UserError(
             f"no duration is known of {counted(len(missing), 'motion')} of the plan: say how long they take, "
             f"{place}, a tab before the seconds{lines}\n" + "\n".join(ways)
@@ -404,7 +410,7 @@ def _known_durations(
 ) -> dict[str, Duration]:
     """Return the durations that are known: stated, of clips, or the default; a warning tells the last two."""
     if isinstance(given, str | PathLike):
-        known = dict(read_durations(Path(given)))
+        known = dict(DURATIONS.read(Path(given)))
     else:
         known = {motion: _duration(each, motion) for motion, each in (given or {}).items()}
     motions = dict.fromkeys(unit.motion for unit in tree.units)
@@ -414,17 +420,22 @@ def _known_durations(
         clips = median_clips((file for file in files if file.is_file()), caller().lenient)
         timed = [motion for motion in motions if motion in clips and motion not in known]
         if timed:
-            shown = ", ".join(f"{motion} {time_text(Fraction(clips[motion]))}" for motion in timed)
+            shown = ", ".join(f"{escaped(motion)} {time_text(Fraction(clips[motion]))}" for motion in timed)
             caller().reporter.warning(
                 f"warning: these durations are medians of clips, and not of what happens in them: {shown}"
             )
         known |= {motion: Duration(clips[motion]) for motion in timed}
     if default is not None:
-        each = Duration(read_default(default)) if isinstance(default, str) else _duration(default, "default")
+        each = (
+            Duration(read_default_duration(default))
+            if isinstance(default, str)
+            else _duration(default, "default")
+        )
         others = [motion for motion in motions if motion not in known]
         if others:
             time = time_text(Fraction(each.seconds))
-            caller().reporter.warning(f"warning: these motions count as {time} each: {', '.join(others)}")
+            motions_named = ", ".join(map(escaped, others))
+            caller().reporter.warning(f"warning: these motions count as {time} each: {motions_named}")
         known |= dict.fromkeys(others, each)
     return known
 
@@ -441,7 +452,7 @@ def _tools(given: Tools | None) -> dict[ToolName, int | None]:
     if given is None:
         return {}
     if isinstance(given, str | PathLike):
-        return read_tools(Path(given))
+        return TOOLS.read(Path(given))
     found: dict[ToolName, int | None] = {}
     for name, count in given.items():
         if count is not None and (isinstance(count, bool) or not isinstance(count, int) or count < 1):

@@ -31,7 +31,7 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[Part]:
         kind = finding.file, finding.code
         told[kind] += 1
         if told[kind] <= _MAX_IN_FULL:
-            yield str(finding)
+            yield from str(finding).split("\n")
         if told[kind] == _MAX_IN_FULL and (others := kinds[kind][_MAX_IN_FULL:]):
             numbers = list(dict.fromkeys(str(each.line) for each in others))
             lines = ", ".join(numbers[:_MAX_LINES]) + (", ..." if len(numbers) > _MAX_LINES else "")
@@ -137,7 +137,7 @@ def explained(rule: Rule, example: Example) -> Iterator[Part]:
         yield from ("", paragraph.replace("\n", " "))
     for name, text in example_texts(example):
         yield from ("", f"{name}:", *(f"    {line}" for line in text.splitlines()))
-    yield from ("", *map(str, example.findings))
+    yield from ("", *(line for finding in example.findings for line in str(finding).split("\n")))
 
 
 def example_texts(example: Example) -> Iterator[tuple[str, str]]:

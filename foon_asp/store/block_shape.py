@@ -6,7 +6,6 @@ from fractions import Fraction
 from itertools import chain
 from typing import Any
 
-from foon_asp.escapes import note_line_end
 from foon_asp.store.block import SIZES, Table
 
 Shape = Callable[[Any], bool]
@@ -19,15 +18,6 @@ def check_block(table: Table, number: int, value: object) -> None:
     shape = _ABOUT[number] if table is Table.ABOUT and number < len(_ABOUT) else _SHAPES.get(table)
     if shape is None or not shape(value):
         raise ValueError(f"block {number} of {table} has unexpected content")
-
-
-def note_line_ends(value: object) -> None:
-    """Note the names in a block that have line ends in them."""
-    if isinstance(value, str):
-        note_line_end(value)
-    elif isinstance(value, list | dict):
-        for each in value:
-            note_line_ends(each)
 
 
 def _text(value: Any) -> bool:

@@ -17,12 +17,11 @@ from foon_asp.store.store_file import is_database_of_ours
 from foon_asp.text.assumed_goals import LAST, MARKED, as_entry
 from foon_asp.text.data_folder import STARTING, DataFiles, kitchen_item_warning, unit_price_warning
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store
-from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.repeated_node import repeated_note
+from foon_asp.text.tables import RATES, read_utensils
 from foon_asp.text.unit_price_list import read_unit_prices
 
 
@@ -55,8 +54,8 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     given = files.kitchen if files.kitchen != STARTING else None
     kitchen = read_object_list(given, warnings) if given else None
     goals = read_object_list(files.goals, warnings) if files.goals else []
-    rates = read_rates(files.rates) if files.rates else None
-    utensils = read_labels(files.utensils) if files.utensils else None
+    rates = RATES.read(files.rates) if files.rates else None
+    utensils = read_utensils(files.utensils) if files.utensils else None
     prices = read_unit_prices(files.unit_prices) if files.unit_prices else None
     earlier = len(warnings)
     last_units: dict[int, Source] = {}

@@ -9,7 +9,7 @@ from typing import Any, NoReturn, TypeVar
 
 from foon_asp.errors import UserError
 from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, table_statement, unseal, unsealed
-from foon_asp.store.block_shape import check_block, note_line_ends
+from foon_asp.store.block_shape import check_block
 from foon_asp.text.plain_file import STORE_MAGIC, read_beginning
 
 _HEADER = 100  # bytes; https://www.sqlite.org/fileformat2.html says what is where
@@ -157,6 +157,4 @@ def _opened(table: Table, number: int, block: object) -> object:
     """Give what is in a block; raises :class:`ValueError` where it is not what its table holds."""
     value = unseal(table, number, block)
     check_block(table, number, value)
-    if isinstance(block, bytes) and b"\\n" in block:
-        note_line_ends(value)
     return value

@@ -1,6 +1,5 @@
 """Object nodes read from our own JSON."""
 
-from foon_asp.escapes import note_line_end
 from foon_asp.network import ObjectNode
 from foon_asp.text.json_value import Json
 
@@ -19,8 +18,4 @@ def read_node_json(value: Json) -> ObjectNode:
     )
     if str(node) != value["node"]:
         raise ValueError(f"the parts of {str(value['node'])[:80]!r} are those of {str(node)[:80]!r}")
-    for name in (node.label, *node.states, *node.ingredients):
-        note_line_end(name)
-    for relation in node.relations:
-        note_line_end(relation.object)
     return node

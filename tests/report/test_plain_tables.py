@@ -118,7 +118,7 @@ def test_lists_are_folded_to_the_terminal() -> None:
     foon = foon_asp.load()
     for result in (foon_asp.solve(foon.problem("ice", "tea")), foon_asp.search(foon.problem("ice"), "bfs")):
         text = result.text()
-        lines = rendered([text], 40).splitlines()
+        lines = rendered(text.split("\n"), 40).splitlines()
         assert len(lines) > len(text.splitlines())
         assert [line for line in lines if len(line) > 40 and " " in line.strip()] == []  # a path may be long
         assert " ".join("\n".join(lines).split()) == " ".join(text.split())

@@ -31,7 +31,7 @@ from foon_asp.store import builder, numbering
 from foon_asp.store.block import VERSION, Table, seal, unseal
 from foon_asp.store.import_files import import_files
 from foon_asp.store.store import Store
-from foon_asp.text import reader
+from foon_asp.text import foon_text
 from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import find_goal
@@ -233,8 +233,7 @@ def test_an_import_that_remembers_little(tmp_path: Path, monkeypatch: pytest.Mon
     stores = [tmp_path / "one.foon", tmp_path / "other.foon"]
     import_files(find_data(KITCHEN), stores[0])
     monkeypatch.setattr(builder, "_REMEMBERED", 3)
-    monkeypatch.setattr(reader, "_REMEMBERED", 3)
-    monkeypatch.setattr(reader, "_PIECE", 50)
+    monkeypatch.setattr(foon_text, "_PIECE", 50)
     monkeypatch.setattr(numbering, "_LEAST", 1)
     import_files(find_data(KITCHEN), stores[1])
     assert_holds(stores[1], read_data(find_data(KITCHEN)))
