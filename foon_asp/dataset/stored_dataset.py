@@ -367,23 +367,20 @@ class StoredDataset(Dataset):
                 lambda cone: pose(cone, containers, None),
                 lambda: self.problem(goals, containers) if cone.open else pose(cone, containers, None),
                 lambda units: stocked._asked(self._store.part(units, goals), goals, containers, None),
-                lambda objective: self._elsewhere(containers, objective, cone.units),
+                lambda objective: self._elsewhere(containers, objective),
                 lambda: self.subject(False, goals),
             ),
             lambda goals: self.nearby(goals, containers, None, first),
         )
 
-    def _elsewhere(self, containers: str, objective: Objective, near: Iterable[int]) -> "Elsewhere | None":
-        """Look at all units, unless all would have to be read to know what is at hand.
-
-        Those ``near`` the goals were read.
-        """
+    def _elsewhere(self, containers: str, objective: Objective) -> "Elsewhere | None":
+        """Look at all units, unless all would have to be read to know what is at hand."""
         from foon_asp.store.elsewhere import Elsewhere  # noqa: PLC0415 (few answers need numpy)
 
         store = self._store
         if self._starting:
             return None
-        outline = store.outline_with(near)
+        outline = store.outline
         own = self._at_hand == store.in_kitchen
         kitchen = outline.kitchen() if own else outline.nodes(self.kitchen)
         implied = container_rule(containers) is ContainerRule.IMPLIED

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from foon_asp.network.counted import counted
 from foon_asp.network.functional_unit import FunctionalUnit
-from foon_asp.network.node_pattern import NodePattern
+from foon_asp.network.node_pattern import LookupKey, NodePattern, lookup_keys
 from foon_asp.network.object_node import ObjectNode
 from foon_asp.network.source import Source
 from foon_asp.network.spelling import near_labels
@@ -309,24 +309,15 @@ class Network:
         Parameters:
             pattern: The entry.
         """
-        place = pattern.container
-        if place is None and pattern.relations:
-            place = min(pattern.relations).object
-        found = self._by_attributes.get((pattern.label, pattern.states, pattern.ingredients, place), ())
+        found = self._by_lookup_key.get(pattern.lookup_key, ())
         return tuple(o for o in found if pattern.matches(self.objects[o]))
 
     @cached_property
-    def _by_attributes(self) -> dict[tuple[str, frozenset[str], tuple[str, ...], str | None], list[int]]:
-        """Node ids by label, states, ingredients and each related object, or ``None`` where there is none.
-
-        A label without states may stand in thousands of places, so the place is part of the key.
-        """
-        ids: dict[tuple[str, frozenset[str], tuple[str, ...], str | None], list[int]] = {}
+    def _by_lookup_key(self) -> dict[LookupKey, list[int]]:
+        ids: dict[LookupKey, list[int]] = {}
         for object_id, node in enumerate(self.objects):
-            label, states, relations, contents = node
-            ingredients = node.ingredients if contents else ()
-            for place in {relation.object for relation in relations} if relations else (None,):
-                ids.setdefault((label, states, ingredients, place), []).append(object_id)
+            for key in lookup_keys(node):
+                ids.setdefault(key, []).append(object_id)
         return ids
 
 

@@ -19,24 +19,25 @@ class RecipeKitchen(NamedTuple):
 
 
 def recipe_kitchen(
-    inputs: Iterable[Sequence[int]], outputs: Iterable[Sequence[int]], goals: Collection[int] = ()
+    units: Iterable[tuple[Sequence[int], Sequence[int]]], goals: Collection[int] = ()
 ) -> RecipeKitchen:
     """Return the starting kitchen of one file; items last.
 
-    ``inputs`` and ``outputs`` are those of its units in the order of the file, as ids of object nodes. Nodes
+    ``units`` are the inputs and outputs of each in the order of the file, as ids of object nodes. Nodes
     that no unit makes out of others are available. Then units execute as far as they go; where they
     stop, the earliest unit in the file's order is granted what it lacks, but none of the ``goals``, and so
     on. A goal is granted only where goals are all that is lacking, which takes several goals that need each
     other. Linear in the size of the file.
     """
     places: dict[int, int] = {}
-    sides: list[array[int]] = []
-    for side in (inputs, outputs):
-        flat, counts = array("I"), array("I")
-        for listed in side:
+    inputs, input_counts, outputs, output_counts = sides = [array("I") for _ in range(4)]
+    for of_unit in units:
+        for flat, counts, listed in (
+            (inputs, input_counts, of_unit[0]),
+            (outputs, output_counts, of_unit[1]),
+        ):
             flat.extend([places.setdefault(o, len(places)) for o in listed])
             counts.append(len(listed))
-        sides += (flat, counts)
     withheld = {places[goal] for goal in goals if goal in places}
     ids = array("Q", places)
     found = _kitchen_of(_Units(len(ids), *sides), withheld)
@@ -198,9 +199,7 @@ class StartingKitchen:
 
     def _kitchen(self, file: str, goals: Collection[int]) -> RecipeKitchen:
         units, network = self._files[file], self._network
-        return recipe_kitchen(
-            (network.inputs[unit] for unit in units), (network.outputs[unit] for unit in units), goals
-        )
+        return recipe_kitchen(((network.inputs[unit], network.outputs[unit]) for unit in units), goals)
 
 
 def _place(network: Network, unit: int, file: str) -> tuple[int, int]:
