@@ -199,7 +199,7 @@ def build(
         at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
         data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(goals_from=LAST if goals is None else "")
-        dataset = Dataset(data, 0.0, has_kitchen=kitchen is not None).measured(read_measures(measures))
+        dataset = Dataset.of(data).remarked((), (), (), kitchen is not None).measured(read_measures(measures))
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
             listed = (as_entry(node, Source("the goals", number)) for number, node in enumerate(nodes, 1))
@@ -303,7 +303,7 @@ class Foon:
         data = Data(
             problem.network, problem.kitchen, (), (), rates, problem.utensils, (), 0, problem.unit_prices
         )
-        return cls(Dataset(data, 0.0).measured(problem.measures), "a problem")
+        return cls(Dataset.of(data).measured(problem.measures), "a problem")
 
     def close(self) -> None:
         """Close the store, for all that vary these data too; data that were read whole stay.

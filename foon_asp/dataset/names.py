@@ -114,13 +114,10 @@ def changed_rates(
 
 
 def changed_prices(
-    known: UnitPrices | None, changed: UnitPricesNamed | None, motions: Collection[str], names: Units
-) -> UnitPrices | None:
+    known: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: Units
+) -> UnitPrices:
     """Give prices of units with some of them changed; ``names`` has the units, and ``motions`` are theirs."""
-    if changed is None:
-        return known
-    by_motion = dict(known.motions) if known else {}
-    by_unit = dict(known.units) if known else {}
+    by_motion, by_unit = dict(known.motions), dict(known.units)
     for named, given in changed.items():
         price = unit_price(given, f"the price of {str(named)!r}")
         if isinstance(named, FunctionalUnit):

@@ -1,12 +1,14 @@
 """The starting kitchen: what is assumed to be available where no kitchen is given."""
 
+from abc import ABC, abstractmethod
 from array import array
-from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
-from functools import lru_cache
+from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
+from functools import cached_property, lru_cache
 from itertools import accumulate
-from typing import NamedTuple, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 from foon_asp.network.network import Network
+from foon_asp.network.source import Source
 
 File = TypeVar("File", bound=Hashable)
 
@@ -119,87 +121,111 @@ def _consumers(units: _Units) -> tuple[Sequence[int], Sequence[int]]:
     return consumers, starts
 
 
-def goal_changes(
-    goals: Collection[int],
-    granting: Callable[[int], Iterable[File]],
-    making: Callable[[int], Iterable[File]],
-    kitchen_of: Callable[[File, Collection[int]], Collection[int]],
-) -> tuple[frozenset[int], frozenset[int]]:
-    """Return what a starting kitchen has more, and what it lacks, because these are the goals.
-
-    A goal is never assumed where a unit makes it. ``goals`` are those in the kitchen that a unit makes.
-    ``granting`` names the files that a node is granted though one of their units makes it, ``making`` the
-    files of which a unit makes it, and ``kitchen_of`` the kitchen of a file that withholds some goals.
-    """
-    kitchens = {file: kitchen_of(file, goals) for goal in goals for file in granting(goal)}
-    added = {o for kitchen in kitchens.values() for o in kitchen}
-    lacking = set()
-    for goal in goals:
-        for file in making(goal):
-            if file not in kitchens:
-                kitchens[file] = kitchen_of(file, goals)
-            if not any(
-                other in kitchens[file] for other in goals
-            ):  # this file alone makes it from the others
-                lacking.add(goal)
-                break
-    return frozenset(added - lacking), frozenset(lacking)
-
-
-class StartingKitchen:
+class StartingKitchen(ABC, Generic[File]):
     """What is assumed to be available in a network: the union over its files of what makes their units run.
 
-    So merging files loses no goal, and makes no optimum worse. Units without a source are of one file.
-    ``nodes`` are the ids of the object nodes, and ``made_too`` those of them that a unit makes out of others.
+    So merging files loses no goal, and makes no optimum worse. Ids are those of the whole network.
     """
+
+    @property
+    @abstractmethod
+    def nodes(self) -> Collection[int]:
+        """The object nodes that are available, whatever the goals are."""
+
+    @abstractmethod
+    def makers(self, o: int) -> Sequence[int]:
+        """Return the units that make a node out of others."""
+
+    @abstractmethod
+    def granting(self, o: int) -> Iterable[File]:
+        """Return the files that a node is granted though one of their units makes it."""
+
+    @abstractmethod
+    def files_of(self, units: Iterable[int]) -> Iterable[File]:
+        """Return the files that units are from."""
+
+    @abstractmethod
+    def units_of(self, file: File) -> Iterable[tuple[Sequence[int], Sequence[int]]]:
+        """Return the inputs and outputs of the units of a file, in its order."""
+
+    def changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
+        """Return what the kitchen has more, and what it lacks, because these are the goals.
+
+        A goal is never assumed where a unit makes it.
+        """
+        goals = [goal for goal in goals if goal in self.nodes and self.makers(goal)]
+        kitchens = {file: self._all_of(file, goals) for goal in goals for file in self.granting(goal)}
+        added = {o for kitchen in kitchens.values() for o in kitchen}
+        lacking = set()
+        for goal in goals:
+            for file in self.files_of(self.makers(goal)):
+                if file not in kitchens:
+                    kitchens[file] = self._all_of(file, goals)
+                if kitchens[file].isdisjoint(goals):  # this file alone makes it from the others
+                    lacking.add(goal)
+                    break
+        return frozenset(added - lacking), frozenset(lacking)
+
+    def _all_of(self, file: File, goals: Collection[int]) -> set[int]:
+        raw, granted = recipe_kitchen(self.units_of(file), goals)
+        return {*raw, *granted}
+
+
+class NetworkStartingKitchen(StartingKitchen[str]):
+    """The starting kitchen of a network in memory. Units without a source are of one file."""
 
     def __init__(self, network: Network) -> None:
         self._network = network
         self._files: dict[str, list[int]] = {}
         for unit, sources in enumerate(network.sources):
-            for file in dict.fromkeys(source.file for source in sources) or ("",):
+            for file in _files(sources):
                 self._files.setdefault(file, []).append(unit)
         self._granting: dict[int, list[str]] = {}
         nodes: set[int] = set()
         for file, units in self._files.items():
             units.sort(key=lambda unit, file=file: _place(network, unit, file))  # type: ignore[misc]
-            raw, granted = self._kitchen(file, ())
+            raw, granted = recipe_kitchen(self.units_of(file))
             nodes.update(raw, granted)
             for o in granted:
                 self._granting.setdefault(o, []).append(file)
-        self.nodes = frozenset(nodes)
-        self.made_too = frozenset(filter(self.is_made, nodes))
+        self._nodes = frozenset(nodes)
+
+    @property
+    def nodes(self) -> frozenset[int]:
+        """The object nodes that are available, whatever the goals are."""
+        return self._nodes
+
+    @cached_property
+    def made_too(self) -> frozenset[int]:
+        """Those of them that a unit makes out of others."""
+        return frozenset(filter(self.makers, self.nodes))
 
     @property
     def file_count(self) -> int:
         """How many files the units are from."""
         return len(self._files)
 
-    def changes(self, goals: Collection[int]) -> tuple[frozenset[int], frozenset[int]]:
-        """Return what the kitchen has more, and what it lacks, because these are the goals."""
-        assumed = [goal for goal in goals if goal in self.made_too]
-        if not assumed:
-            return frozenset(), frozenset()
-        return goal_changes(assumed, lambda o: self._granting.get(o, ()), self._making, self._all_of)
+    def makers(self, o: int) -> list[int]:
+        """Return the units that make a node out of others."""
+        inputs = self._network.inputs
+        return [unit for unit in self._network.producers[o] if o not in inputs[unit]]
 
-    def is_made(self, o: int) -> bool:
-        """Return whether a unit makes a node out of others."""
-        return any(True for _ in self._makers(o))
+    def granting(self, o: int) -> Sequence[str]:
+        """Return the files that a node is granted though one of their units makes it."""
+        return self._granting.get(o, ())
 
-    def _makers(self, o: int) -> Iterator[int]:
-        return (unit for unit in self._network.producers[o] if o not in self._network.inputs[unit])
+    def files_of(self, units: Iterable[int]) -> Iterator[str]:
+        """Yield the files that units are from."""
+        return (file for unit in units for file in _files(self._network.sources[unit]))
 
-    def _making(self, o: int) -> Iterator[str]:
-        for unit in self._makers(o):
-            yield from dict.fromkeys(source.file for source in self._network.sources[unit]) or ("",)
+    def units_of(self, file: str) -> Iterator[tuple[Sequence[int], Sequence[int]]]:
+        """Yield the inputs and outputs of the units of a file, in its order."""
+        network = self._network
+        return ((network.inputs[unit], network.outputs[unit]) for unit in self._files[file])
 
-    def _all_of(self, file: str, goals: Collection[int]) -> set[int]:
-        raw, granted = self._kitchen(file, goals)
-        return {*raw, *granted}
 
-    def _kitchen(self, file: str, goals: Collection[int]) -> RecipeKitchen:
-        units, network = self._files[file], self._network
-        return recipe_kitchen(((network.inputs[unit], network.outputs[unit]) for unit in units), goals)
+def _files(sources: Iterable[Source]) -> Iterable[str]:
+    return dict.fromkeys(source.file for source in sources) or ("",)
 
 
 def _place(network: Network, unit: int, file: str) -> tuple[int, int]:
@@ -211,9 +237,9 @@ def _place(network: Network, unit: int, file: str) -> tuple[int, int]:
 
 
 @lru_cache(maxsize=4)  # question after question is about the same network
-def starting_kitchen(network: Network) -> StartingKitchen:
+def starting_kitchen(network: Network) -> NetworkStartingKitchen:
     """Return the starting kitchen of a network."""
-    return StartingKitchen(network)
+    return NetworkStartingKitchen(network)
 
 
 def starting_nodes(network: Network, goals: Collection[int] = ()) -> frozenset[int]:

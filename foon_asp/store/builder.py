@@ -25,7 +25,7 @@ from foon_asp.store.columns import (
 )
 from foon_asp.store.digests import content_digests
 from foon_asp.store.label_search import write_trigrams
-from foon_asp.store.schema import OUTLINE, create_indexes, create_tables
+from foon_asp.store.schema import OUTLINE, UNITS_OF_FILE, create_indexes, create_tables
 from foon_asp.text.assumed_goals import as_entry, wanted_outputs
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode
@@ -245,12 +245,8 @@ class StoreBuilder:
 
     def _write_starting(self) -> None:
         """Write the starting kitchen: the union over the files of what makes their units run."""
-        statement = (
-            "SELECT unit.id, inputs, outputs FROM source JOIN origin ON origin.id = origin "
-            'JOIN unit ON unit.id = unit WHERE file = ? ORDER BY line, "column", unit'
-        )
         for file in self._files.values():
-            rows = self._database.execute(statement, (file,))
+            rows = self._database.execute(UNITS_OF_FILE, (file,))
             units = {unit: (ids_of(inputs), ids_of(outputs)) for unit, inputs, outputs in rows}
             found = recipe_kitchen(units.values())
             self._database.executemany(

@@ -1,7 +1,8 @@
 """The units of a network that goals can need, read backwards from these as far as asked for."""
 
+import copy
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from itertools import chain
 from typing import Protocol
 
@@ -36,14 +37,20 @@ class Cone:
         network: Producers,
         containers: ContainerRule,
         utensils: frozenset[str],
-        at_hand: Callable[[int], bool],
+        at_hand: Container[int],
     ) -> None:
         self.goals = tuple(goals)
         self.units: set[int] = set()
-        self.open = {goal for goal in self.goals if not at_hand(goal)}
+        self.open = {goal for goal in self.goals if goal not in at_hand}
         self._closed: set[int] = set()
         self._network, self._at_hand = network, at_hand
         self._rule = containers, utensils
+
+    def copied(self) -> "Cone":
+        """Return another cone that has read as much."""
+        other = copy.copy(self)
+        other.units, other.open, other._closed = set(self.units), set(self.open), set(self._closed)
+        return other
 
     @uncollected()
     def grow(self, objects: Iterable[int], most: int | None = None) -> None:
@@ -59,16 +66,18 @@ class Cone:
             producers = self._network.producers_of(nearest)
             new = [unit for unit in dict.fromkeys(chain.from_iterable(producers)) if unit not in self.units]
             needs = dict(zip(new, self._network.needs(new, *self._rule), strict=True))
-            for o, units in zip(nearest, producers, strict=True):
+            for made, units in zip(nearest, producers, strict=True):
                 if enough is not None and len(self.units) >= enough:
                     break
-                self.open.remove(o)
-                self._closed.add(o)
+                self.open.remove(made)
+                self._closed.add(made)
                 for unit in units:
                     if unit in self.units:
                         continue
                     self.units.add(unit)
                     for needed in needs[unit]:
-                        if needed not in self._closed and (needed in self.open or not self._at_hand(needed)):
+                        if needed not in self._closed and (
+                            needed in self.open or needed not in self._at_hand
+                        ):
                             self.open.add(needed)
                             waiting.append(needed)

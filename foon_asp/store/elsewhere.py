@@ -16,10 +16,10 @@ _SCALE = 2**40  # of logarithms of success rates, which are counted in whole num
 class Elsewhere:
     """What it takes to execute units, wherever they are in a network, besides what is there already.
 
-    ``kitchen`` says of each node whether it is at hand, ``skipped`` whether units may do without it, and
-    ``motions`` are their names by number. Costs are counted by ``units``, or by ``success`` in logarithms,
-    rounded so that no unit costs less than is said here. What a unit costs is its own and that of what leads
-    to it along one way: the dearest of its inputs, each made by what makes it cheapest.
+    ``kitchen`` says of each node whether it is at hand, ``skipped`` whether units may do without it. Costs
+    are counted by ``units``, or by ``success`` in logarithms, rounded so that no unit costs less than is
+    said here. What a unit costs is its own and that of what leads to it along one way: the dearest of its
+    inputs, each made by what makes it cheapest.
     """
 
     def __init__(
@@ -27,14 +27,16 @@ class Elsewhere:
         outline: Outline,
         kitchen: Mask,
         skipped: Mask,
-        motions: Sequence[str],
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> None:
         self._outline, self._kitchen, self._at_hand = outline, kitchen, kitchen | skipped
+        motions = outline.motion_names
         each, self._step = [1] * len(motions), 1  # what to go on by
         if objective is Objective.SUCCESS and rates is not None:
-            each = [min(least_cost(rates.get(motion, Fraction(1))), FAR - 1) for motion in motions]
+            each = [
+                min(least_cost(rates.get(motion, Fraction(1))), FAR - 1) for motion in outline.motion_names
+            ]
             self._step = _SCALE // 8
         self._costs: NDArray[np.int64] = np.array(each, dtype=np.int64)
 

@@ -35,7 +35,7 @@ class Outline:
         motions: Sequence[str],
         nodes_where: Callable[..., Collection[int]],
     ) -> None:
-        self._nodes_where, self._nodes, self._names = nodes_where, nodes, motions
+        self._nodes_where, self._nodes, self.motion_names = nodes_where, nodes, motions
         columns = {name: np.frombuffer(content, dtype="<u4") for name, content in outline}
         self.motions = _below(columns["motions"], len(motions))
         self.inputs, self.outputs = (
@@ -55,10 +55,6 @@ class Outline:
     def _makers(self) -> "_Lists":
         """The units that have each node as an output."""
         return self.outputs.turned(self._nodes)
-
-    def kitchen(self) -> Mask:
-        """Say of each node whether it is in the kitchen that was imported."""
-        return self.nodes(self._nodes_where("kitchen"))
 
     def nodes(self, ids: Collection[int]) -> Mask:
         """Say of each node whether it is among some."""
@@ -92,7 +88,9 @@ class Outline:
         found = np.ones(len(self.motions), dtype=np.bool_)
         for having, word in traits:
             if having is Having.MOTION:
-                found &= np.isin(self.motions, [n for n, name in enumerate(self._names) if name == word])
+                found &= np.isin(
+                    self.motions, [n for n, name in enumerate(self.motion_names) if name == word]
+                )
             else:
                 side = self.outputs if having is Having.OUTPUT else self.inputs
                 nodes = self.named(word)

@@ -45,6 +45,12 @@ TRIGRAMS = "CREATE VIRTUAL TABLE label_trigram USING fts5(name, content='', deta
 OUTLINE = ("motions", "input_counts", "inputs", "output_counts", "outputs")
 """The rows of the table ``outline``: by unit, but for inputs and outputs, which follow unit by unit."""
 
+UNITS_OF_FILE = (
+    "SELECT unit.id, inputs, outputs FROM source JOIN origin ON origin.id = origin "
+    'JOIN unit ON unit.id = unit WHERE file = ? ORDER BY line, "column", unit'
+)
+"""Selects the units of a file, by number, in its order; one that stands there several times comes again."""
+
 _SHADOWS = {f"label_trigram_{part}" for part in ("data", "idx", "docsize", "config")}  # FTS5's own tables
 
 

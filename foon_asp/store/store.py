@@ -1,6 +1,6 @@
 """A store, opened to ask questions: names, and the part of the network that a question is about."""
 
-from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Self
 from foon_asp.garbage import uncollected
 from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
 from foon_asp.network.network import UnitKey
-from foon_asp.network.starting import goal_changes, recipe_kitchen
 from foon_asp.problem import ContainerRule, Unpriced, needed_inputs
 from foon_asp.store.columns import (
     decoded,
@@ -272,47 +271,6 @@ class Store:
             o for (o,) in self._database.execute(f"SELECT id FROM node WHERE {condition}", values)
         )
 
-    # The starting kitchen.
-
-    def starting_kitchen(self) -> frozenset[int]:
-        """Read the whole starting kitchen."""
-        return self.nodes_where("starting")
-
-    @reporting_damage
-    def starting_changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
-        """Return what the starting kitchen has more, and what it lacks, because these are the goals."""
-        makers = {o: self._making(o) for o in goals if o < self.objects and self.is_starting(o)}
-        assumed = [o for o, units in makers.items() if units]
-        return goal_changes(assumed, self._granting, lambda o: self._files_of(makers[o]), self._kitchen_of)
-
-    def made_too(self, objects: Iterable[int]) -> list[int]:
-        """Return those of some nodes that a unit makes out of others."""
-        return [o for o in objects if self._making(o)]
-
-    def _making(self, object_id: int) -> list[int]:
-        """Return the units that make a node out of others."""
-        return [unit for unit in self.producers(object_id) if object_id not in self._unit(unit)[1]]
-
-    def _granting(self, object_id: int) -> list[int]:
-        return [
-            file
-            for (file,) in self._database.execute("SELECT file FROM granted WHERE node = ?", (object_id,))
-        ]
-
-    def _files_of(self, units: Iterable[int]) -> list[int]:
-        rows = self.file.rows("SELECT file FROM source JOIN origin ON id = origin WHERE unit IN ids", units)
-        return [file for (file,) in rows]
-
-    def _kitchen_of(self, file: int, goals: Collection[int]) -> set[int]:
-        rows = self._database.execute(
-            "SELECT unit.id, inputs, outputs FROM source JOIN origin ON origin.id = origin "
-            'JOIN unit ON unit.id = unit WHERE file = ? ORDER BY line, "column", unit',
-            (file,),
-        )
-        units = {unit: (ids_of(inputs), ids_of(outputs)) for unit, inputs, outputs in rows}
-        raw, granted = recipe_kitchen(units.values(), goals)
-        return {*raw, *granted}
-
     # Units.
 
     @cached_property
@@ -421,32 +379,26 @@ class Store:
             found.append([o for o, node in zip(side, nodes, strict=True) if node in needed])
         return found
 
-    @uncollected()
     def cone(
         self,
         goals: Iterable[int],
         containers: ContainerRule,
         utensils: frozenset[str],
-        in_kitchen: Callable[[int], bool] | None = None,
+        at_hand: Container[int],
         most: int | None = None,
     ) -> Cone:
-        """Find the units that goals can need: backwards through all producers, stopping at the kitchen.
+        """Find the units that goals can need: backwards through all producers, stopping at what is at hand.
 
-        ``utensils`` are what the container rule looks at, ``in_kitchen`` says of a node whether it is at
-        hand (in the store's kitchen if ``None``). Whatever tree for these goals is best in the whole
+        ``utensils`` are what the container rule looks at. Whatever tree for these goals is best in the whole
         network, without a unit to spare, is one of them. Producers are units with a node among their
         outputs, whether or not the rule has them make it: there may be more than need be. With ``most``,
         about as many are found at first.
         """
-        cone = Cone(goals, self, containers, utensils, in_kitchen or self.in_kitchen)
+        cone = Cone(goals, self, containers, utensils, at_hand)
         cone.grow(sorted(cone.open), most)
         return cone
 
     # Networks.
-
-    def part_of(self, cone: Cone) -> Network:
-        """Read what was found of a cone."""
-        return self.part(cone.units, cone.goals)
 
     @reporting_damage
     @uncollected()

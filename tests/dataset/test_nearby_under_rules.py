@@ -15,7 +15,7 @@ from foon_asp.asp.outcome import Outcome
 from foon_asp.dataset import nearby_under_rules
 from foon_asp.dataset.nearby import NearbyProblem
 from foon_asp.dataset.nearby_under_rules import solve_nearby_under
-from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
+from foon_asp.dataset.reading_store import read_stored
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
 from foon_asp.questions.answer import Answer, answered_under
@@ -63,12 +63,11 @@ def near_stew(
     )
     import_files(files, folder / "stew.foon")
     dataset = read_stored(DataFiles((folder / "stew.foon",)), 3)
-    assert isinstance(dataset, StoredDataset)
     return dataset.nearby(dataset.goals(["stew"]), "strict", first=first)
 
 
 def read_little(problem: Problem) -> bool:
-    return isinstance(problem, NearbyProblem) and "_all" not in vars(problem)
+    return isinstance(problem, NearbyProblem) and "read" not in vars(problem)
 
 
 def test_a_unit_more_near_the_goals_is_proved_with_the_rest_unread(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ import pytest
 import foon_asp
 from foon_asp.asp import Settings, solve
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.dataset.stored_dataset import read_stored
+from foon_asp.dataset.reading_store import read_stored
 from foon_asp.errors import UserError
 from foon_asp.network import Network, starting_nodes
 from foon_asp.problem import ContainerRule, Objective, Problem
@@ -30,7 +30,9 @@ from foon_asp.store import builder, schema
 from foon_asp.store.digests import FILE_DIGEST, append_digest
 from foon_asp.store.import_files import import_files
 from foon_asp.store.schema import VERSION
+from foon_asp.store.starting_kitchen import StoredStartingKitchen
 from foon_asp.store.store import Store
+from foon_asp.store.stored_ids import StoredIds
 from foon_asp.text import reader
 from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
 from foon_asp.text.diagnostics import InputError
@@ -162,8 +164,10 @@ def assert_holds(store: Path, data: Data) -> None:
 def cone_problem(store: Path, problem: Problem, own_kitchen: bool) -> Problem:
     """Ask the same of the store: with the kitchen that is in it, or with one given by id."""
     opened = Store(store)
-    at_hand = None if own_kitchen else problem.kitchen.__contains__
-    part = opened.part_of(opened.cone(problem.goals, problem.containers, problem.utensils, at_hand))
+    at_hand = StoredIds(opened, "kitchen") if own_kitchen else problem.kitchen
+    part = opened.part(
+        opened.cone(problem.goals, problem.containers, problem.utensils, at_hand).units, problem.goals
+    )
     numbers = part.object_numbers
     kitchen = frozenset(place for place, o in enumerate(numbers) if o in problem.kitchen)
     goals = tuple(numbers.index(goal) for goal in problem.goals)
@@ -336,7 +340,16 @@ def test_a_question_reads_what_it_is_about(tmp_path: Path, opened: list[sqlite3.
         with contextlib.closing(Store(store)) as asked:
             taken = steps_from_now(opened[-1])
             goal = find_goal(SOUP_NODE, asked)
-            assert len(asked.part_of(asked.cone([goal], ContainerRule.STRICT, frozenset()))) == 3
+            assert (
+                len(
+                    asked.part(
+                        asked.cone(
+                            [goal], ContainerRule.STRICT, frozenset(), StoredIds(asked, "kitchen")
+                        ).units
+                    )
+                )
+                == 3
+            )
         steps.append(next(taken))
     assert 10 < steps[1] < 1.2 * steps[0]
 
@@ -819,7 +832,9 @@ def everything(store: Path) -> list[object]:
     """Ask all that can be asked of a part, and then of the whole."""
     opened = Store(store)
     goal = find_goal(SOUP_NODE, opened, opened.goals)
-    cone = opened.part_of(opened.cone([goal], ContainerRule.IMPLIED, opened.utensils))
+    cone = opened.part(
+        opened.cone([goal], ContainerRule.IMPLIED, opened.utensils, StoredIds(opened, "kitchen")).units
+    )
     answers: list[object] = [
         goal,
         cone.unit_numbers,
@@ -832,7 +847,7 @@ def everything(store: Path) -> list[object]:
         opened.utensils,
         opened.goals,
         opened.producers(goal),
-        opened.starting_kitchen(),
+        {*StoredIds(opened, "starting")},
     ]
     answers += [opened.unit_id(cone.unit(u)) for u in range(len(cone))]
     network, kitchen = opened.whole()
@@ -843,7 +858,7 @@ def everything(store: Path) -> list[object]:
         opened.near("sop", 3),
         opened.beginning("s", 9),
     ]
-    answers += [opened.labelled("soup"), opened.starting_changes([goal])]
+    answers += [opened.labelled("soup"), StoredStartingKitchen(opened).changes([goal])]
     answers += [opened.left_out, opened.has_kitchen, opened.digests, opened.motion_prices]
     answers += [opened.unit_prices(network, from_file=True), opened.unpriced((), (), from_file=True)]
     return answers
