@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 from foon_asp.dataset.kitchen import Kitchen
 from foon_asp.dataset.names import changed_prices, changed_rates, item_id, listed, node_id, node_ids
 from foon_asp.dataset.prices import NO_PRICES, DataPrices
-from foon_asp.dataset.source import NamesAndUnits, NetworkSource, Source
+from foon_asp.dataset.source import NamesAndUnits, Source
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -105,7 +105,7 @@ class Dataset:
     def of(cls, data: Data, seconds: float = 0.0) -> Self:
         """Return data that were read whole, which took some seconds."""
         return cls(
-            NetworkSource(data.network, seconds, data.left_out, data.repeated),
+            Source(data.network, seconds, data.left_out, data.repeated),
             Kitchen(data.kitchen),
             data.goals,
             data.rates,
@@ -133,7 +133,7 @@ class Dataset:
     @cached_property
     def unrated(self) -> str:
         """The motions without a success rate, in words; empty where all have one, or no rates are known."""
-        if self.rates is None or self.rates.keys() >= set(self.motions):
+        if self.rates is None or self.rates.keys() >= set(self.source.motions):
             return ""
         return unrated_text(self.source.motion_places(), self.rates)
 
@@ -172,7 +172,7 @@ class Dataset:
         stored = self.source.unit_prices(network, from_file)
         if motions is None and not units and stored is None:
             return None
-        return UnitPrices(motions or {}, {**(stored or {}), **units})
+        return UnitPrices(motions or {}, {**stored, **units} if stored else units)
 
     @property
     def whole_network(self) -> Network:
@@ -184,10 +184,10 @@ class Dataset:
         """The prices of units, ``None`` where none are known; all of them are read."""
         return self.data.unit_prices
 
-    @cached_property
+    @property
     def motions(self) -> list[str]:
         """The motions of the network, in alphabetical order."""
-        return sorted({motion for motion, _ in self.source.motion_places()})
+        return sorted(self.source.motions)
 
     def at_hand(self, o: int) -> bool:
         """Whether the kitchen has an object node, by id."""

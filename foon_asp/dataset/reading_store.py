@@ -38,7 +38,7 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
         )
     began = time.perf_counter()
     store = Store(files.network[0])
-    source = StoreSource(store, 0.0)
+    source = StoreSource(store)
     warnings: list[Diagnostic] = []
     prices = source.prices
     if files.unit_prices:

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from foon_asp.dataset.prices import DataPrices
+from foon_asp.dataset.source import Source
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, UnitPrices
 from foon_asp.network import Source as Place
@@ -23,15 +24,29 @@ if TYPE_CHECKING:  # few answers need numpy
     from foon_asp.store.elsewhere import Elsewhere
 
 
-class StoreSource:
+class StoreSource(Source):
     """A store, of which all that vary the same data share what was read."""
 
-    def __init__(self, store: Store, seconds: float) -> None:
-        self.names, self.seconds = store, seconds
+    names: Store
+    kitchen: StoredIds
+    prices: DataPrices
+
+    def __init__(self, store: Store) -> None:
+        self.names, self.seconds = store, 0.0
         self.unit_count, self.left_out, self.repeated = store.units, store.left_out, store.repeated
         self.kitchen = StoredIds(store, "kitchen")
         self.prices = DataPrices(store.motion_prices, {}, from_file=True)
-        self.starting = StoredStartingKitchen(store)
+        self._starting = StoredStartingKitchen(store)
+
+    @property
+    def starting(self) -> StoredStartingKitchen:
+        """The starting kitchen."""
+        return self._starting
+
+    @property
+    def motions(self) -> Collection[str]:
+        """The motions of the network, each once."""
+        return [motion for motion, _ in self.names.motion_sources()]
 
     @property
     def digests(self) -> Mapping[str, str]:

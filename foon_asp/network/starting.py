@@ -1,10 +1,9 @@
 """The starting kitchen: what is assumed to be available where no kitchen is given."""
 
 from abc import ABC, abstractmethod
-from array import array
+from collections import defaultdict
 from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
-from itertools import accumulate
 from typing import Generic, NamedTuple, TypeVar
 
 from foon_asp.network.network import Network
@@ -31,94 +30,40 @@ def recipe_kitchen(
     on. A goal is granted only where goals are all that is lacking, which takes several goals that need each
     other. Linear in the size of the file.
     """
-    places: dict[int, int] = {}
-    inputs, input_counts, outputs, output_counts = sides = [array("I") for _ in range(4)]
-    for of_unit in units:
-        for flat, counts, listed in (
-            (inputs, input_counts, of_unit[0]),
-            (outputs, output_counts, of_unit[1]),
-        ):
-            flat.extend([places.setdefault(o, len(places)) for o in listed])
-            counts.append(len(listed))
-    withheld = {places[goal] for goal in goals if goal in places}
-    ids = array("Q", places)
-    found = _kitchen_of(_Units(len(ids), *sides), withheld)
-    return RecipeKitchen([ids[o] for o in found.raw], [ids[o] for o in found.granted])
-
-
-class _Units(NamedTuple):
-    """The units of one file in its order, as flat lists: the inputs of all units, and how many each has."""
-
-    node_count: int
-    inputs: Sequence[int]
-    input_counts: Sequence[int]
-    outputs: Sequence[int]
-    output_counts: Sequence[int]
-
-
-def _kitchen_of(units: "_Units", goals: Collection[int]) -> RecipeKitchen:
-    """Return the starting kitchen of units whose nodes are numbered from 0."""
-    input_ends, output_ends = (
-        array("q", accumulate(counts, initial=0)) for counts in (units.input_counts, units.output_counts)
-    )
-    unit_count = len(units.input_counts)
-    waiting, starts = _consumers(units)
-    available, made = bytearray(units.node_count), bytearray(units.node_count)
-    missing = array("l", units.input_counts)
-
-    def sides(unit: int) -> tuple[Sequence[int], Sequence[int]]:
-        inputs = units.inputs[input_ends[unit] : input_ends[unit + 1]]
-        return inputs, units.outputs[output_ends[unit] : output_ends[unit + 1]]
-
-    for unit in range(unit_count):
-        inputs, outputs = sides(unit)
-        for o in outputs:
-            if o not in inputs:
-                made[o] = 1
+    sides = list(units)
+    missing = [len(inputs) for inputs, _ in sides]  # by unit: how many inputs are not available yet
+    consumers: defaultdict[int, list[int]] = defaultdict(list)
+    made: set[int] = set()
+    for unit, (inputs, outputs) in enumerate(sides):
+        for o in inputs:
+            consumers[o].append(unit)
+        made.update(o for o in outputs if o not in inputs)
+    available: set[int] = set()
 
     def add(nodes: Iterable[int]) -> None:
         """Make nodes available, and all that units make of them."""
         stack = list(nodes)
         while stack:
             o = stack.pop()
-            if available[o]:
+            if o in available:
                 continue
-            available[o] = 1
-            for place in range(starts[o], starts[o + 1]):
-                unit = waiting[place]
+            available.add(o)
+            for unit in consumers.get(o, ()):
                 missing[unit] -= 1
                 if not missing[unit]:
-                    stack += units.outputs[output_ends[unit] : output_ends[unit + 1]]
+                    stack += sides[unit][1]
 
-    raw = [o for o in range(units.node_count) if not made[o]]
+    raw = [o for o in dict.fromkeys(o for unit in sides for side in unit for o in side) if o not in made]
     add(raw)
-    for unit in range(unit_count):
-        if not units.input_counts[unit]:
-            add(sides(unit)[1])
+    add(o for inputs, outputs in sides if not inputs for o in outputs)
     granted: list[int] = []
     for withheld in (goals, ()) if goals else ((),):
-        for o in units.inputs:
-            if not available[o] and o not in withheld:
-                granted.append(o)
-                add((o,))
+        for inputs, _ in sides:
+            for o in inputs:
+                if o not in available and o not in withheld:
+                    granted.append(o)
+                    add((o,))
     return RecipeKitchen(raw, granted)
-
-
-def _consumers(units: _Units) -> tuple[Sequence[int], Sequence[int]]:
-    """Return the units that have each node as an input, node by node, and where those of each node begin."""
-    starts = array("q", bytes(8 * (units.node_count + 1)))
-    for o in units.inputs:
-        starts[o + 1] += 1
-    for o in range(units.node_count):
-        starts[o + 1] += starts[o]
-    consumers, free = array("l", bytes(array("l").itemsize * len(units.inputs))), starts[:]
-    place = 0
-    for unit, count in enumerate(units.input_counts):
-        for o in units.inputs[place : place + count]:
-            consumers[free[o]] = unit
-            free[o] += 1
-        place += count
-    return consumers, starts
 
 
 class StartingKitchen(ABC, Generic[File]):
