@@ -9,9 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from foon_asp.dataset.kitchen import Kitchen
-from foon_asp.dataset.names import changed_prices, changed_rates, item_id, listed, node_id, node_ids
+from foon_asp.dataset.names import (
+    NamesAndUnits,
+    changed_prices,
+    changed_rates,
+    item_id,
+    listed,
+    node_id,
+    node_ids,
+)
 from foon_asp.dataset.prices import NO_PRICES, DataPrices
-from foon_asp.dataset.source import NamesAndUnits, Source
+from foon_asp.dataset.source import Source
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,

@@ -28,11 +28,11 @@ class Named(Protocol):
         """Whether the kitchen has an object node, by id."""
 
 
-class Units(Protocol):
-    """What units are looked up in."""
+class NamesAndUnits(NodeNames, Protocol):
+    """What nodes and units are looked up in."""
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
-        """Give the id of a unit, or ``None`` where it is none of these."""
+        """Return the id of a unit, or ``None`` where the network does not have it."""
 
 
 def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
@@ -114,7 +114,7 @@ def changed_rates(
 
 
 def changed_prices(
-    known: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: Units
+    known: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NamesAndUnits
 ) -> UnitPrices:
     """Give prices of units with some of them changed; ``names`` has the units, and ``motions`` are theirs."""
     by_motion, by_unit = dict(known.motions), dict(known.units)

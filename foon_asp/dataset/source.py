@@ -3,26 +3,19 @@
 from collections.abc import Collection, Container, Iterable, Mapping, Sequence
 from fractions import Fraction
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
+from foon_asp.dataset.names import NamesAndUnits
 from foon_asp.dataset.prices import DataPrices
 from foon_asp.network import FunctionalUnit, Network, StartingKitchen, UnitPrices, starting_kitchen
 from foon_asp.network import Source as Place
 from foon_asp.problem import ContainerRule, Objective, Unpriced, count_unpriced, first_places
-from foon_asp.text.goal_name import NodeNames
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode
 
 if TYPE_CHECKING:  # text does without SQLite
     from foon_asp.store.cone import Cone
     from foon_asp.store.elsewhere import Elsewhere
-
-
-class NamesAndUnits(NodeNames, Protocol):
-    """What nodes and units are looked up in."""
-
-    def unit_id(self, unit: FunctionalUnit) -> int | None:
-        """Return the id of a unit, or ``None`` where the network does not have it."""
 
 
 class Source:
