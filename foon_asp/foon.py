@@ -108,7 +108,7 @@ def load(
 
 @contextlib.contextmanager
 def _counted(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
-    """Give what is called with how much more is done in a ``with`` block; at its end, all of it is."""
+    """Yield a function to call with how much more is done in a ``with`` block; at its end, all of it is."""
     done = 0
 
     def tell(more: int) -> None:
@@ -243,7 +243,7 @@ def _network(units: Iterable[PlainUnit], tell: Callable[[int], None]) -> Network
 
 
 def _nodes(side: object, number: int) -> Iterator[ObjectNode]:
-    """Give one side of a unit as nodes."""
+    """Return one side of a unit as nodes."""
     several = [side] if isinstance(side, str | ObjectNode) else side
     if not isinstance(several, Iterable):
         raise UserError(f"found {side!r} in unit {number}, expected object nodes; {_UNIT}")
@@ -292,7 +292,7 @@ class Foon:
 
     @classmethod
     def of(cls, problem: Problem) -> Self:
-        """Give the data that a problem was made from, with the kitchen of the problem.
+        """Return the data that a problem was made from, with the kitchen of the problem.
 
         Parameters:
             problem: The problem; for one made by hand, its parts are the data.
@@ -355,7 +355,7 @@ class Foon:
         unit_prices: UnitPricesNamed | None = None,
         measures: Files | None = None,
     ) -> "Foon":
-        """Give the same data with another kitchen, other success rates, other prices or other measures.
+        """Return the same data with another kitchen, other success rates, other prices or other measures.
 
         Parameters:
             kitchen: Everything at hand: names, or a kitchen file as a :class:`~pathlib.Path`.
@@ -424,7 +424,7 @@ class Foon:
 
     @typed
     def nodes(self, label: str) -> tuple[ObjectNode, ...]:
-        """Give the object nodes that have a label.
+        """Return the object nodes that have a label.
 
         Parameters:
             label: The label. For a store, only the first dozen nodes or a few more are given.

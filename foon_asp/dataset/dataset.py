@@ -238,7 +238,7 @@ class Dataset:
         return tuple(dict.fromkeys(self.each_goal(names)))
 
     def assumed_goals(self) -> list[ObjectNode]:
-        """Give the goals that were assumed because no file lists any; empty where one does."""
+        """Return the goals that were assumed because no file lists any; empty where one does."""
         return self.listed_goals() if self.goals_from else []
 
     def listed_goals(self) -> list[ObjectNode]:
@@ -312,7 +312,7 @@ class Dataset:
         return self._varied(rates=changed_rates(self.rates, rates, self.motions), prices=prices)
 
     def vary(self, changes: Changes) -> "Dataset":
-        """Give the same data with another kitchen, other rates or prices."""
+        """Return the same data with another kitchen, other rates or prices."""
         kitchen, adding, without, rates, unit_prices, measures = changes
         dataset = self.valued(rates, unit_prices)
         if measures is not None:
@@ -404,7 +404,7 @@ class Dataset:
         raise UserError("name a goal" + (f"; the goals file has {known}" if known else ""))
 
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
-        """Give the same data with the kitchen that a problem posed of it has."""
+        """Return the same data with the kitchen that a problem posed of it has."""
         from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
 
         more, less = self.kitchen_changes(shown(problem), _whole_goals(problem))
@@ -413,7 +413,7 @@ class Dataset:
     def kitchen_changes(
         self, problem: Problem, goals: Iterable[int]
     ) -> tuple[frozenset[int], frozenset[int]]:
-        """Give what a problem posed of this data has in its kitchen beyond it, and what it lacks.
+        """Return what a problem posed of this data has in its kitchen beyond it, and what it lacks.
 
         Ids are those of the whole network, those of its ``goals`` too.
         """
@@ -512,12 +512,12 @@ def _places(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
 
 
 def left_out(count: int) -> str:
-    """Say that lines were left out."""
+    """Return a warning that lines were left out."""
     return f"warning: {counted(count, 'line')} left out"
 
 
 def _whole_goals(problem: Problem) -> tuple[int, ...]:
-    """Give the goals of a problem by id in the whole network."""
+    """Return the goals of a problem by id in the whole network."""
     from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
 
     problem = shown(problem)
@@ -525,7 +525,7 @@ def _whole_goals(problem: Problem) -> tuple[int, ...]:
 
 
 def _with_own_rates(posed: Problem, problem: Problem) -> Problem:
-    """Give a problem the rates that units of another one over the same network have of their own."""
+    """Return a problem with the rates that units of another one over the same network have of their own."""
     if not problem.own_rates:
         return posed
     numbered = {problem.network.unit_number(unit): rate for unit, rate in problem.own_rates.items()}

@@ -97,7 +97,7 @@ def _label(name: str) -> str | None:
 def changed_rates(
     known: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None, motions: Collection[str]
 ) -> Mapping[str, Fraction] | None:
-    """Give success rates by motion with some of them changed; ``motions`` are those of the network."""
+    """Return success rates by motion with some of them changed; ``motions`` are those of the network."""
     if changed is None:
         return known
     rates = dict(known or {})
@@ -116,7 +116,7 @@ def changed_rates(
 def changed_prices(
     known: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NamesAndUnits
 ) -> UnitPrices:
-    """Give prices of units with some of them changed; ``names`` has the units, and ``motions`` are theirs."""
+    """Return prices of units with some changed; ``names`` has the units, and ``motions`` are theirs."""
     by_motion, by_unit = dict(known.motions), dict(known.units)
     for named, given in changed.items():
         price = unit_price(given, f"the price of {str(named)!r}")
@@ -140,12 +140,12 @@ def changed_prices(
 
 
 def listed(names: Names) -> list[str | ObjectNode]:
-    """Give one name or several as a list."""
+    """Return one name or several as a list."""
     # a node is a tuple, and so could pass for several names
     return [names] if isinstance(names, str | ObjectNode) else list(names)
 
 
 def in_python(error: GoalError) -> str:
-    """Give the candidates of an error as Python has them."""
+    """Return the candidates of an error as Python has them."""
     lines = [error.said, *(f"  {candidate!r}" for candidate in error.candidates)]
     return "\n".join(lines + ([f"  ... and {error.more} more"] if error.more else []))

@@ -98,7 +98,7 @@ class Nearby:
         return self._relaxed
 
     def lacking(self, units: Iterable[int]) -> list[int]:
-        """Give what a tree of the relaxed question takes that may not be there, by id in the whole network.
+        """Return what a tree of the relaxed question takes that may not be there, by id in the whole network.
 
         ``units`` are in an order that executes there. A tree that lacks nothing is one of the question.
         """
@@ -121,7 +121,7 @@ class Nearby:
         return len(self._cone.units)
 
     def open_to(self, units: Iterable[int]) -> list[int]:
-        """Give what units need, or are asked for, that may not be there, by id in the whole network."""
+        """Return what units need, or are asked for, that may not be there, by id in the whole network."""
         problem, open_ = self.problem, self._cone.open
         needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
         return sorted(open_.intersection(map(problem.network.object_number, needed)))
@@ -209,7 +209,7 @@ class NearbyProblem(Problem):
 
 
 def shown(problem: Problem) -> Problem:
-    """Give a problem that has the goals of another, without reading more."""
+    """Return a problem that has the goals of another, without reading more."""
     if isinstance(problem, NearbyProblem):
         return problem.first or problem
     return problem

@@ -101,7 +101,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
 
 @contextlib.contextmanager
 def _written(store: Path) -> Iterator[sqlite3.Connection]:
-    """Give a new database, to be renamed to the store when all went well and to be removed when not.
+    """Yield a new database, to be renamed to the store when all went well and to be removed when not.
 
     One file beside the store, which a later import takes over when this process is killed.
     """

@@ -57,26 +57,26 @@ class Outline:
         return self.outputs.turned(self._nodes)
 
     def nodes(self, ids: Collection[int]) -> Mask:
-        """Say of each node whether it is among some."""
+        """Return for each node whether it is among some."""
         found = np.zeros(self._nodes, dtype=np.bool_)
         found[np.fromiter(ids, np.int64, len(ids))] = True
         return found
 
     def units(self, ids: Collection[int]) -> Mask:
-        """Say of each unit whether it is among some."""
+        """Return for each unit whether it is among some."""
         found = np.zeros(len(self.motions), dtype=np.bool_)
         found[np.fromiter(ids, np.int64, len(ids))] = True
         return found
 
     def labelled(self, labels: Iterable[str]) -> Mask:
-        """Say of each node whether its label is among some."""
+        """Return for each node whether its label is among some."""
         found = np.zeros(self._nodes, dtype=np.bool_)
         for label in labels:
             found |= self.nodes(self._nodes_where(_LABELLED, encoded_label(label)))
         return found
 
     def named(self, word: str) -> Mask:
-        """Say of each node whether a word is its label, or may be an ingredient."""
+        """Return for each node whether a word is its label, or may be an ingredient."""
         found = self._known.get(word)
         if found is None:
             holds = self.nodes(self._nodes_where("instr(contents, ?)", quoted(word)))
@@ -84,7 +84,7 @@ class Outline:
         return found
 
     def with_all(self, traits: Iterable[Trait], kitchen: Mask) -> Mask:
-        """Say of each unit whether it may have all of some traits, under a kitchen."""
+        """Return for each unit whether it may have all of some traits, under a kitchen."""
         found = np.ones(len(self.motions), dtype=np.bool_)
         for having, word in traits:
             if having is Having.MOTION:
@@ -100,7 +100,7 @@ class Outline:
         return found
 
     def made_by(self, units: Mask) -> Mask:
-        """Say of each node whether one of some units has it as an output."""
+        """Return for each node whether one of some units has it as an output."""
         found = np.zeros(self._nodes, dtype=np.bool_)
         places, _ = self.outputs.of(np.flatnonzero(units))
         found[self.outputs.entries[places]] = True
@@ -114,7 +114,7 @@ class Outline:
         free: Mask,
         enough: Callable[[Distances], int] | None = None,
     ) -> Distances:
-        """Give what each unit costs with the dearest way to it, :data:`FAR` above ``most``.
+        """Return what each unit costs with the dearest way to it, :data:`FAR` above ``most``.
 
         ``there`` are nodes that cost nothing, ``free`` units that do, and ``costs`` is by motion. What leads
         to a unit is counted along one input at a time, so all that it takes together costs no less.
@@ -146,7 +146,7 @@ class Outline:
             reached = _added(dearest, own[units])
 
     def leading_to(self, units: Mask, there: Mask, among: Mask) -> Mask:
-        """Give units, and those among others that make what these need, and so on, but for what is there."""
+        """Return units, and those among others that make what they need, and so on, but for what is there."""
         found = units.copy()
         new = np.flatnonzero(found)
         while len(new):
@@ -185,22 +185,22 @@ class _Lists:
         return np.repeat(np.arange(len(self._lengths), dtype=np.uint32), self._lengths)
 
     def any(self, entries: Mask) -> Mask:
-        """Say of each list whether something holds of one of its entries at least."""
+        """Return for each list whether something holds of one of its entries at least."""
         found = np.zeros(len(self._lengths), dtype=np.bool_)
         found[self.owners[np.flatnonzero(entries)]] = True
         return found
 
     def entries_of_all(self, lists: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Give the entries of some lists, ascending, each once."""
+        """Return the entries of some lists, ascending, each once."""
         return np.unique(self.entries[self.of(lists)[0]]).astype(np.int64)
 
     def turned(self, size: int) -> "_Lists":
-        """Give the lists in which each of so many numbers is, as a list for each of these."""
+        """Return the lists in which each of so many numbers is, as a list for each of these."""
         counts = np.bincount(self.entries, minlength=size).astype(np.uint32)
         return _Lists(counts, self.owners[np.argsort(self.entries, kind="stable")])
 
     def of(self, lists: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Give the places of all entries of some lists, and for each of them the list that it is in."""
+        """Return the places of all entries of some lists, and for each of them the list that it is in."""
         lengths = self._lengths[lists].astype(np.int64)
         of = np.repeat(lists, lengths)
         before = np.repeat(np.cumsum(lengths) - lengths, lengths)
