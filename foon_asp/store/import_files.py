@@ -12,7 +12,7 @@ from foon_asp.network import Source
 from foon_asp.problem import unrated_remarks
 from foon_asp.replacing import pass_on, warn_of_replaced
 from foon_asp.store.builder import StoreBuilder
-from foon_asp.store.stated_digests import StatedDigests
+from foon_asp.store.digests import append_digest
 from foon_asp.store.store_file import is_database_of_ours
 from foon_asp.text.assumed_goals import LAST, MARKED, as_entry
 from foon_asp.text.data_folder import STARTING, DataFiles, kitchen_item_warning, unit_price_warning
@@ -60,8 +60,8 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     earlier = len(warnings)
     last_units: dict[int, Source] = {}
     try:
-        with _written(store) as database, contextlib.closing(StatedDigests(store.parent)) as digests:
-            builder = StoreBuilder(database, kitchen, digests)
+        with _written(store) as database:
+            builder = StoreBuilder(database, kitchen)
             for file in files.network:
                 if is_store(file):
                     raise UserError(f"{file}: is a store already; merge the files that it was made from")
@@ -100,7 +100,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
 
 @contextlib.contextmanager
 def _written(store: Path) -> Iterator[sqlite3.Connection]:
-    """Give a new database, to be renamed to the store when all went well and to be removed when not.
+    """Yield a new database, to be renamed to the store when all went well and to be removed when not.
 
     One file beside the store, which a later import takes over when this process is killed.
     """
@@ -114,6 +114,7 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
         # No journal: until the file is renamed, nobody needs it.
         for setting in (
             "page_size = 4096",
+            "cache_size = -100000",  # kilobytes
             "journal_mode = OFF",
             "synchronous = OFF",
             "locking_mode = EXCLUSIVE",
@@ -124,6 +125,7 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
         yield database
         database.execute("COMMIT")
         database.close()
+        append_digest(partial)
         with partial.open("rb+") as file:
             os.fsync(file.fileno())
         old = None
