@@ -13,6 +13,7 @@ from foon_asp.escapes import encodable
 from foon_asp.problem import Problem
 from foon_asp.rules.clause import Signature, compared
 from foon_asp.rules.flat_body import (
+    NUMBER,
     Asking,
     Compare,
     Constant,
@@ -21,6 +22,7 @@ from foon_asp.rules.flat_body import (
     Item,
     Listed,
     Never,
+    Row,
     Table,
     Term,
     Variable,
@@ -30,9 +32,7 @@ from foon_asp.rules.flat_body import (
 
 _Values = list[Any]  # of variables, by number: ids, texts, numbers, symbols
 _Step = Callable[[_Values], bool]
-_Row = tuple[Any, ...]
-
-_OFTEN = 15_000  # times, which take about as long as to look through 100,000 units for labels
+_Answer = tuple[Any, ...]
 
 
 class FlatAnswers:
@@ -52,7 +52,7 @@ class FlatAnswers:
         self._problem = problem
         self._said = _said(problem, prices)
         self._values: _Values = [None] * size
-        self._tables: dict[Signature, frozenset[_Row]] = {}
+        self._tables: dict[Signature, frozenset[_Answer]] = {}
         for signature, table in tables.items():
             self._tables[signature] = frozenset(self._table(table))
 
@@ -61,36 +61,36 @@ class FlatAnswers:
         return any(self._step(way.items, (), _yes)(self._values) for way in ways)
 
     def removed(self, ways: Iterable[Way]) -> Callable[[int], bool]:
-        """Give a test of units: whether some way holds that takes it.
-
-        Once it was asked often, the units that a motion, a label or an ingredient leads to are found at once.
-        """
-        tests = [
-            (way, way.unit, self._step(way.items, (way.unit,), _yes)) for way in ways if way.unit is not None
-        ]
-        values, together = self._values, set[int]()
-        in_memory = isinstance(self._problem.network.inputs, tuple)  # a store is read in pieces
-        times = 0
+        """Return a test of units: whether some way holds that takes the unit."""
+        tests = [(way.unit, self._step(way.items, (way.unit,), _yes)) for way in ways if way.unit is not None]
+        values = self._values
 
         def is_removed(unit: int) -> bool:
-            nonlocal times
-            times += 1
-            if times == _OFTEN and in_memory:
-                for each in list(tests):
-                    way, variable, _ = each
-                    among = self._candidates(way, ())
-                    if not isinstance(among, range):
-                        together.update(self._true_of(variable, among, way.items))
-                        tests.remove(each)
-            if unit in together:
-                return True
-            for _, variable, test in tests:
+            for variable, test in tests:
                 values[variable] = unit
                 if test(values):
                     return True
             return False
 
         return is_removed
+
+    def weight(self, row: Row) -> Callable[[int], int]:
+        """Return a function for how much one execution of a unit adds to the sum of a row."""
+        values, found = self._values, set[_Answer]()
+        steps = [
+            (way.unit, self._step(way.items, (way.unit,), self._noting([term], found)))
+            for way, term in row.terms
+            if way.unit is not None
+        ]
+
+        def weight(unit: int) -> int:
+            found.clear()
+            for variable, step in steps:
+                values[variable] = unit
+                step(values)
+            return sum(number for (number,) in found if isinstance(number, int))
+
+        return weight
 
     def asked(self, asking: Asking) -> Iterator[frozenset[int] | None]:
         """Give the sets of units that a rule asks for one of; ``None`` for those that it has without."""
@@ -131,6 +131,9 @@ class FlatAnswers:
                 known |= bound_by([item])
                 continue
             name, term = item.signature[0], item.terms[-1]
+            if item.signature == NUMBER and isinstance(term, Constant):
+                unit = network.unit_of_number(term.value) if isinstance(term.value, int) else None
+                return [] if unit is None else [unit]
             if name == "motion" and (isinstance(term, Constant) or term in bound):
                 motion = self._read(term)(self._values)
                 return [unit for unit, each in enumerate(network.motions) if each == motion]
@@ -169,8 +172,8 @@ class FlatAnswers:
                 found.add(each)
         return found
 
-    def _table(self, table: Table) -> set[_Row]:
-        found: set[_Row] = set()
+    def _table(self, table: Table) -> set[_Answer]:
+        found: set[_Answer] = set()
         for way, head in table.rows:
             self._step(way.items, (), self._noting(head, found))(self._values)
         return found
@@ -209,7 +212,7 @@ class FlatAnswers:
         return self._fact(item, bound, then)
 
     def _counted(self, item: Counted, then: _Step) -> _Step:
-        seen: set[_Row] = set()
+        seen: set[_Answer] = set()
         steps = [self._step(way.items, item.given, self._noting(terms, seen)) for way, terms in item.rows]
         guards = [(operator, self._read(term)) for operator, term in item.guards]
         fixed = all(isinstance(term, Constant) for _, term in item.guards)
@@ -229,7 +232,7 @@ class FlatAnswers:
 
         return step
 
-    def _noting(self, terms: Sequence[Term], found: set[_Row]) -> _Step:
+    def _noting(self, terms: Sequence[Term], found: set[_Answer]) -> _Step:
         """Make a function that notes the values of terms, and goes on."""
         reads = list(map(self._read, terms))
 
@@ -291,7 +294,7 @@ class FlatAnswers:
         return step
 
     def _match(
-        self, terms: Sequence[Term], bound: Collection[Variable], rows: Collection[_Row], then: _Step
+        self, terms: Sequence[Term], bound: Collection[Variable], rows: Collection[_Answer], then: _Step
     ) -> _Step:
         """Look for a row that terms agree with."""
         reads = list(map(self._read, terms))
@@ -340,6 +343,7 @@ def _said(problem: Problem, prices: Mapping[int, int]) -> _Said:
     written = lru_cache(maxsize=1000)(encodable)  # many units are of one video
     once: dict[str, Callable[[int], Any]] = {
         "motion": network.motions.__getitem__,
+        NUMBER[0]: network.unit_number,
         "label": lambda o: objects[o].label,
         "inputs": lambda unit: len(inputs[unit]),
         "ingredients": lambda unit: sum(len(objects[o].ingredients) for o in inputs[unit]),
