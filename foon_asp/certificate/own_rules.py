@@ -31,9 +31,9 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
     shrinking rules limit is found while a proof is.
     """
     rules = assemble(settings, lambda _: None).understood
-    found = None if rules is None else rules.applied(problem, settings.begun)
-    if rules is None or found is None:
+    if rules is None:
         return None
+    found = rules.applied(problem)
     claims: list[list[list[int]]] = []
     if isinstance(found, Contradiction):
         claims.append([[], []])

@@ -24,17 +24,18 @@ def trusted_text(own: Rule, of_tree: bool) -> str:
     """
     names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in own["files"]]
     names += [*own["library"], *own["constants"]]
-    none = [[], []] in own["claims"]
+    empty = [[], []] in own["claims"]
     removed = [used[0] for used, without in own["claims"] if len(used) == 1 and not without]
-    wanted = sum(not used for used, _ in own["claims"]) - none
-    others = len(own["claims"]) - len(removed) - wanted - none
+    wanted = sum(not used for used, _ in own["claims"]) - empty
+    others = len(own["claims"]) - len(removed) - wanted - empty
     limits = []
     for amounts, most in own["limits"]:
         units = [unit for each in amounts.values() for unit in each]
         if most == 0:
             removed += units
-        else:
+        elif most > 0:
             limits.append(_limited(sorted(units), most, [*amounts] == ["1"]))
+    none = empty or any(most < 0 for _, most in own["limits"])
     said = ["no tree keeps to them"] if none else []
     said += [f"no tree has one of the units {', '.join(map(str, removed))}"] if removed else []
     said += [f"every tree has a unit of {counted(wanted, 'set')}"] if wanted else []
