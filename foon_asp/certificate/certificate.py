@@ -207,8 +207,8 @@ def _write(
     limits = [own[place] for place in of_own]
     rules = needed(covered.rules, members, limits) if covered.partial else covered.rules
     content: dict[str, Any] = {
-        "format": verify.FORMAT,
-        "version": verify.VERSION,
+        "format": verify.TREE.name,
+        "version": verify.TREE.version,
         "claim": claim,
         **head(problem, arrays.objectives, rules, covered, subject),
         "tree": None if units is None else list(map(network.unit_number, units)),

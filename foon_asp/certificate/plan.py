@@ -28,7 +28,7 @@ from foon_asp.problem import (
 )
 from foon_asp.proof import verify
 from foon_asp.proof.constraint import OWN
-from foon_asp.proof.verify_plan import FINE, FORMAT, RULES, VERSION
+from foon_asp.proof.verify_plan import FINE, PLAN, RULES
 
 _LARGEST = 10**9  # a cost of a unit, as a whole number that conditions are written with
 _DIGITS = 60  # of a logarithm
@@ -280,8 +280,8 @@ class _Question:
             return None
         subject = subject_of(problem)
         content: dict[str, Any] = {
-            "format": FORMAT,
-            "version": VERSION,
+            "format": PLAN.name,
+            "version": PLAN.version,
             "claim": claim,
             **head(problem, objectives, self._covered.rules, self._covered, subject),
             "items": {

@@ -268,10 +268,11 @@ class StoredDataset(Dataset):
 
     def _true_digests(self) -> dict[str, str]:
         """Work out the digests that the store states, of all that is in it."""
-        from foon_asp.proof.verify import digests  # noqa: PLC0415 (few answers need it)
+        from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
 
         store, (network, kitchen) = self._store, self._whole()
-        found = digests(network, kitchen, None, (), self._prices_of(network, _own_prices(store)))
+        prices = self._prices_of(network, _own_prices(store))
+        found = Subject(network, kitchen, None, frozenset(), prices).digests()
         for name, stated in store.digests.items():
             if stated != found[name]:
                 raise UserError(
