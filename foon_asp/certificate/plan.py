@@ -13,7 +13,7 @@ from foon_asp.bounds.counts import Balance, Condition, Flows, Landmark, Level, M
 from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus_log
 from foon_asp.bounds.plan_proof import Claim, CountProof, PlanProver, Split
 from foon_asp.certificate.arrays import written
-from foon_asp.certificate.certificate import Certificate, head, sealed, subject_of
+from foon_asp.certificate.certificate import Certificate, Claimed, subject_of, write
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.network import ObjectNode
 from foon_asp.problem import (
@@ -268,34 +268,25 @@ class _Question:
             if isinstance(name, ObjectNode)
         )
         known = ((o, stays) for o, stays in nodes if o is not None)
-        costs: list[object] | None = None
         try:
-            if plan is not None:
-                measured = problem.costs(plan)
-                figures = [measured.measure(objective) for objective in objectives]
-                costs = [figure if isinstance(figure, int) else written(figure) for figure in figures]
             order = None if bound is None else self._claim(objectives[0]).order
             stated = None if bound is None else [weight_text(each, order) for each in bound]
         except verify.LimitError:
             return None
-        subject = subject_of(problem)
-        content: dict[str, Any] = {
-            "format": PLAN.name,
-            "version": PLAN.version,
-            "claim": claim,
-            **head(problem, objectives, self._covered.rules, self._covered, subject),
-            "items": {
+        return write(
+            PLAN,
+            problem,
+            Claimed(claim, tuple(objectives), plan, stated),
+            self._covered,
+            [list(cut) for cut in self._cuts],
+            list(proofs),
+            subject_of(problem),
+            items={
                 "stock": [list(pair) for pair in stock],
                 "stays": [list(pair) for pair in (*sorted(told), *sorted(known))],
             },
-            "tree": None if plan is None else list(plan),
-            "costs": costs,
-            "bound": stated,
-            "unreached": self._unreached(),
-            "cuts": [list(cut) for cut in self._cuts],
-            "proof": list(proofs),
-        }
-        return sealed(content, tuple(objectives), subject)
+            unreached=self._unreached(),
+        )
 
 
 class _Stated:
