@@ -949,6 +949,13 @@ def read_list(value: Any) -> list[Any]:
     return found
 
 
+def read_pair(value: Any, what: str) -> tuple[Any, Any]:
+    """Read a list of two, which is ``what``."""
+    require(isinstance(value, list) and len(value) == 2, f"expected {what}")
+    first, second = value
+    return first, second
+
+
 def read_number(value: Any, allowed: Container[int], what: str) -> int:
     """Read the id or number of ``what``, one of those allowed; JSON's true is no number."""
     require(type(value) is int and value in allowed, f"expected {what}")
@@ -1014,14 +1021,13 @@ def _own(rule: Rule, units: int) -> None:
         sha = hashlib.sha256(file["text"].encode()).hexdigest()
         require(file["sha256"] == sha, "a text of rules does not have its digest")
     for claim in read_list(rule["claims"]):
-        require(isinstance(claim, list) and len(claim) == 2, "expected two sets of units in a claim")
-        for side in claim:
+        for side in read_pair(claim, "two sets of units in a claim"):
             read_numbers(side, units, ascending=side != [])
     for limit in read_list(rule["limits"]):
-        require(isinstance(limit, list) and len(limit) == 2, "expected amounts and their limit")
-        require(type(limit[1]) is int, "a limit is no whole number")
+        amounts, most = read_pair(limit, "amounts and their limit")
+        require(type(most) is int, "a limit is no whole number")
         counted: list[int] = []
-        for amount, some in read_object(limit[0]).items():
+        for amount, some in read_object(amounts).items():
             number = _rational(amount)
             whole = number > 0 and number.denominator == 1
             require(whole, "a limit counts what is no whole number above zero")

@@ -15,6 +15,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
 from functools import cache, cached_property, partial
+from itertools import chain
 from typing import Any, NamedTuple
 
 from foon_asp.proof.constraint import LIBRARY, Rule
@@ -32,6 +33,7 @@ from foon_asp.proof.verify import (
     read_number,
     read_numbers,
     read_object,
+    read_pair,
     refusing_depth,
     require,
     verify,
@@ -99,8 +101,8 @@ class PlanCheck(Check):
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
         items = read_object(certificate["items"], ("stock", "stays"))
-        self.stock = dict(_stock(items["stock"], subject.kitchen))
-        self.told = dict(_told(items["stays"], len(subject.network.objects)))
+        self.stock = _stock(items["stock"], subject.kitchen)
+        self.told = _told(items["stays"], len(subject.network.objects))
         self.endless = frozenset(subject.kitchen) - self.stock.keys()
         self.flow, self.cap, self.whole = cache(self._flow), cache(self._cap), cache(self._whole)
         super().__init__(certificate, rules, subject)
@@ -451,30 +453,28 @@ class _Conditions:
         return self.check.sum([amount, self.check.times(weight, Fraction(factor))])
 
 
-def _stock(value: Any, kitchen: Collection[int]) -> Iterator[tuple[int, int]]:
+def _stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
     """Read how many copies there are of kitchen items, by id."""
-    pairs = [read_list(pair) for pair in read_list(value)]
-    require(
-        all(len(pair) == 2 and all(type(n) is int and 0 <= n < _MOST for n in pair) for pair in pairs),
-        "expected items and their copies in stock",
-    )
-    ids = [pair[0] for pair in pairs]
+    what = "items and their copies in stock"
+    pairs = [read_pair(pair, what) for pair in read_list(value)]
+    for number in chain.from_iterable(pairs):
+        read_number(number, range(_MOST), what)
+    ids = [o for o, _ in pairs]
     require(ids == sorted(set(ids)), "expected items of the stock in order, each of them once")
     require(all(o in kitchen for o in ids), "expected kitchen items in stock")
-    yield from ((o, count) for o, count in pairs)
+    return dict(pairs)
 
 
-def _told(value: Any, nodes: int) -> Iterator[tuple[str | int, bool]]:
+def _told(value: Any, nodes: int) -> dict[str | int, bool]:
     """Read what is said of labels and of nodes: whether they stay."""
-    pairs = [read_list(pair) for pair in read_list(value)]
-    require(
-        all(len(pair) == 2 and type(pair[1]) is bool and type(pair[0]) in (int, str) for pair in pairs),
-        "expected labels and nodes, and whether they stay",
-    )
-    labels = [pair[0] for pair in pairs if type(pair[0]) is str]
-    ids = [pair[0] for pair in pairs if type(pair[0]) is int]
-    require([*labels, *ids] == [pair[0] for pair in pairs], "expected labels, and then nodes")
+    what = "labels and nodes, and whether they stay"
+    pairs = [read_pair(pair, what) for pair in read_list(value)]
+    known = all(type(name) in (int, str) and type(stays) is bool for name, stays in pairs)
+    require(known, f"expected {what}")
+    labels = [name for name, _ in pairs if type(name) is str]
+    ids = [name for name, _ in pairs if type(name) is int]
+    require([*labels, *ids] == [name for name, _ in pairs], "expected labels, and then nodes")
     require(labels == sorted(set(labels)) and ids == sorted(set(ids)), "expected each of them once, in order")
     require(all(0 <= o < nodes for o in ids), "expected ids of nodes that stay or go")
     require(all(label.isprintable() for label in labels), "a label has letters that cannot be printed")
-    yield from ((name, stays) for name, stays in pairs)
+    return dict(pairs)

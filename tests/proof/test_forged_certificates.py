@@ -191,8 +191,7 @@ FORGED: dict[str, Forged] = {
     "read_rules: rules of the user's own stand twice": plain(rules=[own([[[3], []]]), own()]),
     "_own: a file of rules has no printable name": plain(rules=[own(name="mine.lp\nverified")]),
     "_own: a text of rules does not have its digest": plain(rules=[own(sha256="0" * 64)]),
-    "_own: expected two sets of units in a claim": plain(rules=[own([[[3]]])], stays=KIND),
-    "_own: expected amounts and their limit": plain(rules=[own((), [[{"1": [3]}, 1, 1]])], stays=KIND),
+    "read_pair: expected …": plain(rules=[own([[[3]]])], stays=KIND),
     "_own: a limit is no whole number": plain(rules=[own((), [[{"1": [3]}, True]])]),
     "_own: a limit counts what is no whole number above zero": plain(
         **bound("3", cuts=[]),
@@ -333,6 +332,7 @@ FORGED: dict[str, Forged] = {
 
 # What one function refuses, in other places of a certificate.
 PLACES: dict[str, Forged] = {
+    "expected amounts and their limit": plain(rules=[own((), [[{"1": [3]}, 1, 1]])]),
     "weights: expected what has a weight by its number": plain(proof={"weights": [["0", ["1"]]]}),
     "expected the number of a rule": plain(**NO_TREE, rules=[SPOILED], cuts=[], proof={"broken": False}),
     "limits: a weight is not above zero": plain(

@@ -186,12 +186,11 @@ FORGED: dict[str, Forged] = {
         proof=[{"balance": [[FLOUR, "1"], *PROOF["balance"]]}]
     ),
     # --- items
-    "_stock: expected items and their copies in stock": plain(items=items([[SALT, True]])),
     "_stock: expected items of the stock in order, each of them once": plain(
         items=items([[SALT, 0], [SALT, 1]])
     ),
     "_stock: expected kitchen items in stock": plain(items=items([[SALT, 1], [DOUGH, 0]])),
-    "_told: expected labels and nodes, and whether they stay": plain(items=items([[SALT, 1]], [["salt", 0]])),
+    "_told: expected …": plain(items=items([[SALT, 1]], [["salt", 0]])),
     "_told: expected labels, and then nodes": plain(
         items=items([[SALT, 1]], [[SALT, False], ["salt", False]])
     ),
@@ -206,6 +205,7 @@ FORGED: dict[str, Forged] = {
 
 # What is read as in certificates of trees.
 PLACES: dict[str, Forged] = {
+    "expected items and their copies in stock": plain(items=items([[SALT, True]])),
     "expected the format": plain(format="a song"),
     "expected version 1 of the format": plain(version=99),
     "expected the keys": plain(more=1),
