@@ -42,7 +42,7 @@ class Certificate(NamedTuple):
     certified: tuple[Objective, ...]
 
     def text(self) -> str:
-        """Give the certificate as JSON, a cut and a weight on each line."""
+        """Return the certificate as JSON, a cut and a weight on each line."""
         lines = []
         for key, value in self.content.items():
             if key == "cuts" and value:
@@ -169,7 +169,7 @@ def _write(
         return cuts.setdefault(cut.objects, len(cuts))
 
     def limit(row: int) -> int:
-        """Give the number of a limit; those of the user's own are numbered anew, after the rules."""
+        """Return the number of a limit; those of the user's own are numbered anew, after the rules."""
         place = places[row]
         return len(covered.rules) + of_own.setdefault(place, len(of_own)) if place in own else place
 
@@ -291,14 +291,14 @@ def _verified(certificate: Certificate, subject: verify.Subject) -> verify.Verif
 
 
 def subject_of(problem: Problem) -> verify.Subject:
-    """Give what certificates of a problem over a whole network speak about."""
+    """Return what certificates of a problem over a whole network speak about."""
     return verify.Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     )
 
 
 def _measure(problem: Problem, objective: Objective) -> dict[str, Any]:
-    """Give the rules of a measure, and what they say of all units."""
+    """Return the rules of a measure, and what they say of all units."""
     rules = problem.measures[objective].text
     numbers = map(problem.network.unit_number, range(len(problem.network)))
     costs = problem.figures(objective, range(len(problem.network)))

@@ -195,7 +195,7 @@ class _Question:
         return Claim(order, [(f,) for f in figures], (Fraction(objective.row.item),), (cost,), parts, caps)
 
     def _level(self, objective: Objective) -> tuple[Level, int] | None:
-        """Give what plans may cost by an objective in whole numbers, and how many make up 1."""
+        """Return what plans may cost by an objective in whole numbers, and how many make up 1."""
         figures = self._figures(objective)
         if multiplies(objective):
             costs = [_fine(rate, up=False) for rate in figures]
@@ -211,7 +211,7 @@ class _Question:
     # --- writing
 
     def cut(self, objects: Iterable[int]) -> int:
-        """Give the number of a cut, which is noted."""
+        """Return the number of a cut, which is noted."""
         return self._cuts.setdefault(tuple(sorted(set(objects))), len(self._cuts))
 
     def balance(self, o: int) -> int:
@@ -220,16 +220,16 @@ class _Question:
         return o
 
     def unit(self, action: int) -> int:
-        """Give the unit of an action."""
+        """Return the unit of an action."""
         return self._units[action]
 
     def limit(self, number: int) -> tuple[int, int]:
-        """Give the place of the rule of a limit, and its scale."""
+        """Return the place of the rule of a limit, and its scale."""
         place, _, scale = self._limits[number]
         return place, scale
 
     def _unreached(self) -> list[int]:
-        """Give nodes that nothing reaches, by which some units are known to be executed by no plan.
+        """Return nodes that nothing reaches, by which some units are known to be executed by no plan.
 
         Those are units that could cross a cut or add to what is balanced; each asks for one of the nodes.
         """

@@ -69,7 +69,7 @@ def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
 
 
 def waits(replay: Replay) -> Iterator[set[int]]:
-    """Give for each step, in order, the positions of those that have to be done before it.
+    """Yield for each step, in order, the positions of those that have to be done before it.
 
     They made the copies that it takes, or read a copy that it uses up. Of what never runs out there is
     always another copy.

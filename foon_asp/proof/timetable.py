@@ -65,7 +65,7 @@ class Means(NamedTuple):
         return label in self.tools and self.tools[label] is None
 
     def name(self, node: ObjectNode, label: str) -> ToolName:
-        """Give what a tool of the kitchen is counted by, which has a label and is, or has in it, a node.
+        """Return what a tool of the kitchen is counted by, which has a label and is, or has in it, a node.
 
         Those with contents are counted by these.
         """
@@ -77,7 +77,7 @@ class Means(NamedTuple):
         return ObjectNode.of(label, (), (), [Contents("contains", tuple(sorted({*inside})))])
 
     def number_of(self, problem: Problem, name: ToolName) -> int:
-        """Give how many there are: as is said, or as the stock has them, or one."""
+        """Return how many there are: as is said, or as the stock has them, or one."""
         said = self.tools.get(name)
         if said is not None:
             return said
@@ -105,7 +105,7 @@ class Asked(NamedTuple):
 
 
 def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, Asked]:
-    """Give what a unit asks for by label: its utensils, and those that its objects are in, on or at."""
+    """Return what a unit asks for by label: its utensils, and those that its objects are in, on or at."""
     needed, _, made = Executions(problem).of(unit)
     asked: dict[str, Asked] = {}
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
@@ -206,7 +206,7 @@ class _Run:
             self._working.pop(hand, None)
 
     def _wrong_tools(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
-        """Give what is wrong with the tools of a step, as far as one sees it when it starts."""
+        """Yield what is wrong with the tools of a step, as far as one sees it when it starts."""
         problem, means = self._problem, self._means
         asked, needed = tools_asked(problem, means, unit), self._executions.of(unit).preconditions
         given = Counter(tool.label for tool in tools)
@@ -231,5 +231,5 @@ class _Run:
 
 
 def _hands(step: TimedStep) -> list[int | Tool]:
-    """Give who and what is at a step."""
+    """Return who and what is at a step."""
     return [*step.tools] + ([] if step.agent is None else [step.agent])

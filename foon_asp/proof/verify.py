@@ -222,12 +222,12 @@ def read_certificate(text: str) -> Any:
 
 
 def seal(certificate: Mapping[str, Any]) -> str:
-    """Give the digest of a whole certificate but for its seal, which fits no other certificate."""
+    """Return the digest of a whole certificate but for its seal, which fits no other certificate."""
     return _digest({key: value for key, value in certificate.items() if key != "seal"})
 
 
 def trusted(certificate: Mapping[str, Any]) -> Rule | None:
-    """Give what a certificate takes on trust of rules of the user's own, if anything."""
+    """Return what a certificate takes on trust of rules of the user's own, if anything."""
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
 
 
@@ -357,14 +357,14 @@ class Check:
         return Trusted(name, rules, digest, costs)
 
     def _measured(self, name: str, unit: int) -> Fraction:
-        """Give what a unit is said to cost by a measure, which is taken on trust from now on."""
+        """Return what a unit is said to cost by a measure, which is taken on trust from now on."""
         costs = self.measures[name].costs
         require(unit in costs, "the cost of a unit by a measure is not stated")
         self.looked_at[name][unit] = costs[unit]
         return costs[unit]
 
     def _rates(self, given: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
-        """Give the success rate of each motion."""
+        """Return the success rate of each motion."""
         motions = self.network.different_motions
         rates = {motion: given[motion] for motion in motions if given is not None and motion in given}
         values = None if given is None else [*rates.values()]
@@ -377,16 +377,16 @@ class Check:
         return rates
 
     def rate(self, unit: int) -> Fraction:
-        """Give the success rate of a unit."""
+        """Return the success rate of a unit."""
         return self.rates[self.network.motions[unit]]
 
     def _prices(self, given: UnitPrices | None) -> list[Fraction]:
-        """Give the price of each unit."""
+        """Return the price of each unit."""
         prices = None if given is None else self._each_price(given)
         return self._known(prices, len(self.network), "prices")
 
     def _each_price(self, given: UnitPrices | None) -> Sequence[Fraction | None]:
-        """Give the prices of units, their own or those of their motions; below level 3 it is the least."""
+        """Return the prices of units, their own or those of their motions; below level 3 it is the least."""
         network = self.network
         if given is None:
             return [None] * len(network)
@@ -400,7 +400,7 @@ class Check:
         return prices
 
     def _known(self, values: Sequence[Fraction | None] | None, count: int, what: str) -> list[Fraction]:
-        """Give values of all units, by what they are and where all are there."""
+        """Return values of all units, by what they are and where all are there."""
         require(values is not None, f"a claim needs {what}, but none are given")
         found = [value for value in values or () if value is not None]
         require(len(found) == count, f"a unit has none of the {what} that a claim needs")
@@ -473,7 +473,7 @@ class Check:
         return total, self._figures(units, total)
 
     def _figures(self, units: list[int], total: Amount) -> list[int | Fraction]:
-        """Give what a tree of these units costs by each objective, as figures."""
+        """Return what a tree of these units costs by each objective, as figures."""
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":
@@ -499,7 +499,7 @@ class Check:
         require(fault is None, f"the tree {fault}")
 
     def _barred(self, place: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Give the units that a rule bars from trees that use some members and have none of others."""
+        """Return the units that a rule bars from trees that use some members and have none of others."""
         self._spend(len(self.network) + 5 * self.claimed)
         units = frozenset(member for member in used if member < len(self.network))
         return self.ruled.barred[place](units, without)
@@ -631,7 +631,7 @@ class Check:
         return True
 
     def _crossing(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Give the members of a cut that are left; the cut has to stand before a goal or a used unit."""
+        """Return the members of a cut that are left; the cut has to stand before a goal or a used unit."""
         place = read_number(number, range(len(self.cuts)), "the number of a cut")
         self._spend(1 + len(self.goals) + len(used) + len(self.members[place]))
         self.met.add(place)
@@ -645,7 +645,7 @@ class Check:
         return self.members[place] - without
 
     def _members(self, cut: frozenset[int]) -> Iterator[int]:
-        """Give the units that make a node of the cut and need none, and the kitchen items in it."""
+        """Yield the units that make a node of the cut and need none, and the kitchen items in it."""
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         for o in cut:
@@ -660,7 +660,7 @@ class Check:
                         yield unit
 
     def _asked(self, member: int) -> frozenset[int | None]:
-        """Give the nodes that a unit or a step needs, those of the rules with them; an item needs none."""
+        """Return the nodes that a unit or a step needs, those of the rules with them; an item needs none."""
         if member in self.ruled.steps:
             return frozenset(self.ruled.steps[member][0])
         if member >= len(self.network):
@@ -669,15 +669,15 @@ class Check:
         return self.needs(member).union(own) if own else self.needs(member)
 
     def _needs(self, unit: int) -> frozenset[int | None]:
-        """Give the inputs that a unit needs; below level 3 what all need that it stands for."""
+        """Return the inputs that a unit needs; below level 3 what all need that it stands for."""
         return frozenset.intersection(*(needed for needed, _ in self._details(unit)))
 
     def _gives(self, unit: int) -> frozenset[int | None]:
-        """Give the outputs that a unit makes; below level 3 what any makes that it stands for."""
+        """Return the outputs that a unit makes; below level 3 what any makes that it stands for."""
         return frozenset.union(*(made for _, made in self._details(unit)))
 
     def _details(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
-        """Give what each unit needs and makes that a unit stands for, which at level 3 is itself.
+        """Yield what each unit needs and makes that a unit stands for, which at level 3 is itself.
 
         What a unit is let skip it neither needs nor makes.
         """
@@ -689,7 +689,7 @@ class Check:
             yield self._at_level(inputs - skipped), self._at_level(set(whole.outputs[detail]) - skipped)
 
     def _skipped(self, whole: Network, inputs: set[int]) -> set[int]:
-        """Give the inputs of a unit that the rule ``implied`` takes as given.
+        """Return the inputs of a unit that the rule ``implied`` takes as given.
 
         These are utensils with exactly one ingredient that, located in the utensil, is another input.
         """
@@ -706,7 +706,7 @@ class Check:
         }
 
     def _at_level(self, nodes: set[int]) -> frozenset[int | None]:
-        """Give the ids at the network's level of nodes of level 3."""
+        """Return the ids at the network's level of nodes of level 3."""
         network = self.network
         if network.detailed is None:
             return frozenset(nodes)
@@ -714,13 +714,13 @@ class Check:
         return frozenset(map(network.object_id, found))
 
     def _meaning(self, rule: Rule, question: Question) -> Meaning:
-        """Give what a rule says of the network."""
+        """Return what a rule says of the network."""
         self._spend(_STEPS_RULE * (len(self.network) + len(self.network.objects)))
         self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
         return meaning(rule, question)
 
     def _cost(self, member: int) -> Amount:
-        """Give what a unit or an item costs by each objective."""
+        """Return what a unit or an item costs by each objective."""
         cost: Amount = {}
         if member in self.ruled.steps:
             return cost
@@ -731,7 +731,7 @@ class Check:
         return cost
 
     def _cost_by(self, level: int, member: int) -> Fraction | None:
-        """Give what a unit or an item costs by an objective, ``None`` where that counts others.
+        """Return what a unit or an item costs by an objective, ``None`` where that counts others.
 
         By ``success`` it is the exponent of a unit's rate.
         """
@@ -755,7 +755,7 @@ class Check:
         return Fraction(count)
 
     def sign(self, amount: Amount) -> Fraction | int:
-        """Give a number with the sign of an amount; the first objective that is not 0 decides."""
+        """Return a number with the sign of an amount; the first objective that is not 0 decides."""
         for level, objective in enumerate(self.objectives or (_NOTHING,)):
             if objective == "success":
                 sign = self._minus_log_sign({r: e for (_, r), e in amount.items() if r is not None})
@@ -819,7 +819,7 @@ class Check:
         return amount
 
     def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> Fraction | int:
-        """Give a number with the sign of the sum of ``e * -log(rate)``: is the product below or above 1?
+        """Return a number with the sign of the sum of ``e * -log(rate)``: is the product below or above 1?
 
         Bounds of the logarithms decide where they can. Otherwise, with the exponents over one denominator,
         the product of ``rate ** e`` is below 1 exactly when its power by that denominator is, and that one is
@@ -848,7 +848,7 @@ class Check:
         return below - above
 
     def _minus_log(self, rate: Fraction) -> tuple[Fraction, Fraction]:
-        """Give bounds of ``-log(rate)`` from below and above.
+        """Return bounds of ``-log(rate)`` from below and above.
 
         Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
         Those of the denominator and of the numerator of a rate next to 1 share their first digits, and more
@@ -898,7 +898,7 @@ def _bits(value: Fraction) -> int:
 
 
 def negative(amount: Amount) -> Amount:
-    """Give an amount with the opposite sign."""
+    """Return an amount with the opposite sign."""
     return {key: -value for key, value in amount.items()}
 
 

@@ -159,7 +159,7 @@ class PlanCheck(Check):
         return o in self.endless or self.stock.get(o, 0) > 0
 
     def _members(self, cut: frozenset[int]) -> Iterator[int]:
-        """Give the units that add a node of the cut and ask for none, and the kitchen items in it."""
+        """Yield the units that add a node of the cut and ask for none, and the kitchen items in it."""
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         found: list[int] = []
@@ -266,7 +266,7 @@ class PlanCheck(Check):
         self._require_enough(bound, level)
 
     def _cheapest(self, member: int, level: int, part: Part, conditions: "_Conditions") -> Amount | None:
-        """Give the least of what a member costs less what it brings, over the counts that it may have.
+        """Return the least of what a member costs less what it brings, over the counts that it may have.
 
         ``None`` where it may have none. It is linear in the count from 1 on, so only the ends matter.
         """
@@ -289,7 +289,7 @@ class PlanCheck(Check):
         return cheapest
 
     def _most(self, member: int, level: int, part: Part) -> int | None:
-        """Give how often a member can be executed or taken; ``None`` where nothing says so."""
+        """Return how often a member can be executed or taken; ``None`` where nothing says so."""
         known = [part.most[member]] if member in part.most else []
         if member >= len(self.network):
             o = member - len(self.network)
@@ -304,14 +304,14 @@ class PlanCheck(Check):
         return min(known, default=None)
 
     def _allowed(self, unit: int) -> Iterator[int]:
-        """Give how often limits allow a unit to be executed, those that nothing gives back to."""
+        """Yield how often limits allow a unit to be executed, those that nothing gives back to."""
         for limit in self.ruled.limits.values():
             amount = limit.amounts.get(unit, 0)
             if amount > 0 and min(limit.amounts.values()) >= 0:
                 yield max(0, math.floor(limit.most / amount))
 
     def _cap(self, unit: int, level: int, less: bool) -> int | None:
-        """Give how often a plan can execute a unit that costs no more by an objective, or less."""
+        """Return how often a plan can execute a unit that costs no more by an objective, or less."""
         each, most = self.kept(unit, level), self.limit(level)
         if each == 0:
             return None
@@ -319,11 +319,11 @@ class PlanCheck(Check):
         return math.ceil(most / each) - 1 if exact else math.floor(most / each)
 
     def part(self, member: int, level: int) -> Amount:
-        """Give what a member costs by one objective."""
+        """Return what a member costs by one objective."""
         return {key: value for key, value in self._cost(member).items() if key[0] == level}
 
     def kept(self, member: int, level: int) -> Fraction:
-        """Give what a member costs by an objective as one number; by success a little less."""
+        """Return what a member costs by an objective as one number; by success a little less."""
         if self.objectives[level] != "success":
             return self.part(member, level).get((level, None), Fraction(0))
         if member >= len(self.network):
@@ -332,7 +332,7 @@ class PlanCheck(Check):
         return Fraction(math.floor(FINE * self.minus_log(self.rate(member))[0]), FINE)
 
     def limit(self, level: int) -> Fraction:
-        """Give what plans may cost by an objective as one number; by success a little more."""
+        """Return what plans may cost by an objective as one number; by success a little more."""
         assert self.least is not None
         stated = {rate: value for (at, rate), value in self.least.items() if at == level}
         if self.objectives[level] != "success":
@@ -341,7 +341,7 @@ class PlanCheck(Check):
         return Fraction(math.ceil(FINE * sum(map(max, bounds), Fraction(0))), FINE)
 
     def cut(self, number: int) -> frozenset[int]:
-        """Give a cut by its number."""
+        """Return a cut by its number."""
         return self.cuts[read_number(number, range(len(self.cuts)), "the number of a cut")]
 
     def holds_goal(self, nodes: frozenset[int]) -> bool:
@@ -369,7 +369,7 @@ class PlanCheck(Check):
         require(enough, "the weights do not add up to enough")
 
     def _whole(self, level: int) -> int | None:
-        """Give into how many parts 1 is divided by what units cost by an objective; ``None`` if not known."""
+        """Return the common denominator of what units cost by an objective; ``None`` if not known."""
         objective = self.objectives[level]
         if objective == "success" or objective in self.measures:
             return None
