@@ -60,7 +60,7 @@ class OwnLimits:
             ]
 
     def exceeded(self, units: frozenset[int]) -> Limit | None:
-        """Give a limit that units exceed, and know it from now on; ``None`` where they keep to the rules.
+        """Return a limit that units exceed, and know it from now on; ``None`` where they keep to the rules.
 
         Raises ``KeyboardInterrupt`` at a limit of time.
         """

@@ -115,7 +115,7 @@ def _written(constraint: Constraint) -> str:
 
 
 def _file(constraint: Constraint) -> dict[str, str]:
-    """Give the text of rules; of a file that includes others, all that it says."""
+    """Return the text of rules; of a file that includes others, all that it says."""
     if isinstance(constraint, Path):
         alone = len(included_files(constraint)) == 1
         text = constraint.read_text("utf-8") if alone else read_encoding(constraint).text

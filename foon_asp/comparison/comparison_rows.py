@@ -10,7 +10,7 @@ from foon_asp.asp.assembly import rules_digest
 from foon_asp.comparison.comparison import Comparison
 from foon_asp.comparison.rows_file import RowForm
 from foon_asp.problem import Objective, Problem
-from foon_asp.proof.verify import digests
+from foon_asp.proof.verify import Subject
 from foon_asp.results.plain import plain, read_plain
 from foon_asp.searches import Search, SearchSettings
 from foon_asp.text.json_value import Json, json_line
@@ -43,9 +43,8 @@ def comparisons_question(
     problem: Problem, searches: Sequence[Search], settings: SearchSettings, rules: Settings | None = None
 ) -> Json:
     """Describe what is asked, so that results of another question are not taken for this one's."""
-    data: list[object] = [
-        digests(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
-    ]
+    subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
+    data: list[object] = [subject.digests()]
     if problem.items is not None:
         data += [problem.flows, sorted(map(problem.stock_of, problem.kitchen), key=repr)]
     return {

@@ -105,13 +105,13 @@ class StoreSource(Source):
 
     def true_digests(self) -> dict[str, str]:
         """Compute the digests that the store states, of all that is in it; refuse those that are not true."""
-        from foon_asp.proof.verify import digests  # noqa: PLC0415 (few answers need it)
+        from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
 
         store, (network, kitchen) = self.names, self._whole
         single = self.unit_prices(network, self.prices.from_file)
         known = self.prices.motions is not None or single is not None
         prices = UnitPrices(self.prices.motions or {}, single or {}) if known else None
-        found = digests(network, kitchen, None, (), prices)
+        found = Subject(network, kitchen, None, frozenset(), prices).digests()
         for name, stated in store.digests.items():
             if stated != found[name]:
                 raise UserError(

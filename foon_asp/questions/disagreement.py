@@ -12,7 +12,7 @@ from foon_asp.engines import Asked, DisagreementError
 from foon_asp.engines.bare_clingo import OPTIONS
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.proof.verify import digests
+from foon_asp.proof.verify import Subject
 from foon_asp.results.plain import exact_measures, plain
 from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.text.exact_number import decimal_text
@@ -122,4 +122,5 @@ def _data(problem: Problem) -> dict[str, str]:
 
 
 def _digests(problem: Problem) -> dict[str, str]:
-    return digests(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
+    subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
+    return subject.digests()

@@ -18,6 +18,7 @@ from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.asp.outcome import Outcome
 from foon_asp.batch.answer_row import answer_row
 from foon_asp.batch.asked import Asked
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.cli.batch_data import BatchData
 from foon_asp.dataset import Dataset, nearby_optimum
 from foon_asp.dataset.nearby import Nearby, NearbyProblem
@@ -469,8 +470,8 @@ def test_a_certificate_of_a_store_is_one_of_the_text(rule: ContainerRule, part: 
         assert found.status is expected.status, seed
         assert found.certificate is not None, seed
         assert found.proof is Proof.CERTIFICATE
-        whole = problem.network, problem.kitchen, problem.rates, problem.utensils, dataset.unit_prices
-        there = verify.verify(found.certificate.content, *whole)
+        whole = subject_of(problem)._replace(prices=dataset.unit_prices)
+        there = verify.verify(found.certificate.content, whole)
         here = foon_asp.verify(Foon(dataset, "a store"), found.certificate)
         computed = foon_asp.verify(Foon(dataset, "a store"), found.certificate, full=True)
         assert (here.claim, here.tree) == (there.claim, there.tree)

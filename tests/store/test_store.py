@@ -25,7 +25,7 @@ from foon_asp.dataset.reading_store import read_stored
 from foon_asp.errors import UserError
 from foon_asp.network import Network, starting_nodes
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof.verify import digests
+from foon_asp.proof.verify import Subject
 from foon_asp.store import builder, schema
 from foon_asp.store.digests import FILE_DIGEST, append_digest
 from foon_asp.store.import_files import import_files
@@ -151,7 +151,7 @@ def assert_holds(store: Path, data: Data) -> None:
     assert opened.rates == data.rates
     assert opened.utensils == data.utensils
     assert (opened.units, opened.objects) == (len(data.network), len(data.network.objects))
-    stated = digests(network, kitchen, data.rates, data.utensils, data.unit_prices)
+    stated = Subject(network, kitchen, data.rates, data.utensils, data.unit_prices).digests()
     assert opened.digests == {name: stated[name] for name in opened.digests}
     for unit in range(len(network)):
         assert network.unit_id(network.unit(unit)) == unit
