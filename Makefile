@@ -6,7 +6,6 @@
 # make mutants   changes the code on purpose, to see whether a test notices: hours, or with SAMPLE=600 ten minutes;
 #                with SINCE=REVISION only the files that differ from it, with the tests of their rooms
 # make lint   style and types
-# make tables  after a change of the grammar of FOON text: the tables that are read in its place
 # make bench  the benchmarks, in a few minutes, into docs/dev/performance.md; make bench-full the large ones, which
 #             take about an hour and a half (with DATA=DIR also on the network in a folder)
 # Each makes .venv and installs what it needs when run first. With PYTHON=python3.13 VENV=.venv-3.13 it is another
@@ -21,7 +20,7 @@ PAGE := --page docs/dev/performance.md
 # hundreds of processes are started by the tests: each would compile everything anew
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: demo docs man test test-slow test-nightly test-lowest coverage mutants tables lint bench bench-full clean
+.PHONY: demo docs man test test-slow test-nightly test-lowest coverage mutants lint bench bench-full clean
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -56,9 +55,6 @@ mutants: $(VENV)/installed-dev
 
 test-lowest:
 	PYTHON="$(PYTHON)" .ci/lowest $(CORES)
-
-tables: $(VENV)/installed-dev
-	PYTHONHASHSEED=0 $(BIN)/python -m tests.text.grammar_tables
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .

@@ -20,6 +20,7 @@ from typing import Any, NamedTuple, TypeVar
 from foon_asp.asp import solve
 from foon_asp.bounds.relaxation import Covering
 from foon_asp.certificate import certify
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.comparison.many import makeable
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import read_certificate, verify
@@ -63,9 +64,7 @@ def measure(problem: Problem, objective: Objective, limit: float) -> Row:
         return Row(0, 0, 0, seconds, solving, 0.0)
     text = found.text()
     content = read_certificate(text)
-    checking, _ = timed(
-        lambda: verify(content, problem.network, problem.kitchen, problem.rates, problem.utensils)
-    )
+    checking, _ = timed(lambda: verify(content, subject_of(problem)))
     return Row(len(content["cuts"]), leaves(content["proof"]), len(text.encode()), seconds, solving, checking)
 
 

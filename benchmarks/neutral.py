@@ -22,8 +22,8 @@ from contest.egraph import EGraph
 from foon_asp.deadline import Deadline
 from foon_asp.planning.strips_task import StripsTask
 from foon_asp.planning.task_files import read_task
-from foon_asp.text.exact_price import decimal_text
-from foon_asp.text.neutral_units import write_neutral_unit
+from foon_asp.text.exact_number import decimal_text
+from foon_asp.text.neutral_writer import write_neutral_unit
 
 
 def write_task(task: StripsTask, folder: Path) -> None:

@@ -46,6 +46,7 @@ from contest.page import put, table
 from contest.trial import End, Work, attempt
 
 from foon_asp.certificate import certify
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.planning.strips_task import StripsTask
@@ -123,9 +124,7 @@ def certified(found: Relaxed, limit: float) -> dict[str, Any]:
         return {"certified": False}
     text = certificate.text()
     content = proof.read_certificate(text)
-    proof.verify(
-        content, problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
-    )
+    proof.verify(content, subject_of(problem))
     return {"certified": True, "certificate": text}
 
 

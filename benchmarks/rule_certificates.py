@@ -20,12 +20,13 @@ from typing import NamedTuple
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.certificate import certify_outcome
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.comparison.many import makeable
 from foon_asp.deadline import Deadline
 from foon_asp.network import UnitPrices
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof.verify import read_certificate, verify
-from foon_asp.report.certified import bound_text
+from foon_asp.questions.certificate_text import bound_text
 from foon_asp.rules.constraint import given_constraint
 from foon_asp.text.data_folder import find_data, read_data
 
@@ -98,8 +99,7 @@ def measure(problem: Problem, objective: Objective, use: str, limit: float) -> R
     if found is None:
         return Row(outcome.status, False, "nothing found", 0, solving, certifying)
     content = read_certificate(found.text())
-    given = problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
-    assert not verify(content, *given).not_covered
+    assert not verify(content, subject_of(problem)).not_covered
     proved = found.claim == "infeasible" or (
         found.claim == "optimal" and found.certified == levels((objective,))
     )

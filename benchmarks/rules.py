@@ -39,7 +39,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.assembly import assemble
-from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
+from foon_asp.dataset.reading_store import read_stored
 from foon_asp.deadline import Deadline
 from foon_asp.network import Network, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, levels, reach
@@ -121,7 +121,6 @@ class Stores:
 def opened(store: Path, problem: Problem) -> Problem:
     """Ask a store for the same goals."""
     dataset = read_stored(DataFiles((store,)), 3)
-    assert isinstance(dataset, StoredDataset)
     return dataset.nearby(dataset.goals(problem.goal_nodes), problem.containers.value)
 
 

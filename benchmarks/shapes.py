@@ -83,14 +83,15 @@ def twins(size: int) -> tuple[list[Unit], str]:
 
 
 def written(folder: Path, name: str, size: int) -> tuple[Path, str]:
-    """Write a shape as neutral lines; return the file and the goal."""
+    """Write a shape as neutral lines, with prices and beside it rates; return the file and the goal."""
     units, goal = SHAPES[name](size)
     file = folder / f"{name}-{size}.jsonl"
     lines = (
-        json.dumps({"id": str(number), "inputs": inputs, "outputs": outputs})
-        for number, (inputs, outputs) in enumerate(units)
+        json.dumps({"id": f"m{n % 3}", "inputs": inputs, "outputs": outputs, "price": 1 + n % 7})
+        for n, (inputs, outputs) in enumerate(units)
     )
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    (folder / "rates.txt").write_text("m0\t0.9\nm1\t0.99\nm2\t1\n", encoding="utf-8")
     return file, goal
 
 
@@ -98,6 +99,7 @@ def asked(file: Path, goal: str, objective: str, reductions: str, limit: float) 
     """Return the processor's seconds that a question takes, and the status of its answer."""
     words = [sys.executable, "-m", "foon_asp", "solve", str(file), "--goal", goal, "--objective", objective]
     words += ["--time-limit", str(limit), "--format", "json", "--quiet"]
+    words += ["--rates", str(file.with_name("rates.txt"))]
     words += [] if reductions == "all" else ["--reduce", "none"]
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     ran = subprocess.run(words, capture_output=True, text=True, check=False)

@@ -32,9 +32,9 @@ from foon_asp.asp import solve
 from foon_asp.problem import ContainerRule, Problem, parse_objectives
 from foon_asp.text.data_folder import find_data
 from foon_asp.text.goal_name import find_goal
-from foon_asp.text.label_list import read_labels
+from foon_asp.text.tables import read_utensils
 from foon_asp.text.object_list import read_object_list
-from foon_asp.text.rate_table import read_rates
+from foon_asp.text.tables import RATES
 from foon_asp.text.reader import FoonReader
 from foon_asp.cli.verbs import verb_command
 verb_command("solve")
@@ -43,7 +43,7 @@ files = find_data(Path(sys.argv[1]))
 network = FoonReader().read_network(files.network)
 listed = read_object_list(files.goals)
 items = read_object_list(files.kitchen)
-rates, utensils = read_rates(files.rates), read_labels(files.utensils)
+rates, utensils = RATES.read(files.rates), read_utensils(files.utensils)
 mark("read")
 network.producers, network.consumers
 kitchen = frozenset(o for item in items for o in network.find(item.pattern))

@@ -27,6 +27,7 @@ from typing import NamedTuple
 
 from foon_asp.problem import ContainerRule
 from foon_asp.store.store import Store
+from foon_asp.store.stored_ids import StoredIds
 from foon_asp.text.goal_name import find_goal
 
 READ = """
@@ -111,10 +112,11 @@ def add_others(folder: Path, others: Path) -> None:
 def small_cones(store: Path, largest: int) -> dict[str, int]:
     """Give the goals of a store whose cones are not too large, with their units."""
     opened = Store(store)
+    kitchen = StoredIds(opened, "kitchen")
     cones: dict[str, int] = {}
     for entry in opened.goals:
         goal = find_goal(entry.pattern.label, opened, opened.goals)
-        units = len(opened.cone([goal], ContainerRule.STRICT, opened.utensils).units)
+        units = len(opened.cone([goal], ContainerRule.STRICT, opened.utensils, kitchen).units)
         if units <= largest:
             cones[entry.pattern.label] = units
     return cones

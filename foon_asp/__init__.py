@@ -33,7 +33,7 @@ _ROOMS = {
     "proof.simulation": ("Simulation", "Verdict"),
     "proof.verify": ("RefusedError",),
     "results.timed_step": ("TimedStep", "Tool"),
-    "text.duration_list": ("Duration",),
+    "text.tables": ("Duration",),
     "text.line_parser": ("parse_node",),
     "text.reader": ("FoonReader",),
     "text.writer": ("write_units",),

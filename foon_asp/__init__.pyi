@@ -80,9 +80,9 @@ from foon_asp.questions.why_not import Explanation as Explanation
 from foon_asp.questions.why_not import why_not as why_not
 from foon_asp.results.timed_step import TimedStep as TimedStep
 from foon_asp.results.timed_step import Tool as Tool
-from foon_asp.text.duration_list import Duration as Duration
 from foon_asp.text.line_parser import parse_node as parse_node
 from foon_asp.text.reader import FoonReader as FoonReader
+from foon_asp.text.tables import Duration as Duration
 from foon_asp.text.writer import write_units as write_units
 
 __all__: list[str]

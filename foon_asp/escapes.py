@@ -20,25 +20,6 @@ _UNSAFE_BUT_ESCAPE = f"[{_UNSAFE}]|\r(?!\x1b)".replace("\x0b-\x1f", "\x0b\x0c\x0
 _COMMAND = r"(?m)^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))"
 
 
-# Names with line ends in them, which a text of several lines has as they are.
-_names: set[str] = set()
-
-
-def note_line_end(name: str) -> None:
-    """Let a name with a line end in it be known, so that no line of what is shown begins within it.
-
-    Once it stands in a text, nothing tells its line ends from those between lines. There are next to none:
-    FOON text has no such names, JSON and file systems can have them.
-    """
-    if "\n" in name and name.strip():
-        _names.add(name)
-
-
-def forget_line_ends() -> None:
-    """Forget the names that were noted: another command reads others."""
-    _names.clear()
-
-
 def escaped(name: str) -> str:
     """Give a name as it is shown within a line, whose end and tabs are escaped too."""
     return re.sub(_IN_A_LINE, _escape, name)
@@ -46,9 +27,6 @@ def escaped(name: str) -> str:
 
 def escaped_lines(text: str, styled: bool = False) -> str:
     """Give a text of several lines as it is shown; one that is ``styled`` keeps its colours."""
-    if _names and "\n" in text and text[0] not in "{[":  # in JSON no name has a line end as it is
-        for name in sorted(_names, key=len, reverse=True):
-            text = text.replace(name, escaped(name))
     shown = re.sub(_UNSAFE_BUT_ESCAPE, _escape, text) if styled else UNSAFE.sub(_escape, text)
     return re.sub(_COMMAND, _without_command, shown) if "::" in shown or "##" in shown else shown
 

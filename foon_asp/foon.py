@@ -26,11 +26,11 @@ from foon_asp.problem import Changes, Names, Number, Problem, UnitPricesNamed
 from foon_asp.problem.progress import OnProgress, Progress
 from foon_asp.rules.measure import read_measures
 from foon_asp.text.assumed_goals import LAST, as_entry, last_goals
-from foon_asp.text.bytes_read import size_of, telling
 from foon_asp.text.data_folder import STARTING, Data, find_data
 from foon_asp.text.goal_name import GoalError
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_node
+from foon_asp.text.reading import size_of, telling
 from foon_asp.typed import typed
 from foon_asp.warning import warn
 
@@ -108,7 +108,7 @@ def load(
 
 @contextlib.contextmanager
 def _counted(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
-    """Give what is called with how much more is done in a ``with`` block; at its end, all of it is."""
+    """Yield a function to call with how much more is done in a ``with`` block; at its end, all of it is."""
     done = 0
 
     def tell(more: int) -> None:
@@ -199,7 +199,7 @@ def build(
         at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
         data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(goals_from=LAST if goals is None else "")
-        dataset = Dataset(data, 0.0, has_kitchen=kitchen is not None).measured(read_measures(measures))
+        dataset = Dataset.of(data).remarked((), (), (), kitchen is not None).measured(read_measures(measures))
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
             listed = (as_entry(node, Source("the goals", number)) for number, node in enumerate(nodes, 1))
@@ -243,7 +243,7 @@ def _network(units: Iterable[PlainUnit], tell: Callable[[int], None]) -> Network
 
 
 def _nodes(side: object, number: int) -> Iterator[ObjectNode]:
-    """Give one side of a unit as nodes."""
+    """Return one side of a unit as nodes."""
     several = [side] if isinstance(side, str | ObjectNode) else side
     if not isinstance(several, Iterable):
         raise UserError(f"found {side!r} in unit {number}, expected object nodes; {_UNIT}")
@@ -292,7 +292,7 @@ class Foon:
 
     @classmethod
     def of(cls, problem: Problem) -> Self:
-        """Give the data that a problem was made from, with the kitchen of the problem.
+        """Return the data that a problem was made from, with the kitchen of the problem.
 
         Parameters:
             problem: The problem; for one made by hand, its parts are the data.
@@ -303,7 +303,7 @@ class Foon:
         data = Data(
             problem.network, problem.kitchen, (), (), rates, problem.utensils, (), 0, problem.unit_prices
         )
-        return cls(Dataset(data, 0.0).measured(problem.measures), "a problem")
+        return cls(Dataset.of(data).measured(problem.measures), "a problem")
 
     def close(self) -> None:
         """Close the store, for all that vary these data too; data that were read whole stay.
@@ -355,7 +355,7 @@ class Foon:
         unit_prices: UnitPricesNamed | None = None,
         measures: Files | None = None,
     ) -> "Foon":
-        """Give the same data with another kitchen, other success rates, other prices or other measures.
+        """Return the same data with another kitchen, other success rates, other prices or other measures.
 
         Parameters:
             kitchen: Everything at hand: names, or a kitchen file as a :class:`~pathlib.Path`.
@@ -424,7 +424,7 @@ class Foon:
 
     @typed
     def nodes(self, label: str) -> tuple[ObjectNode, ...]:
-        """Give the object nodes that have a label.
+        """Return the object nodes that have a label.
 
         Parameters:
             label: The label. For a store, only the first dozen nodes or a few more are given.

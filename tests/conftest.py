@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture import providers
 
 from foon_asp.cli.main import main
-from foon_asp.document.schema import schema
+from foon_asp.results.schema_file import schema
 from foon_asp.text.json_value import schema_name
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -112,7 +112,7 @@ def assemble(
         if extra and not encodings and relaxed is None:
             from foon_asp.rules import rules as user_rules  # noqa: PLC0415
 
-            understood = user_rules.Rules(extra, constants[1::2], endless)
+            understood = user_rules.Rules(extra, constants[1::2])
     _warn_of_names(problem, settings, extra, constants[1::2], warn)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
     if settings.clingo_options:  # looked at now, since clingo may have nothing to do

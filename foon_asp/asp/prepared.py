@@ -189,9 +189,8 @@ def prepare(
             with deadline.watched("measuring units"):
                 problem.apply_measures(deadline)
         if program.added and settings.reductions and not for_sale:
-            with deadline.watched("cutting the network" if program.ready_made else "grounding"):
+            with deadline.watched("cutting the network"):
                 first = _applied(first, program.added)
-            deadline.doing = "cutting the network"
         if first.contradicted:
             return first
         program, kept = first.program, first.kept or problem
@@ -228,9 +227,7 @@ def _applied(first: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     """Apply the user's rules as far as they say which units there are, or which sets are needed."""
     if rules.rest and not rules.local:
         return first
-    found = rules.applied(first.problem, first.deadline)
-    if found is None:
-        return first
+    found = rules.applied(first.problem)
     first = replace(first, asked=first.program)
     if not isinstance(found, Restriction):
         return replace(first, contradicted=True)

@@ -267,11 +267,11 @@ class _Solver:
         rules = self.program.understood
         if rules is None:
             return True
-        self.limits = rules.limits(self.problem, self.deadline)
-        found = rules.varying({TIMES}).applied(self.problem, self.deadline)
+        self.limits = rules.limits(self.problem)
+        found = rules.varying({TIMES}).applied(self.problem)
         if isinstance(found, Restriction):
             self.removed, self.required = found.removed, found.required
-        return found is None or isinstance(found, Restriction)
+        return isinstance(found, Restriction)
 
     @property
     def _keeps_spare(self) -> bool:

@@ -1,9 +1,10 @@
 """From one question to one row of results, whatever happens on the way."""
 
 import time
-from typing import Literal
+from typing import Any, Literal
 
 import msgspec
+from msgspec.structs import asdict, replace
 
 from foon_asp.asp import Outcome, Settings, solve
 from foon_asp.asp.assembly import asks_of_all
@@ -11,28 +12,28 @@ from foon_asp.batch.asked import Asked, Asker
 from foon_asp.comparison.rows_file import RowForm
 from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
 from foon_asp.deadline import Deadline, LimitError
-from foon_asp.document.json_document import costs_json, figures_json
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
 from foon_asp.proof.used_up_run import used_up_run
-from foon_asp.text.json_value import Json
+from foon_asp.results.plain import costs_by_name, exact_measures, plain, read_plain
+from foon_asp.results.values import Figure
 
-
-class Exact(msgspec.Struct, frozen=True):
-    """An exact number as text, and the nearest float, ``None`` above all of them."""
-
-    exact: str
-    approx: float | None
-
-
-Figures = dict[str, int | Exact | None]
+Figures = dict[str, Figure | None]
 """What is measured, by the name of the objective."""
 
 
 class AnswerRow(Asked, frozen=True, kw_only=True):
-    """A question with its answer; docs/batch.md describes the fields.
+    """An answer: a question, and what came of it.
 
-    The tree was simulated, and ``units`` has its unit ids in an order that executes.
+    Attributes:
+        error: Why there is no tree, if there is none.
+        proof: What proves it.
+        costs: What the tree costs by every objective, null where nothing is known, and its ingredients.
+        lower_bound: By objective, the best value that a tree can still have.
+        runs_used_up: Whether the tree runs where items are used up; null without a tree, and where that is
+            not known.
+        units: Unit ids in an order that executes.
+        seconds: How long it took.
     """
 
     status: Literal["optimal", "infeasible", "feasible", "unknown", "failed"]
@@ -50,9 +51,7 @@ class AnswerRow(Asked, frozen=True, kw_only=True):
         return msgspec.convert(self, Asked, from_attributes=True)
 
 
-ANSWERS = RowForm(
-    "batch-row", msgspec.to_builtins, lambda row: msgspec.convert(row, AnswerRow), lambda row: row.asked
-)
+ANSWERS = RowForm("batch-row", plain, lambda row: read_plain(AnswerRow, row), lambda row: row.asked)
 
 
 def answer_row(
@@ -77,37 +76,36 @@ def answer_row(
                 problem = problem.whole if asks_of_all(problem, settings) else problem
                 assert problem.goals  # what they can need is read when it is looked at
             outcome = solve(problem, objectives, settings)
-        answer = _answer(outcome)
+        row = _answered(asked, outcome)
     except LimitError as limit:
-        answer = {"status": "unknown", "error": f"stopped at {limit.stopped}"}
+        row = _row(asked, status="unknown", error=f"stopped at {limit.stopped}")
     except UserError as error:
-        answer = {"status": "failed", "error": str(error)}
+        row = failed_row(asked, str(error))
     except Exception as error:
-        answer = {"status": "failed", "error": f"a bug of foon-asp: {type(error).__name__}: {error}"}
-    return _row(asked, answer | {"seconds": round(time.perf_counter() - began, 6)})
+        row = failed_row(asked, f"a bug of foon-asp: {type(error).__name__}: {error}")
+    return replace(row, seconds=round(time.perf_counter() - began, 6))
 
 
 def failed_row(asked: Asked, error: str) -> AnswerRow:
     """Return the row of a question without an answer."""
-    return _row(asked, {"status": "failed", "error": error})
+    return _row(asked, status="failed", error=error)
 
 
-def _row(asked: Asked, answer: Json) -> AnswerRow:
-    return msgspec.convert(msgspec.structs.asdict(asked) | answer, AnswerRow)
+def _row(asked: Asked, **answer: Any) -> AnswerRow:
+    return AnswerRow(**asdict(asked), **answer)
 
 
-def _answer(outcome: Outcome) -> Json:
+def _answered(asked: Asked, outcome: Outcome) -> AnswerRow:
     problem, units = outcome.problem, outcome.units
-    answer = {
-        "status": str(outcome.status),
-        "error": None if units or not outcome.stopped else f"stopped at {outcome.stopped}",
-        "proof": None if outcome.proof is None else str(outcome.proof),
-        "costs": costs_json(outcome.costs),
-        "lower_bound": figures_json(outcome.bounds),
-    }
+    row = _row(
+        asked,
+        status=str(outcome.status),
+        error=None if units or not outcome.stopped else f"stopped at {outcome.stopped}",
+        proof=None if outcome.proof is None else str(outcome.proof),
+        costs=None if outcome.costs is None else costs_by_name(outcome.costs),
+        lower_bound=exact_measures(outcome.bounds),
+    )
     if units is None:
-        return answer
-    return answer | {
-        "runs_used_up": used_up_run(problem, problem.tree(units)).runs,
-        "units": list(map(problem.network.unit_number, units)),
-    }
+        return row
+    runs = used_up_run(problem, problem.tree(units)).runs
+    return replace(row, runs_used_up=runs, units=tuple(map(problem.network.unit_number, units)))

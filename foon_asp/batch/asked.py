@@ -3,21 +3,27 @@
 from collections.abc import Callable, Sequence
 from typing import Annotated, Protocol
 
-from msgspec import Meta, Struct
+from msgspec import Meta
 
 from foon_asp.problem import ContainerRule, Problem
+from foon_asp.results.values import Value
 
 Name = Annotated[str, Meta(min_length=1)]
 Goals = Name | Annotated[tuple[Name, ...], Meta(min_length=1)]
 Seconds = Annotated[float, Meta(ge=0, le=1e9)]  # at most some thirty years
 
 
-class Asked(Struct, frozen=True):
+class Asked(Value, frozen=True):
     """One question of a batch, by names, as a line of JSON has it.
 
-    Several goals are made by one tree. ``kitchen`` is a file, ``@starting``, or ``None`` for that of the
-    data. ``objective`` is a list by commas of which the first counts most. ``time_limit`` is in seconds.
-    ``items`` may be used up, with files for what is in ``stock`` and what ``stays``.
+    Attributes:
+        goal: A goal, or several that one tree makes.
+        objective: A list by commas of which the first counts most.
+        items: Whether items last, or are used up.
+        kitchen: A file, or ``@starting``; null for that of the data.
+        stock: Where items are used up: a file of what is in stock.
+        stays: Where items are used up: a file of what stays.
+        time_limit: In seconds.
     """
 
     goal: Goals

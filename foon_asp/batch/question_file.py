@@ -14,7 +14,7 @@ from foon_asp.network import Source
 from foon_asp.problem import ITEMS, ContainerRule, parse_objectives
 from foon_asp.text.data_folder import STARTING
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
-from foon_asp.text.json_fault import json_fault
+from foon_asp.text.json_list import json_fault
 from foon_asp.text.json_value import read_json
 from foon_asp.text.plain_file import read_plain_text
 

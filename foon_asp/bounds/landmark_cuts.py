@@ -13,6 +13,9 @@ from typing import NamedTuple
 from foon_asp.bounds.hypergraph import Hypergraph
 
 _FRESH = 64  # cuts, or one for each target, after which what is thought of how dear objects are is too old
+# times that the guide is asked for as many cuts as there are objects: it looks at all of them each time, and
+# asked more often it would make cuts quadratic (benchmarks/shapes.py, grid by kitchen)
+_GUIDES = 32
 
 
 class WeightedCut(NamedTuple):
@@ -135,7 +138,7 @@ def landmark_cuts(
             if guide is not None and len(search.cuts) >= fresh:
                 search.dear = guide(search.rest_of)
                 waiting = sum(len(each.objects) for each in target.levels)
-                fresh = len(search.cuts) + max(_FRESH, len(remaining), waiting)
+                fresh = len(search.cuts) + max(_FRESH, len(remaining), waiting, len(search.dear) // _GUIDES)
                 level.begin()
             cut = search.cut(level, target.behind)
             if cut is None:

@@ -92,7 +92,7 @@ class Arrays:
         self.ruled.limits[self._of_rules + len(self.own_limits)] = ruled.Limit(*limit)
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
-        """Give a limit that a derivation exceeds by rules of the user's own."""
+        """Return a limit that a derivation exceeds by rules of the user's own."""
         limit = self._own and self._own.exceeded(self._units(derivation))
         if limit:
             self._admit(limit)
@@ -109,11 +109,11 @@ class Arrays:
         return {n: (each.amounts, each.most) for n, each in self.ruled.limits.items() if n >= self._of_rules}
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
-        """Give by constraint the units that no tree has which uses some actions and none of others."""
+        """Return by constraint the units that no tree has which uses some actions and none of others."""
         return self.ruled.bars(self._units(used), without)
 
     def breaking(self, derivation: frozenset[int]) -> list[int]:
-        """Give as few units of a derivation as break a constraint, first what the others bar."""
+        """Return as few units of a derivation as break a constraint, first what the others bar."""
         chosen = self._units(derivation)
         for barred in self.ruled.barred.values():
             if broken := chosen & barred(chosen, self.forbidden):
@@ -128,11 +128,11 @@ class Arrays:
         return frozenset(action for action in actions if action < len(self.problem.network))
 
     def parts(self, objective: Objective) -> int:
-        """Give the number of coordinates that an objective has in a cost."""
+        """Return the number of coordinates that an objective has in a cost."""
         return len(self.rates) if multiplies(objective) else 1
 
     def actions(self, units: Iterable[int]) -> list[int]:
-        """Give the actions of a tree: units, the taking of the kitchen items that they need, and steps."""
+        """Return the actions of a tree: units, the taking of the kitchen items that they need, and steps."""
         units = list(units)
         needed = {o for unit in units for o in self.problem.needs[unit]}
         steps = self.ruled.used(frozenset(units)).difference(units)
@@ -140,7 +140,7 @@ class Arrays:
         return [*units, *taking, *map(self._steps.__getitem__, sorted(steps))]
 
     def cases(self, cases: Cases) -> Cases:
-        """Give cases of an answer by the numbers of actions here, as far as these are known.
+        """Return cases of an answer by the numbers of actions here, as far as these are known.
 
         There, the taking of an item is numbered by the object, after all units.
         """
@@ -180,7 +180,7 @@ class Arrays:
         return map(self.problem.rate, range(len(self.problem.network)))
 
     def _measures(self, unit: int) -> Iterator[Fraction | int | None]:
-        """Give what the cost of a unit is made of: its rate, where rates count, and its counts."""
+        """Yield what the cost of a unit is made of: its rate, where rates count, and its counts."""
         yield self.problem.rate(unit) if self.rates else None
         for objective in self.objectives:
             if not multiplies(objective):

@@ -18,7 +18,6 @@ from foon_asp.certificate.coverage import NOTHING, Coverage, needed
 from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Known, Objective, Problem
 from foon_asp.proof import verify
-from foon_asp.proof.constraint import Rule
 from foon_asp.proof.verify_plan import verify_any
 from foon_asp.text.json_value import json_line
 
@@ -43,7 +42,7 @@ class Certificate(NamedTuple):
     certified: tuple[Objective, ...]
 
     def text(self) -> str:
-        """Give the certificate as JSON, a cut and a weight on each line."""
+        """Return the certificate as JSON, a cut and a weight on each line."""
         lines = []
         for key, value in self.content.items():
             if key == "cuts" and value:
@@ -137,8 +136,16 @@ def certify_infeasible(
 def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
     rules = arrays if arrays.ruled.barred or arrays.asks else None
     return Prover(
-        *(arrays.graph, arrays.goals, arrays.costs, arrays.order, arrays.forbidden),
-        *(expired, cuts, arrays.limits, rules, arrays.multiples),
+        arrays.graph,
+        arrays.goals,
+        arrays.costs,
+        arrays.order,
+        arrays.forbidden,
+        expired,
+        known=cuts,
+        limits=arrays.limits,
+        rules=rules,
+        multiples=arrays.multiples,
         search=branched,
     )
 
@@ -162,7 +169,7 @@ def _write(
         return cuts.setdefault(cut.objects, len(cuts))
 
     def limit(row: int) -> int:
-        """Give the number of a limit; those of the user's own are numbered anew, after the rules."""
+        """Return the number of a limit; those of the user's own are numbered anew, after the rules."""
         place = places[row]
         return len(covered.rules) + of_own.setdefault(place, len(of_own)) if place in own else place
 
@@ -192,43 +199,72 @@ def _write(
             "using": stated(proof.using),
         }
 
-    costs: list[object] | None = None
     try:
         found = stated(proof)
         least = None if bound is None else arrays.stated(bound)
-        if units is not None:
-            measured = problem.costs(units)
-            figures = [measured.measure(objective) for objective in arrays.objectives]
-            costs = [figure if isinstance(figure, int) else written(figure) for figure in figures]
     except verify.LimitError:
         return None
     graph = arrays.graph
     members = (u for cut in cuts for o in cut for u in graph.makers[o] if {*cut}.isdisjoint(graph.needs[u]))
     limits = [own[place] for place in of_own]
     rules = needed(covered.rules, members, limits) if covered.partial else covered.rules
-    content: dict[str, Any] = {
-        "format": verify.FORMAT,
-        "version": verify.VERSION,
-        "claim": claim,
-        **head(problem, arrays.objectives, rules, covered, subject),
-        "tree": None if units is None else list(map(network.unit_number, units)),
-        "costs": costs,
-        "bound": least,
-        "cuts": [list(map(network.object_number, objects)) for objects in cuts],
-        "proof": found,
-    }
-    return sealed(content, arrays.objectives, subject)
+    numbered = [list(map(network.object_number, objects)) for objects in cuts]
+    claimed = Claimed(claim, arrays.objectives, units, least)
+    return write(verify.TREE, problem, claimed, covered._replace(rules=rules), numbered, found, subject)
 
 
-def sealed(
-    content: dict[str, Any], objectives: tuple[Objective, ...], subject: verify.Subject
+class Claimed(NamedTuple):
+    """What a certificate claims; ``units`` are a tree or plan, and ``bound`` is as certificates state it."""
+
+    claim: str
+    objectives: tuple[Objective, ...]
+    units: Sequence[int] | None
+    bound: Sequence[object] | None
+
+
+def write(
+    form: verify.Form,
+    problem: Problem,
+    claimed: Claimed,
+    covered: Coverage,
+    cuts: Sequence[Sequence[int]],
+    proof: object,
+    subject: verify.Subject,
+    **more: object,
 ) -> Certificate | None:
-    """Seal a certificate and verify it as it is written; ``None`` where that is beyond the limits.
+    """Write a certificate, seal it and verify it as it is written; ``None`` where that is beyond the limits.
 
     Of measures it keeps the costs of those units that the proof looks at.
     """
-    certificate = Certificate(content, content["claim"], objectives)
+    network, (claim, objectives, units, bound) = problem.network, claimed
     try:
+        content: dict[str, Any] = {
+            "format": form.name,
+            "version": form.version,
+            "claim": claim,
+            "goals": [
+                {"id": network.object_number(goal), "node": str(network.objects[goal])}
+                for goal in problem.goals
+            ],
+            "containers": str(problem.containers),
+            "level": network.level,
+            "objective": [str(objective) for objective in objectives],
+            "digests": subject.digests(covered.rules),
+            "rules": [dict(rule) for rule in covered.rules],
+            "measures": {
+                str(objective): _measure(problem, objective)
+                for objective in objectives
+                if objective in problem.measures
+            },
+            "not_covered": list(covered.not_covered),
+            **more,
+            "tree": None if units is None else list(map(network.unit_number, units)),
+            "costs": None if units is None else _costs(problem, objectives, units),
+            "bound": bound,
+            "cuts": cuts,
+            "proof": proof,
+        }
+        certificate = Certificate(content, claim, objectives)
         verified = _verified(certificate, subject)
         for measure in verified.trusted:  # of all units, those that the proof looks at
             content["measures"][measure.name]["costs"] = _by_cost(measure.costs)
@@ -241,6 +277,13 @@ def sealed(
     return certificate
 
 
+def _costs(problem: Problem, objectives: Sequence[Objective], units: Sequence[int]) -> list[object]:
+    """Return what a tree or plan costs by each objective, as certificates state it."""
+    measured = problem.costs(units)
+    figures = [measured.measure(objective) for objective in objectives]
+    return [figure if isinstance(figure, int) else written(figure) for figure in figures]
+
+
 def _verified(certificate: Certificate, subject: verify.Subject) -> verify.Verified:
     content = certificate.content
     content["seal"] = verify.seal(content)
@@ -248,41 +291,14 @@ def _verified(certificate: Certificate, subject: verify.Subject) -> verify.Verif
 
 
 def subject_of(problem: Problem) -> verify.Subject:
-    """Give what certificates of a problem over a whole network speak about."""
+    """Return what certificates of a problem over a whole network speak about."""
     return verify.Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     )
 
 
-def head(
-    problem: Problem,
-    objectives: Sequence[Objective],
-    rules: Sequence[Rule],
-    covered: Coverage,
-    subject: verify.Subject,
-) -> dict[str, Any]:
-    """Give what certificates of all kinds say of the question that they are about."""
-    network = problem.network
-    return {
-        "goals": [
-            {"id": network.object_number(goal), "node": str(network.objects[goal])} for goal in problem.goals
-        ],
-        "containers": str(problem.containers),
-        "level": network.level,
-        "objective": [str(objective) for objective in objectives],
-        "digests": subject.digests(rules),
-        "rules": [dict(rule) for rule in rules],
-        "measures": {
-            str(objective): _measure(problem, objective)
-            for objective in objectives
-            if objective in problem.measures
-        },
-        "not_covered": list(covered.not_covered),
-    }
-
-
 def _measure(problem: Problem, objective: Objective) -> dict[str, Any]:
-    """Give the rules of a measure, and what they say of all units."""
+    """Return the rules of a measure, and what they say of all units."""
     rules = problem.measures[objective].text
     numbers = map(problem.network.unit_number, range(len(problem.network)))
     costs = problem.figures(objective, range(len(problem.network)))

@@ -44,12 +44,12 @@ class Coverage(NamedTuple):
         return bool(self.not_covered) or any(rule["rule"] == OWN for rule in self.rules)
 
     def ruled(self, problem: Problem) -> Ruled:
-        """Give what the rules add to the network of a problem."""
+        """Return what the rules add to the network of a problem."""
         asked, nodes = question_of(problem), len(problem.network.objects)
         return Ruled([meaning(rule, asked) for rule in self.rules], nodes, len(problem.network) + nodes)
 
     def forbids(self, problem: Problem) -> frozenset[int]:
-        """Give the units of a problem that are ruled out one by one."""
+        """Return the units of a problem that are ruled out one by one."""
         return self.ruled(problem).removed
 
     def beyond(self) -> list[str]:
@@ -112,14 +112,14 @@ def coverage(settings: Settings) -> Coverage:
 
 
 def _value(written: str, kind: type) -> Any:
-    """Give a value of a constraint, ``None`` where it is not set."""
+    """Return a value of a constraint, ``None`` where it is not set."""
     if kind is int:
         return None if written in _UNSET else int(written)
     return string_constant(written)
 
 
 def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
-    """Give the values that rules list by predicate; empty where they say anything else, unless they may."""
+    """Return the values that rules list by predicate; empty where they say anything else, unless they may."""
     from foon_asp.encoding import encoding  # noqa: PLC0415 - they load clingo
     from foon_asp.rules import stating  # noqa: PLC0415 - they load clingo
 

@@ -39,7 +39,7 @@ class OwnLimits:
         numbered, relaxed = relax(
             settings.constraints, settings.constants, soft=True, deadline=settings.begun
         )
-        shrinking = {rule.source for rule in rules.rules if rule.kind is Kind.SHRINKING}
+        shrinking = {rule.source for rule in rules.rest if rule.kind in {Kind.FACT, Kind.SHRINKING}}
         theirs = {c.number: 1 for c in numbered if c.constraint in own and c.source in shrinking}
         relaxed = relaxed._replace(rules=relaxed.rules + write_soft(theirs))
         self._settings = settings._replace(constraints=(), relaxed=relaxed)
@@ -50,7 +50,7 @@ class OwnLimits:
         self._local = all(rule.local for rule in rules.rules if rule.source in shrinking)
         self.known: list[Limit] = []
         if self._any:
-            found = (each for each in rules.limits(problem, settings.begun) if not each.at_least)
+            found = (each for each in rules.limits(problem) if not each.at_least)
             limits = [({u: Fraction(n) for u, n in each.weights.items() if n}, each.bound) for each in found]
             stated = [*covered]
             self.known = [
@@ -60,7 +60,7 @@ class OwnLimits:
             ]
 
     def exceeded(self, units: frozenset[int]) -> Limit | None:
-        """Give a limit that units exceed, and know it from now on; ``None`` where they keep to the rules.
+        """Return a limit that units exceed, and know it from now on; ``None`` where they keep to the rules.
 
         Raises ``KeyboardInterrupt`` at a limit of time.
         """

@@ -31,9 +31,9 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
     shrinking rules limit is found while a proof is.
     """
     rules = assemble(settings, lambda _: None).understood
-    found = None if rules is None else rules.applied(problem, settings.begun)
-    if rules is None or found is None:
+    if rules is None:
         return None
+    found = rules.applied(problem)
     claims: list[list[list[int]]] = []
     if isinstance(found, Contradiction):
         claims.append([[], []])
@@ -115,7 +115,7 @@ def _written(constraint: Constraint) -> str:
 
 
 def _file(constraint: Constraint) -> dict[str, str]:
-    """Give the text of rules; of a file that includes others, all that it says."""
+    """Return the text of rules; of a file that includes others, all that it says."""
     if isinstance(constraint, Path):
         alone = len(included_files(constraint)) == 1
         text = constraint.read_text("utf-8") if alone else read_encoding(constraint).text

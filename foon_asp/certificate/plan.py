@@ -13,7 +13,7 @@ from foon_asp.bounds.counts import Balance, Condition, Flows, Landmark, Level, M
 from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus_log
 from foon_asp.bounds.plan_proof import Claim, CountProof, PlanProver, Split
 from foon_asp.certificate.arrays import written
-from foon_asp.certificate.certificate import Certificate, head, sealed, subject_of
+from foon_asp.certificate.certificate import Certificate, Claimed, subject_of, write
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.network import ObjectNode
 from foon_asp.problem import (
@@ -28,7 +28,7 @@ from foon_asp.problem import (
 )
 from foon_asp.proof import verify
 from foon_asp.proof.constraint import OWN
-from foon_asp.proof.verify_plan import FINE, FORMAT, RULES, VERSION
+from foon_asp.proof.verify_plan import FINE, PLAN, RULES
 
 _LARGEST = 10**9  # a cost of a unit, as a whole number that conditions are written with
 _DIGITS = 60  # of a logarithm
@@ -195,7 +195,7 @@ class _Question:
         return Claim(order, [(f,) for f in figures], (Fraction(objective.row.item),), (cost,), parts, caps)
 
     def _level(self, objective: Objective) -> tuple[Level, int] | None:
-        """Give what plans may cost by an objective in whole numbers, and how many make up 1."""
+        """Return what plans may cost by an objective in whole numbers, and how many make up 1."""
         figures = self._figures(objective)
         if multiplies(objective):
             costs = [_fine(rate, up=False) for rate in figures]
@@ -211,7 +211,7 @@ class _Question:
     # --- writing
 
     def cut(self, objects: Iterable[int]) -> int:
-        """Give the number of a cut, which is noted."""
+        """Return the number of a cut, which is noted."""
         return self._cuts.setdefault(tuple(sorted(set(objects))), len(self._cuts))
 
     def balance(self, o: int) -> int:
@@ -220,16 +220,16 @@ class _Question:
         return o
 
     def unit(self, action: int) -> int:
-        """Give the unit of an action."""
+        """Return the unit of an action."""
         return self._units[action]
 
     def limit(self, number: int) -> tuple[int, int]:
-        """Give the place of the rule of a limit, and its scale."""
+        """Return the place of the rule of a limit, and its scale."""
         place, _, scale = self._limits[number]
         return place, scale
 
     def _unreached(self) -> list[int]:
-        """Give nodes that nothing reaches, by which some units are known to be executed by no plan.
+        """Return nodes that nothing reaches, by which some units are known to be executed by no plan.
 
         Those are units that could cross a cut or add to what is balanced; each asks for one of the nodes.
         """
@@ -268,34 +268,25 @@ class _Question:
             if isinstance(name, ObjectNode)
         )
         known = ((o, stays) for o, stays in nodes if o is not None)
-        costs: list[object] | None = None
         try:
-            if plan is not None:
-                measured = problem.costs(plan)
-                figures = [measured.measure(objective) for objective in objectives]
-                costs = [figure if isinstance(figure, int) else written(figure) for figure in figures]
             order = None if bound is None else self._claim(objectives[0]).order
             stated = None if bound is None else [weight_text(each, order) for each in bound]
         except verify.LimitError:
             return None
-        subject = subject_of(problem)
-        content: dict[str, Any] = {
-            "format": FORMAT,
-            "version": VERSION,
-            "claim": claim,
-            **head(problem, objectives, self._covered.rules, self._covered, subject),
-            "items": {
+        return write(
+            PLAN,
+            problem,
+            Claimed(claim, tuple(objectives), plan, stated),
+            self._covered,
+            [list(cut) for cut in self._cuts],
+            list(proofs),
+            subject_of(problem),
+            items={
                 "stock": [list(pair) for pair in stock],
                 "stays": [list(pair) for pair in (*sorted(told), *sorted(known))],
             },
-            "tree": None if plan is None else list(plan),
-            "costs": costs,
-            "bound": stated,
-            "unreached": self._unreached(),
-            "cuts": [list(cut) for cut in self._cuts],
-            "proof": list(proofs),
-        }
-        return sealed(content, tuple(objectives), subject)
+            unreached=self._unreached(),
+        )
 
 
 class _Stated:

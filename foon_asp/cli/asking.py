@@ -22,8 +22,8 @@ from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Part, Question, question_of
 from foon_asp.questions.each import Each
 from foon_asp.questions.index import module_name, question_name
-from foon_asp.questions.posing import no_data, one_problem, one_problem_or_each
-from foon_asp.questions.posing_plan import a_plan, a_tree, settle_data
+from foon_asp.questions.posing import no_data, one_problem
+from foon_asp.questions.posing_plan import a_plan, settle_data
 from foon_asp.questions.result import Result
 from foon_asp.questions.tree import read_answer
 
@@ -62,7 +62,7 @@ def ask(
             results = [question.command(*subject, **options_) for subject in subjects]
     if len(results) == 1:
         return results[0]
-    return Each(results)
+    return Each(answers=tuple(results))
 
 
 def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
@@ -89,14 +89,14 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
     """
     problem_options = parameters(question, values, Part.PROBLEM)
     tree = values.get("tree")
-    if question.pose not in {a_plan, a_tree} and tree is not None and tree.is_file():  # a pipe is read once
+    if question.pose is not a_plan and tree is not None and tree.is_file():  # a pipe is read once
         listed = read_answer(tree)
         settle_data(command, {tree: listed})
         if problem_options.get("goals_named") == ():
             problem_options["goals_named"] = tuple(map(str, listed.goals))
-    reports_goals = question.pose in {no_data, a_plan, a_tree}  # the question itself, if it has goals
+    reports_goals = question.pose in {no_data, a_plan}  # the question itself, if it has goals
     unnamed = not reports_goals and problem_options.get("goals_named") == ()
-    one_goal = question.pose in {one_problem, one_problem_or_each} and not problem_options.get("all_goals")
+    one_goal = question.pose is one_problem and not problem_options.get("all_goals")
     goals = command.unnamed_goals() if unnamed and one_goal else []
     if len(goals) < 2:
         subjects = [question.pose(command, **problem_options)]

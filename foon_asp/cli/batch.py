@@ -1,9 +1,6 @@
 """``foon-asp batch``: thousands of questions in one run, with a row for each answer."""
 
-import statistics
 import time
-from collections import Counter
-from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +10,9 @@ from foon_asp.asp import Settings
 from foon_asp.asp.assembly import rules_digest
 from foon_asp.batch.answer_row import ANSWERS, AnswerRow
 from foon_asp.batch.answer_table import FORMATS, check_table, write_table
-from foon_asp.batch.asked import Asked
 from foon_asp.batch.cluster import answer_on_cluster
 from foon_asp.batch.question_file import each_question, named_files, read_questions
+from foon_asp.batch.run_summary import RunSummary
 from foon_asp.batch.workers import answer_all
 from foon_asp.cli import options
 from foon_asp.cli.batch_data import Opening, digest, measured
@@ -25,14 +22,9 @@ from foon_asp.cli.named_path import NamedPath, WrittenPath
 from foon_asp.cli.output_file import check_outputs, refuse_inputs
 from foon_asp.cli.progress_line import Progress
 from foon_asp.comparison.rows_file import RowsFile
-from foon_asp.document.json_document import document
-from foon_asp.network import counted
 from foon_asp.problem import Objective
 from foon_asp.questions.options import EACH_LIMITS, JOBS, RULES
 from foon_asp.rules.constraint import Constraint
-from foon_asp.text.json_value import Json, json_text
-
-_MAX_ERRORS_SHOWN = 3  # of possibly thousands: the first ones mostly have the same cause
 
 
 @click.command("batch")
@@ -136,59 +128,17 @@ def command(
         if rows_file is not results_file:
             objectives = (*Objective, *map(Objective.of_measure, measures))
             write_table(results_file, results.done.values(), objectives)
-    summary = _summary(distinct, answered_before, answered) | {"seconds": round(time.monotonic() - began, 3)}
+    summary = RunSummary.of(len(distinct), answered_before, answered, time.monotonic() - began)
     if format_ == "json":
-        click.echo(json_text(summary), nl=False)
+        click.echo(summary.json_text(), nl=False)
     else:
-        for line in _in_words(summary, [row for row in answered if row.error is not None]):
-            click.echo(line)
-        click.echo(f"results: {results_file}")
+        click.echo(f"{summary.text()}results: {results_file}")
     if interrupted:
         click.echo("interrupted: run the same command again to continue", err=True)
-    return _exit_code(summary["statuses"], interrupted)
+    return _exit_code(summary.statuses, interrupted)
 
 
-def _summary(
-    questions: Sequence[Asked], answered_before: Sequence[AnswerRow], answered: Sequence[AnswerRow]
-) -> Json:
-    """Return the JSON of a run: numbers of rows by status and by proof, and the seconds of new answers."""
-    seconds = [row.seconds for row in answered if row.seconds is not None]
-    return document(
-        "batch",
-        questions=len(questions),
-        answered_before=len(answered_before),
-        answered=len(answered),
-        statuses=dict(sorted(Counter(row.status for row in (*answered_before, *answered)).items())),
-        proofs=dict(sorted(Counter(row.proof for row in answered if row.proof is not None).items())),
-        seconds_median=statistics.median(seconds) if seconds else None,
-        seconds_worst=max(seconds, default=None),
-    )
-
-
-def _in_words(summary: Json, without_answer: Sequence[AnswerRow]) -> Iterator[str]:
-    """Return the lines of a summary, with the errors of the first rows ``without_answer``."""
-    answered_before, answered = summary["answered_before"], summary["answered"]
-    yield counted(summary["questions"], "question", ",") + (
-        f", {answered_before:,} of them answered before" if answered_before else ""
-    )
-    yield f"in total: {_counts(summary['statuses'], '') or 'none'}"
-    if answered:
-        yield f"answered {answered:,} in {summary['seconds']:.1f} s"
-        yield f"proved: {_counts(summary['proofs'], 'by ') or 'none'}"
-    if summary["seconds_median"] is not None:
-        yield f"seconds for one: median {summary['seconds_median']:.3f}, worst {summary['seconds_worst']:.3f}"
-    reported = without_answer[:_MAX_ERRORS_SHOWN]
-    yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in reported)
-    failed = sum(row.status == "failed" for row in without_answer)
-    if failed > len(reported):
-        yield f"... and {failed - len(reported)} more failed: see their rows"
-
-
-def _counts(counts: dict[str, int], preposition: str) -> str:
-    return ", ".join(f"{count:,} {preposition}{name}" for name, count in counts.items())
-
-
-def _exit_code(statuses: Json, interrupted: bool) -> ExitCode:
+def _exit_code(statuses: dict[str, int], interrupted: bool) -> ExitCode:
     if interrupted or statuses.keys() & {"feasible", "unknown"}:
         return ExitCode.LIMIT
     return ExitCode.NEGATIVE if "failed" in statuses else ExitCode.DONE

@@ -2,19 +2,17 @@
 
 import click
 
-from foon_asp.asp import Settings
-from foon_asp.asp.assembly import assemble
 from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_parts
+from foon_asp.cli.progress_line import Progress
 from foon_asp.errors import UserError
+from foon_asp.questions.constraint_list import list_constraints
 from foon_asp.questions.contract import TABLES, Part
 from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, RULE
-from foon_asp.report.constraint_list import constraint_lines, constraints_json
-from foon_asp.report.frame import document_text
+from foon_asp.results.document import Document
 from foon_asp.rules.constraint import Constraint, RuleText
-from foon_asp.rules.constraint_library import library_constraints
 
 _EXPLAIN = CONSTRAINTS._replace(
     name="explained",
@@ -46,24 +44,20 @@ def command(
         return _explain(constraints, values, format_)
     if values:
         raise UserError("-c sets a constant of what is explained: name that with --explain")
-    listed = library_constraints()
-    if format_ == "text":
-        write_parts(constraint_lines(listed))
-    else:
-        click.echo(document_text(constraints_json(listed), format_), nl=False)
-    return ExitCode.DONE
+    return _show(list_constraints(), format_)
 
 
 def _explain(constraints: tuple[Constraint, ...], constants: tuple[str, ...], format_: str) -> ExitCode:
     """Print an explanation of rules; raises :class:`UserError` where encodings are replaced."""
-    from foon_asp.report.rule_list import rules_json, rules_text
+    from foon_asp.questions.explained_rules import explain_rules  # takes clingo along
 
-    rules = assemble(
-        Settings(constraints, constants=constants), lambda message: click.echo(message, err=True)
-    ).understood
-    if rules is None:
-        raise UserError("the built-in encodings were changed, so nothing is known of rules beside them")
-    click.echo(
-        rules_text(rules) if format_ == "text" else document_text(rules_json(rules), format_), nl=False
-    )
+    return _show(explain_rules(constraints, constants, Progress()), format_)
+
+
+def _show(document: Document, format_: str) -> ExitCode:
+    """Print a document in a format."""
+    if format_ == "text":
+        write_parts(document.show())
+    else:
+        click.echo(document.json_text() if format_ == "json" else getattr(document, format_)(), nl=False)
     return ExitCode.DONE

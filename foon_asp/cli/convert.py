@@ -11,12 +11,13 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.errors import UserError
-from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.conversion import Converted, Converter
 from foon_asp.text.diagnostics import Diagnostic, InputError, summarize
-from foon_asp.text.dialect import Dialect, is_object_list
 from foon_asp.text.folder_files import FolderFile, foon_files
+from foon_asp.text.format import Dialect
+from foon_asp.text.formats import format_of, format_with
 from foon_asp.text.plain_file import read_plain_text
+from foon_asp.whole_file import utf_8, write_whole
 
 
 class _Task(NamedTuple):
@@ -131,10 +132,9 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
 
 
 def _suffix(file: Path, target: Dialect) -> str:
-    """Return the suffix of the converted file; the neutral form of lists of objects is JSON."""
-    if target is Dialect.NEUTRAL and is_object_list(read_plain_text(file)):
-        return Dialect.JSON_LIST.suffix
-    return target.suffix
+    """Return the suffix of the converted file, which may be another one for a list of objects."""
+    text, format_ = read_plain_text(file), format_with(target)
+    return format_.list_suffix if format_of(text, str(file)).lists_objects(text) else format_.suffix
 
 
 def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left_out: int) -> str:

@@ -6,16 +6,15 @@ from pathlib import Path
 import click
 
 from foon_asp.asp import Settings
-from foon_asp.asp.bare_program import printed_program
 from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.dataset.assumed import goal_lines, kitchen_lines
 from foon_asp.dataset.items import items_of
-from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
+from foon_asp.questions.facts import facts_of
 from foon_asp.questions.options import (
     CONSTRAINTS,
     CONTAINERS,
@@ -27,7 +26,6 @@ from foon_asp.questions.options import (
     SOFT,
 )
 from foon_asp.rules.constraint import Constraint
-from foon_asp.text.json_value import json_text
 
 
 @click.command("facts")
@@ -81,10 +79,9 @@ def command(
         click.echo("\n".join(goal_lines(dataset, problem.goal_nodes, options.is_verbose())), err=True)
     if not dataset.has_kitchen:
         click.echo("\n".join(kitchen_lines(dataset, [problem], options.is_verbose())), err=True)
-    facts = printed_program(problem, chosen, Settings(constraints, encodings), soft).text
+    facts = facts_of(problem, chosen, Settings(constraints, encodings), soft)
     if format_ == "json":
-        lines = facts.rstrip("\n").split("\n")  # not splitlines: names may have other line separators
-        click.echo(json_text(document("facts", problem, chosen, facts=lines)), nl=False)
+        click.echo(facts.json_text(), nl=False)
     else:
-        write_data(facts)
+        write_data(facts.program)
     return ExitCode.DONE

@@ -12,8 +12,8 @@ from foon_asp.escapes import escaped
 from foon_asp.report.line_diff import line_diff
 from foon_asp.text.diagnostics import Diagnostic, InputError
 from foon_asp.text.folder_files import foon_files
-from foon_asp.text.formatter import format_text, with_own_mark
-from foon_asp.text.plain_file import read_plain_text
+from foon_asp.text.formats import format_of
+from foon_asp.text.plain_file import read_plain_text, with_own_mark
 
 
 @click.command("fmt")
@@ -51,7 +51,9 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
     changed = 0
     for file in files:
         try:
-            formatted = with_own_mark(format_text(read_plain_text(file), str(file), lenient)).encode()
+            text = read_plain_text(file)
+            normalised = format_of(text, str(file)).normalised(text, str(file), lenient)
+            formatted = with_own_mark(normalised).encode()
         except InputError as error:
             errors += error.diagnostics
             continue

@@ -11,15 +11,15 @@ from foon_asp.cli.named_path import NamedPath
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 from foon_asp.network import starting_nodes
-from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.resources import starter_recipe
 from foon_asp.text.data_folder import DataFiles, network_files, read_data
 from foon_asp.text.diagnostics import summarize
-from foon_asp.text.formatter import format_text
-from foon_asp.text.plain_file import is_json, is_store, read_plain_text
-from foon_asp.text.rate_table import read_rates
+from foon_asp.text.formats import TEXT, format_of
+from foon_asp.text.plain_file import is_store, read_plain_text
 from foon_asp.text.starter import starter_files
+from foon_asp.text.tables import RATES
 from foon_asp.text.writer import write_units
+from foon_asp.whole_file import utf_8, write_whole
 
 
 @click.command("init")
@@ -75,9 +75,9 @@ def _files(recipe: Path | None) -> dict[str, str]:
     network = data.network
     text = "" if source.is_dir() else read_plain_text(source)
     recipe_text = write_units(map(network.unit, range(len(network))))
-    if text and not is_json(text):
-        recipe_text = format_text(text, str(source))
-    rates = None if recipe else read_rates(starter_recipe() / "motion.txt")
+    if text and format_of(text, str(source)) is TEXT:
+        recipe_text = TEXT.normalised(text, str(source))
+    rates = None if recipe else RATES.read(starter_recipe() / "motion.txt")
     goals = [network.objects[o] for entry in data.goals for o in network.find(entry.pattern)]
     kitchen = starting_nodes(network, [o for entry in data.goals for o in network.find(entry.pattern)])
     return starter_files(recipe_text, network, kitchen, goals, rates)

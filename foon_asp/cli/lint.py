@@ -1,7 +1,5 @@
 """``foon-asp lint``: findings in FOON files, their fixes, and the baseline of known ones."""
 
-import dataclasses
-import functools
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -11,29 +9,42 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
-from foon_asp.cli.output import terminal, write_data, write_output
+from foon_asp.cli.output import terminal, write_data, write_output, write_parts
 from foon_asp.cli.output_file import check_outputs, refuse_inputs
 from foon_asp.cli.shown_diff import show_diff
 from foon_asp.errors import UserError
-from foon_asp.linting.baseline import baseline_json, check_replaceable
-from foon_asp.linting.catalog import CATALOG
+from foon_asp.linting.baseline import Baseline, check_replaceable
+from foon_asp.linting.catalog import CATALOG, unknown_code
+from foon_asp.linting.context import Context
+from foon_asp.linting.example import example
 from foon_asp.linting.linted_files import LintedFiles
 from foon_asp.linting.mending import is_mendable, mended
-from foon_asp.linting.names import Names
 from foon_asp.linting.vocabulary import Vocabulary
 from foon_asp.network import counted
 from foon_asp.questions.contract import TABLES
-from foon_asp.questions.lint import Linted, lint, linted_files
+from foon_asp.questions.lint import Found, Linted, find, linted_files
 from foon_asp.questions.result import Ending
-from foon_asp.report.whole_file import utf_8, write_whole
+from foon_asp.report.lint_findings import explained
+from foon_asp.results.plain import plain
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.json_value import json_text
 from foon_asp.text.plain_file import plain_text, read_content
+from foon_asp.whole_file import utf_8, write_whole
 
 
 def _codes(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
     """Return the completions of a rule's code."""
     return [code for code in CATALOG if code.startswith(incomplete)]
+
+
+def _explain(context: click.Context, _: click.Parameter, code: str | None) -> None:
+    """Show what a code means, and end."""
+    if code is None or context.resilient_parsing:
+        return
+    if code not in CATALOG:
+        raise UserError(unknown_code(code))
+    write_parts(explained(CATALOG[code], example(code)))
+    context.exit()
 
 
 _STDIN = "-"
@@ -78,6 +89,15 @@ _STDIN = "-"
     metavar="FILE",
     help="Names that are spelt correctly, in place of the built-in ones; --learn writes such a file.",
 )
+@click.option(
+    "--explain",
+    callback=_explain,
+    expose_value=False,
+    is_eager=True,
+    shell_complete=_codes,
+    metavar="CODE",
+    help="Show what a code means, with an example, and lint nothing.",
+)
 @click.option("--learn", is_flag=True, help="Collect the names that lint checks other files against.")
 @options.output_option("FILE", "Where to write the names with --learn; stdout, if not given.")
 @options.format_option(*TABLES, "github", "sarif")
@@ -106,12 +126,13 @@ def command(
     foon-asp lint --diff recipes/               show what is safe to repair
     foon-asp lint --fix recipes/                repair it
     foon-asp lint --ignore near-name recipes/
+    foon-asp lint --explain near-name
     foon-asp lint --learn universal/ -o names.txt
     foon-asp lint --vocabulary names.txt recipes/
     foon-asp lint - --stdin-filename recipe.txt < recipe.txt
 
     Files are checked together: names are compared across all of them, and their units are one network. Every
-    finding has a code, which docs/lint.md explains with an example. The text folds many findings of one kind
+    finding has a code, which --explain explains with an example. The text folds many findings of one kind
     in a file into one; the other formats list all.
 
     --fix corrects lines that were understood in spite of a slip: what the file says does not change, and
@@ -155,24 +176,25 @@ def command(
     if learn:
         return _write_vocabulary(linted_files(on_disk), output)
     contents = {stdin_filename or Path("<stdin>"): sys.stdin.buffer.read()} if stdin else {}
-    find = functools.partial(lint, *on_disk, select=select, ignore=ignore, vocabulary=vocabulary)
     if baseline and write_baseline:
         refuse_inputs(baseline, [*linted_files(on_disk, contents), *filter(None, [vocabulary])])
         check_replaceable(baseline)
-        findings = find(contents=contents).findings
-        write_whole(baseline, utf_8(json_text(baseline_json(baseline, findings))))
+        findings = find(on_disk, contents, select, ignore, None, vocabulary).findings
+        write_whole(baseline, utf_8(json_text(plain(Baseline.of(baseline, findings)))))
         click.echo(f"wrote {baseline}: {counted(len(findings), 'finding')}", err=True)
         return ExitCode.DONE
-    linted = find(contents=contents, baseline=baseline)
+    found = find(on_disk, contents, select, ignore, baseline, vocabulary)
+    count = 0
     if fix or diff:
-        repaired = _repaired(linted, contents, unsafe_fixes)
-        count = sum(is_mendable(finding, unsafe_fixes) for finding in linted.findings)
+        repaired = _repaired(found, contents, unsafe_fixes)
+        count = sum(is_mendable(finding, unsafe_fixes) for finding in found.findings)
         if diff:
             return _show(repaired, count)
         contents = _write(repaired, contents)
-        linted = dataclasses.replace(find(contents=contents, baseline=baseline), mended=count)
+        found = find(on_disk, contents, select, ignore, baseline, vocabulary)
         for content in contents.values():  # the mended text of standard input
             write_data(content)
+    linted = found.linted(mended=count)
     _report(linted, statistics, format_, err=fix and stdin)
     if baseline:
         _report_known(linted)
@@ -183,21 +205,22 @@ def _write_vocabulary(files: Sequence[Path], output: Path | None) -> ExitCode:
     """Write the vocabulary of files, which ``--vocabulary`` reads; raises for files with errors."""
     linted = LintedFiles(files)
     linted.reader.raise_errors()
-    write_output(output, utf_8(Vocabulary.of(Names(linted)).text()))
+    context = Context(linted)
+    write_output(output, utf_8(Vocabulary.of(context.names, context.habits).text()))
     return ExitCode.DONE
 
 
 _Repaired = Mapping[Path, tuple[bytes, bytes]]  # the content of a file before and after
 
 
-def _repaired(linted: Linted, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
+def _repaired(found: Found, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
     """Return the content of every file with a fixable finding, before and after its repair."""
     fixes: dict[str, list[Diagnostic]] = {}
-    for finding in linted.findings:
+    for finding in found.findings:
         if is_mendable(finding, unsafe):
             fixes.setdefault(finding.source.file, []).append(finding)
     repaired = {}
-    for file in (file for file in linted.files if str(file) in fixes):
+    for file in (file for file in found.files if str(file) in fixes):
         if file not in contents and not file.is_file():
             raise UserError(f"{file}: not a file that can be written; --fix repairs files in place")
         before = contents[file] if file in contents else read_content(file)

@@ -17,7 +17,7 @@ from foon_asp.cli.verbs import FIRST, FOR_PROGRAMS, SHELL_REQUEST, VERBS, verb_c
 from foon_asp.cli.whole_process import BEGAN, keep, leave
 from foon_asp.deadline import LimitError, none_lost
 from foon_asp.errors import FoonWarning, UserError
-from foon_asp.escapes import escaped, note_line_end
+from foon_asp.escapes import escaped
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -93,9 +93,6 @@ def main(arguments: list[str] | None = None) -> None:
     with safe_streams(), none_lost(), warnings.catch_warnings():
         warnings.simplefilter("always", FoonWarning)
         warnings.showwarning = _warned
-        for word in words:
-            note_line_end(word)
-            note_line_end(word.partition("=")[2])
         say_remarks("--quiet" not in words[: words.index("--") if "--" in words else None])
         code = _run(words, BEGAN if arguments is None else None)
         try:

@@ -12,9 +12,9 @@ from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress_line import bytes_bar
 from foon_asp.errors import UserError
 from foon_asp.questions.merge import merge_files
-from foon_asp.report.unit_block import kept_apart_text
-from foon_asp.report.whole_file import utf_8
+from foon_asp.results.table import rendered
 from foon_asp.text.data_folder import find_data
+from foon_asp.whole_file import utf_8
 
 
 @click.command("merge")
@@ -85,7 +85,7 @@ def command(
         click.echo(merged.text(), nl=False)
         return ExitCode.DONE
     write_output(output, utf_8(merged.foon()))
-    if report and merged.network is not None:
-        click.echo(kept_apart_text(merged.network), err=True, nl=False)
+    if report:
+        click.echo(rendered(merged.kept_apart()), err=True, nl=False)
     click.echo(merged.text(), err=True, nl=False)
     return ExitCode.DONE

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TextIO, cast
 import click
 
 from foon_asp.errors import UserError
-from foon_asp.escapes import encodable, escaped_lines, forget_line_ends
+from foon_asp.escapes import encodable, escaped_lines
 from foon_asp.results.table import Part, rendered
 
 if TYPE_CHECKING:
@@ -96,7 +96,6 @@ class SafeStream:
 @contextlib.contextmanager
 def safe_streams() -> Iterator[None]:
     """Replace standard output and error by :class:`SafeStream` in a ``with`` block."""
-    forget_line_ends()
     out, err = sys.stdout, sys.stderr
     sys.stdout = cast(TextIO, SafeStream(out))
     sys.stderr = cast(TextIO, SafeStream(err, remarks=True))
@@ -116,14 +115,14 @@ def write_data(content: str | bytes) -> None:
 
     Raises :class:`UserError` for text that UTF-8 cannot hold.
     """
-    from foon_asp.report.whole_file import utf_8
+    from foon_asp.whole_file import utf_8
 
     cast(SafeStream, sys.stdout).write_data(utf_8(content) if isinstance(content, str) else content)
 
 
 def write_output(output: Path | None, content: bytes) -> None:
     """Write into a file, and report it on stderr; or to standard output for ``None`` or ``-``."""
-    from foon_asp.report.whole_file import write_whole
+    from foon_asp.whole_file import write_whole
 
     if output is None or str(output) == "-":
         write_data(content)
@@ -164,7 +163,7 @@ def write_parts(parts: Iterable[Part]) -> None:
 def say(text: str) -> None:
     """Write a remark to standard error, wrapped at the width of a terminal."""
     width = shutil.get_terminal_size().columns if sys.stderr.isatty() else None
-    click.echo(rendered([text], width), err=True, nl=False)
+    click.echo(rendered(text.split("\n"), width), err=True, nl=False)
 
 
 def with_plain_signs(text: str) -> str:

@@ -17,7 +17,7 @@ from foon_asp.asp.reporter import Reporter
 from foon_asp.cli.output import console, say
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective
-from foon_asp.text.bytes_read import size_of, telling
+from foon_asp.text.reading import size_of, telling
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -95,7 +95,7 @@ class Progress(Reporter):
 
     def line(self, now: float) -> str:
         """Return the line at the time ``now`` of the monotonic clock."""
-        from foon_asp.report.answer import bound_text, costs_text  # slow to import: only for long searches
+        from foon_asp.results.figure_text import bound_text, costs_text  # slow to import: for long searches
 
         seconds = f"{now - self._began:.0f} s"
         limit = None if self._deadline is None else self._deadline.left

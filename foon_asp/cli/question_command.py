@@ -3,7 +3,7 @@
 import contextlib
 import sys
 import textwrap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -107,7 +107,7 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
                 click.echo(f"{chart} is not written: {error}", err=True)
         with asked_by(Caller(Reporter(), deadline=deadline)):
             if output is None:
-                _show(result, form, parameters(question, values, Part.TEXT))
+                _show(result, form)
             else:
                 _write(result, form, output)
         return _EXIT_CODES[result.ending]
@@ -149,10 +149,10 @@ def _form(question: Question, named: str | None, output: Path | None) -> str:
     return form
 
 
-def _show(result: Result, format_: str, text_options: Mapping[str, Any]) -> None:
+def _show(result: Result, format_: str) -> None:
     """Write the result to standard output, and its remark, which the format cannot hold, to stderr."""
     if format_ == "text":
-        write_parts(result.show(**text_options))
+        write_parts(result.show())
     elif format_ == "json":
         click.echo(result.json_text(), nl=False)
     elif format_ in _ESCAPED:

@@ -13,12 +13,14 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.shown_diff import show_diff
 from foon_asp.errors import UserError
 from foon_asp.network import counted
-from foon_asp.report.whole_file import utf_8, write_all_whole
 from foon_asp.text.diagnostics import InputError, Rename
 from foon_asp.text.folder_files import foon_files
+from foon_asp.text.formats import format_of
+from foon_asp.text.line import NameKind
 from foon_asp.text.plain_file import read_content, read_plain_text
-from foon_asp.text.reader import FoonReader
-from foon_asp.text.renaming import TABLES, NameKind, Renaming, is_name, mentioned
+from foon_asp.text.renaming import Renaming, is_name
+from foon_asp.text.side_table import TABLES
+from foon_asp.whole_file import utf_8, write_all_whole
 
 _WITH_ARTICLE = {NameKind.OBJECT: "an object", NameKind.WORD: "a word of relations"}
 
@@ -60,16 +62,17 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
         raise UserError(f"{new!r} cannot be the name of {_with_article(renaming.rename.kind)} in FOON text")
     errors = []
     for file, text in texts.items():
-        renaming.learn(text, str(file))
-        errors += renaming.not_understood(text, str(file))
+        format_ = format_of(text, str(file))
+        renaming.learn(format_.names(text, str(file)))
+        try:
+            format_.normalised(text, str(file))
+        except InputError as error:
+            errors += [each for each in error.diagnostics if old in each.excerpt]
     if errors:
         raise InputError(errors)
     changed = {}
     for file, text in texts.items():
-        after = renaming.renamed(text, str(file))
-        rows = renaming.rows_of_new_name(after, str(file))
-        if len(rows) > 1:
-            raise UserError(f"{file} would have two different rows for {new!r}; take one of them out before")
+        after = format_of(text, str(file)).renamed(text, str(file), renaming)
         if after != text:
             changed[file] = text, after
     for file, (before, after) in changed.items():
@@ -95,10 +98,11 @@ def _byte_order_mark(file: Path) -> bytes:
 
 def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
     """Return the kind of the old name; raises :class:`UserError` if it is no name, or of several kinds."""
-    reader = FoonReader()
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():
-        counts.update((str(kind), name) for kind, name, _ in mentioned(text, str(file), reader))
+        counts.update(
+            (str(kind), name) for kind, name, _ in format_of(text, str(file)).names(text, str(file))
+        )
     kinds = [possible for possible in NameKind if counts[possible, old]]
     if kind is not None and kind in kinds:
         return kind

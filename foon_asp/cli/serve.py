@@ -14,8 +14,8 @@ from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.problem import parse_objectives
-from foon_asp.questions.arguments import settings
 from foon_asp.questions.contract import Question
+from foon_asp.questions.how import settings_of
 
 _FILE_OPTIONS = {"output": "-o", "format_": "--format"}
 
@@ -55,7 +55,13 @@ def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -
         items=question["items"],
         beside=tuple(question["beside"]),
     )
-    rules = settings(question["constraints"], question["constants"], question["encodings"])
+    rules = settings_of(
+        {
+            "constraints": question["constraints"],
+            "constants": question["constants"],
+            "encodings": question["encodings"],
+        }
+    )
     example = dataset.problem((0,), first.containers)
     # to report errors in files of rules before the page is opened
     assemble(rules, functools.partial(click.echo, err=True), problem=example)

@@ -7,7 +7,7 @@ import click
 from foon_asp.cli.output import write_data
 from foon_asp.escapes import escaped
 from foon_asp.report.line_diff import line_diff
-from foon_asp.report.whole_file import utf_8
+from foon_asp.whole_file import utf_8
 
 
 def show_diff(file: str, before: str, after: str) -> None:

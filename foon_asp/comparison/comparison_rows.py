@@ -2,8 +2,6 @@
 
 import hashlib
 from collections.abc import Sequence
-from fractions import Fraction
-from typing import Any
 
 import msgspec
 
@@ -12,8 +10,8 @@ from foon_asp.asp.assembly import rules_digest
 from foon_asp.comparison.comparison import Comparison
 from foon_asp.comparison.rows_file import RowForm
 from foon_asp.problem import Objective, Problem
-from foon_asp.proof.verify import digests
-from foon_asp.results.plain import plain
+from foon_asp.proof.verify import Subject
+from foon_asp.results.plain import plain, read_plain
 from foon_asp.searches import Search, SearchSettings
 from foon_asp.text.json_value import Json, json_line
 
@@ -28,7 +26,7 @@ def read_comparison(row: Json) -> Comparison:
         for search in row["searches"]
     ]
     fields = row | {"optimum": _by_objective(row["optimum"]), "searches": searches}
-    comparison = msgspec.convert(fields, Comparison, dec_hook=_exact)
+    comparison = read_plain(Comparison, fields)
     if json_line(plain(comparison)) != json_line(row):
         raise ValueError("more than what is written, or something else")
     return comparison
@@ -36,12 +34,6 @@ def read_comparison(row: Json) -> Comparison:
 
 def _by_objective(values: Json) -> dict[Objective, object]:
     return {Objective(name): value for name, value in values.items()}
-
-
-def _exact(_: type, value: Any) -> Objective | Fraction | int:
-    if isinstance(value, Objective) or type(value) is int:
-        return value
-    return Fraction(*map(int, value["exact"].split("/")))  # no exponents: 1e999999 has a million digits
 
 
 COMPARISONS = RowForm("compare-row", plain, read_comparison, lambda comparison: comparison.goal.node)
@@ -54,9 +46,8 @@ def comparisons_question(
 
     A file with another question is refused when a comparison is resumed.
     """
-    data: list[object] = [
-        digests(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
-    ]
+    subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
+    data: list[object] = [subject.digests()]
     if problem.items is not None:
         data += [problem.flows, sorted(map(problem.stock_of, problem.kitchen), key=repr)]
     return {

@@ -1,15 +1,25 @@
 """Data that was read, and the problems that are posed of it."""
 
-import copy
 import shlex
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
-from foon_asp.dataset.names import changed_prices, changed_rates, item_id, listed, node_id, node_ids
+from foon_asp.dataset.kitchen import Kitchen
+from foon_asp.dataset.names import (
+    NamesAndUnits,
+    changed_prices,
+    changed_rates,
+    item_id,
+    listed,
+    node_id,
+    node_ids,
+)
+from foon_asp.dataset.prices import NO_PRICES, DataPrices
+from foon_asp.dataset.source import Source
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -18,30 +28,34 @@ from foon_asp.network import (
     UnitPrices,
     counted,
     pattern_at_level,
-    starting_kitchen,
 )
 from foon_asp.problem import (
     Changes,
+    ContainerRule,
     Measure,
     Names,
     Number,
+    Objective,
     Problem,
     UnitPricesNamed,
     Unpriced,
     UsedUp,
     container_rule,
-    count_unpriced,
-    first_places,
     unrated_text,
 )
-from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning, kitchen_nodes
-from foon_asp.text.goal_name import NodeNames, entry_names, find_goal, listed_goal, listed_nodes
+from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning
+from foon_asp.text.goal_name import entry_names, find_goal, listed_goal, listed_nodes
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.repeated_node import refuse_repeated
 from foon_asp.warning import warn
 
 if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.proof.verify import Subject
+    from foon_asp.store.elsewhere import Elsewhere
+
+
+FIRST = 1000
+"""About as many units of a store are read at first, for a question that can need many."""
 
 
 def ask(
@@ -67,93 +81,141 @@ def ask(
     )
 
 
+@dataclass(frozen=True, eq=False)
 class Dataset:
-    """Data that was read, and how many seconds that took.
+    """Data that was read, of a ``source``: text, or a store, which is read as far as each question goes.
 
-    Whoever asks it for goals and problems leaves the rest to it; ``data`` is everything, for those that need
-    it. ``listed`` are the entries of the goals file, ``names`` what goals are looked up in, ``rates`` the
+    Whoever asks it for goals and problems leaves the rest to it; :attr:`data` is everything, for those that
+    need it. Ids are those of the whole network. ``listed`` are the entries of the goals file, ``rates`` the
     success rates of motions, ``None`` where none are known, and ``utensils`` the labels that the container
-    rule ``implied`` looks at. ``remarks`` are what was assumed while reading, in words, and ``brief``
-    the same in few lines; ``has_kitchen`` says that a kitchen was given, even an empty one; without one, the
-    starting kitchen is at hand.
-    ``goals_from`` says what the entries were assumed from if no file lists goals. ``measures`` are the
-    user's own, by name.
+    rule ``implied`` looks at. ``kitchen_items`` are the entries of the kitchen file, ``None`` for those in
+    the store. ``starting`` says that the starting kitchen is at hand, as far as it was not changed.
+    ``goals_from`` says what the entries were assumed from if no file lists goals. ``remarks`` are what was
+    assumed while reading, in words, and ``brief`` the same in few lines; ``has_kitchen`` says that a kitchen
+    was given, even an empty one. ``measures`` are the user's own, by name.
     """
 
-    measures: Mapping[str, Measure] = MappingProxyType({})
+    source: Source
+    kitchen: Kitchen
+    listed: Sequence[ListedObject] = ()
+    rates: Mapping[str, Fraction] | None = None
+    utensils: frozenset[str] = frozenset()
+    prices: DataPrices = NO_PRICES
+    kitchen_items: tuple[ListedObject, ...] | None = ()
+    starting: bool = False
+    goals_from: str = ""
+    remarks: tuple[str, ...] = ()
+    brief: tuple[str, ...] = ()
+    has_kitchen: bool = True
+    measures: Mapping[str, Measure] = field(default_factory=dict)
 
-    def __init__(
-        self, data: Data, read_seconds: float, remarks: tuple[str, ...] = (), has_kitchen: bool = True
-    ) -> None:
-        self._data = data
-        self.listed: Sequence[ListedObject] = data.goals
-        self.names: NodeNames = data.network
-        self.rates: Mapping[str, Fraction] | None = data.rates
-        self.utensils = data.utensils
-        self.read_seconds = read_seconds
-        self.remarks = self.brief = remarks
-        self.has_kitchen = has_kitchen
-        self.goals_from = data.goals_from
-
-    @property
-    def unrated(self) -> str:
-        """The motions without a success rate, in words; empty where all have one, or no rates are known."""
-        rates, network = self.rates, self.data.network
-        if rates is None or rates.keys() >= set(network.motions):
-            return ""
-        return unrated_text(first_places(network), rates)
+    @classmethod
+    def of(cls, data: Data, seconds: float = 0.0) -> Self:
+        """Return data that were read whole, which took some seconds."""
+        return cls(
+            Source(data.network, seconds, data.left_out, data.repeated),
+            Kitchen(data.kitchen),
+            data.goals,
+            data.rates,
+            data.utensils,
+            DataPrices.of(data.unit_prices),
+            data.kitchen_items,
+            data.starting,
+            data.goals_from,
+        )
 
     def close(self) -> None:
-        """Close the files that are read only as far as questions go; there are none here."""
+        """Close the files that are read only as far as questions go, for all data that vary this too."""
+        self.source.close()
 
     @property
+    def names(self) -> NamesAndUnits:
+        """What object nodes and units are looked up in."""
+        return self.source.names
+
+    @property
+    def read_seconds(self) -> float:
+        """How many seconds reading took so far."""
+        return self.source.seconds
+
+    @cached_property
+    def unrated(self) -> str:
+        """The motions without a success rate, in words; empty where all have one, or no rates are known."""
+        if self.rates is None or self.rates.keys() >= set(self.source.motions):
+            return ""
+        return unrated_text(self.source.motion_places(), self.rates)
+
+    @cached_property
     def data(self) -> Data:
-        """Everything there is."""
-        return self._data
+        """Everything there is: a store is read whole."""
+        network = self.source.whole()
+        items = self.source.kitchen_items() if self.kitchen_items is None else self.kitchen_items
+        return self._data(network, self.kitchen.ids)._replace(kitchen_items=items)
+
+    def _data_of(self, network: Network) -> Data:
+        """Return the data of a part of the network, or of all of it where it is in memory."""
+        if network is self.names:
+            return self.data
+        at_hand = (place for place, o in enumerate(network.object_numbers) if o in self.kitchen)
+        return self._data(network, frozenset(at_hand))
+
+    def _data(self, network: Network, kitchen: frozenset[int]) -> Data:
+        return Data(
+            network,
+            kitchen,
+            (),
+            tuple(self.listed),
+            None if self.rates is None else dict(self.rates),
+            self.utensils,
+            (),
+            self.source.left_out,
+            self._unit_prices(network),
+            self.starting,
+            self.goals_from,
+            self.source.repeated,
+        )
+
+    def _unit_prices(self, network: Network) -> UnitPrices | None:
+        motions, units, from_file = self.prices
+        stored = self.source.unit_prices(network, from_file)
+        if motions is None and not units and stored is None:
+            return None
+        return UnitPrices(motions or {}, {**stored, **units} if stored else units)
 
     @property
     def whole_network(self) -> Network:
-        """The whole network."""
-        return self.data.network
+        """The whole network; of a store, units and nodes are read when they are looked at."""
+        return self.source.touched()
 
     @property
     def unit_prices(self) -> UnitPrices | None:
-        """The prices of units, ``None`` where none are known."""
+        """The prices of units, ``None`` where none are known; all of them are read."""
         return self.data.unit_prices
 
     @property
     def motions(self) -> list[str]:
         """The motions of the network, in alphabetical order."""
-        return sorted(set(self.data.network.motions))
-
-    @property
-    def kitchen(self) -> frozenset[int]:
-        """The object nodes at hand, by id."""
-        return self.data.kitchen
+        return sorted(self.source.motions)
 
     def at_hand(self, o: int) -> bool:
         """Whether the kitchen has an object node, by id."""
-        return o in self.data.kitchen
-
-    def kitchen_for(self, goals: Iterable[int]) -> frozenset[int]:
-        """Return the object nodes available to a question about goals; a starting kitchen withholds these."""
-        added, lacking = self.goal_changes(goals)
-        return self.kitchen.union(added).difference(lacking) if added or lacking else self.kitchen
+        return o in self.kitchen
 
     def made_too(self, objects: Iterable[int]) -> list[int]:
         """Return those of some nodes of a starting kitchen that a unit makes out of others."""
-        return list(filter(starting_kitchen(self.data.network).is_made, objects))
+        return [o for o in objects if self.source.starting.makers(o)]
 
-    def goal_changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
-        """Return what a starting kitchen has more, and what it lacks, because these are the goals."""
-        if not self.data.starting:
-            return frozenset(), frozenset()
-        assumed = starting_kitchen(self.data.network)
-        added, lacking = assumed.changes(tuple(goals))
+    def for_goals(self, goals: Iterable[int]) -> "Dataset":
+        """Return the data with the kitchen for goals: a starting kitchen withholds these."""
+        if not self.starting:
+            return self
+        assumed = self.source.starting
+        added, lacking = assumed.changes(goals)
         # what was taken out stays out
-        return (
-            (added - (assumed.nodes - self.data.kitchen), lacking) if added or lacking else (added, lacking)
-        )
+        added = frozenset(o for o in added if o in self.kitchen or o not in assumed.nodes)
+        if not added and not lacking:
+            return self
+        return replace(self, kitchen=self.kitchen.changed(added, lacking))
 
     def goals(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
         """Find the goals by name; without a name, the goals file has to hold exactly one.
@@ -176,7 +238,7 @@ class Dataset:
         return tuple(dict.fromkeys(self.each_goal(names)))
 
     def assumed_goals(self) -> list[ObjectNode]:
-        """Give the goals that were assumed because no file lists any; empty where one does."""
+        """Return the goals that were assumed because no file lists any; empty where one does."""
         return self.listed_goals() if self.goals_from else []
 
     def listed_goals(self) -> list[ObjectNode]:
@@ -195,30 +257,34 @@ class Dataset:
         return [node for entry in self.listed for node in listed_nodes(entry, self.names)]
 
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
-        """Give the same data with the kitchen of another file."""
-        kitchen = kitchen_nodes(self.data.network, items)
-        data = self.data._replace(kitchen=kitchen, kitchen_items=tuple(items), starting=False)
-        return self._varied(data)
+        """Return the same data with the kitchen of another file."""
+        names = self.names
+        patterns = [pattern_at_level(item.pattern, names.level) for item in items]
+        kitchen = Kitchen(frozenset(o for pattern in patterns for o in names.find(pattern)))
+        return self._varied(kitchen=kitchen, kitchen_items=tuple(items), starting=False)
 
     def with_goals(self, goals: Sequence[ListedObject]) -> "Dataset":
-        """Give the same data with other entries of a goals file."""
-        other = self._varied(self.data._replace(goals=tuple(goals), goals_from=""))
-        other.has_kitchen = self.has_kitchen
-        return other
+        """Return the same data with other entries of a goals file."""
+        return self._varied(listed=tuple(goals), goals_from="", has_kitchen=self.has_kitchen)
 
     def with_starting_kitchen(self) -> "Dataset":
         """Return the same data with what makes the units of each file run at hand."""
-        kitchen = starting_kitchen(self.data.network).nodes
-        return self._varied(self.data._replace(kitchen=kitchen, kitchen_items=(), starting=True))
+        return self._varied(kitchen=Kitchen(self.source.starting.nodes), kitchen_items=(), starting=True)
 
-    def _varied(self, data: Data) -> "Dataset":
-        return Dataset(data, self.read_seconds).measured(self.measures)
+    def _varied(self, **changes: Any) -> "Dataset":
+        """Return data of which nothing was assumed while reading."""
+        return replace(self, **{"remarks": (), "brief": (), "has_kitchen": True, **changes})
+
+    def remarked(
+        self, warnings: Iterable[str], brief: Iterable[str], remarks: Sequence[str], has_kitchen: bool
+    ) -> "Dataset":
+        """Return the same data with what was assumed in reading: warnings, also in few lines, and remarks."""
+        told, in_brief = (*warnings, *remarks), (*brief, *remarks)
+        return replace(self, remarks=told, brief=in_brief, has_kitchen=has_kitchen)
 
     def measured(self, measures: Mapping[str, Measure]) -> "Dataset":
-        """Give the same data with other measures of the user's."""
-        other = copy.copy(self)
-        other.measures = measures
-        return other
+        """Return the same data with other measures of the user's."""
+        return replace(self, measures=measures)
 
     def varied(
         self,
@@ -226,29 +292,27 @@ class Dataset:
         less: Collection[int],
         only: Collection[int] | None,
     ) -> "Dataset":
-        """Give the same data with these object nodes, by id, put into the kitchen and taken out of it.
+        """Return the same data with these object nodes, by id, put into the kitchen and taken out of it.
 
         ``only`` are all that is in the kitchen before that, where it is not ``None``.
         """
-        kitchen = self._data.kitchen if only is None else only
-        items = self._data.kitchen_items if only is None else ()
-        at_hand = frozenset(kitchen).union(more).difference(less)
-        starting = self._data.starting and only is None
-        data = self._data._replace(kitchen=at_hand, kitchen_items=items, starting=starting)
-        return self._varied(data)
+        if only is None:
+            return self._varied(kitchen=self.kitchen.changed(more, less))
+        return self._varied(kitchen=Kitchen(only, more, less), kitchen_items=(), starting=False)
 
     def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> "Dataset":
-        """Give the same data with some success rates and some prices changed."""
+        """Return the same data with some success rates and some prices changed; of units, ids are read."""
         if rates is None and unit_prices is None:
             return self
-        network = self._data.network
-        changed = changed_rates(self._data.rates, rates, self.motions)
-        prices = changed_prices(self._data.unit_prices, unit_prices, self.motions, network)
-        data = self._data._replace(rates=None if changed is None else dict(changed), unit_prices=prices)
-        return self._varied(data)
+        motions, units, _ = prices = self.prices
+        if unit_prices is not None:
+            known = UnitPrices(motions or {}, units)
+            motions, units = changed_prices(known, unit_prices, self.motions, self.names)
+            prices = prices._replace(motions=motions, units=units)
+        return self._varied(rates=changed_rates(self.rates, rates, self.motions), prices=prices)
 
     def vary(self, changes: Changes) -> "Dataset":
-        """Give the same data with another kitchen, other rates or prices."""
+        """Return the same data with another kitchen, other rates or prices."""
         kitchen, adding, without, rates, unit_prices, measures = changes
         dataset = self.valued(rates, unit_prices)
         if measures is not None:
@@ -297,16 +361,28 @@ class Dataset:
         return _with_own_rates(ask(data, goals, problem.containers, dataset, problem.items), problem)
 
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
-        """Give what a certificate speaks about; of a store, it may not be read, and its digests be trusted.
+        """Return what a certificate speaks about: all of it, or of a store what is read when it is looked at.
 
-        A starting kitchen is that for these ``goals``. Raises :class:`UserError` where ``everything`` is read
-        of a store whose digests are not true.
+        Then the digests of the network and of what was imported beside it are those that the store states.
+        All is read, too, where a starting kitchen or other prices count, which is that for these ``goals``.
+        Raises :class:`UserError` where that shows that a digest that is stated is not true.
         """
-        data = self.data
-        rates = None if self.unrated else data.rates
         from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
 
-        return Subject(data.network, self.kitchen_for(goals), rates, data.utensils, data.unit_prices)
+        source, stocked = self.source, self.for_goals(goals)
+        rates = None if self.unrated else self.rates
+        own_prices = self.prices == source.prices
+        everything = everything or self.starting or not own_prices or not source.digests
+        stated = dict(source.true_digests() if everything else source.digests)
+        if not self.kitchen.is_all_of(source.kitchen):
+            stated.pop("kitchen", None)
+        if not own_prices:
+            stated.pop("prices", None)
+        if everything:
+            data = self.data
+            return Subject(data.network, stocked.kitchen.ids, rates, self.utensils, data.unit_prices, stated)
+        network = source.touched()
+        return Subject(network, stocked.kitchen, rates, self.utensils, None, stated, tuple(sorted(stated)))
 
     def named_goals(self, names: Names) -> tuple[int, ...]:
         """Find goals that Python names, by id in the whole network, each once.
@@ -328,7 +404,7 @@ class Dataset:
         raise UserError("name a goal" + (f"; the goals file has {known}" if known else ""))
 
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
-        """Give the same data with the kitchen that a problem posed of it has."""
+        """Return the same data with the kitchen that a problem posed of it has."""
         from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
 
         more, less = self.kitchen_changes(shown(problem), _whole_goals(problem))
@@ -337,22 +413,21 @@ class Dataset:
     def kitchen_changes(
         self, problem: Problem, goals: Iterable[int]
     ) -> tuple[frozenset[int], frozenset[int]]:
-        """Give what a problem posed of this data has in its kitchen beyond it, and what it lacks.
+        """Return what a problem posed of this data has in its kitchen beyond it, and what it lacks.
 
         Ids are those of the whole network, those of its ``goals`` too.
         """
-        ours, theirs = self.kitchen_for(goals), problem.kitchen
-        return (frozenset(), frozenset()) if ours is theirs else (theirs - ours, ours - theirs)
+        at_hand, network = self.for_goals(goals).kitchen, problem.network
+        if not network.object_numbers:
+            ours, theirs = at_hand.ids, problem.kitchen
+            return (frozenset(), frozenset()) if ours is theirs else (theirs - ours, ours - theirs)
+        theirs = frozenset(map(network.object_number, problem.kitchen))
+        ours = frozenset(o for o in network.object_numbers if o in at_hand)
+        return theirs - ours, ours - theirs
 
     def unpriced(self) -> Sequence[Unpriced]:
-        """Give the units that have no price, by motion."""
-        network, prices = self.data.network, self.data.unit_prices
-        known = (None,) * len(network) if prices is None else prices.each(network)
-        return count_unpriced(
-            (network.motions[unit], network.sources[unit])
-            for unit, price in enumerate(known)
-            if price is None
-        )
+        """Return the units that have no price, by motion."""
+        return self.source.unpriced(self.prices)
 
     def problem(
         self,
@@ -366,40 +441,83 @@ class Dataset:
         ``everything`` asks for units that no goal needs to be there too. ``items`` says that items are used
         up, if they are.
         """
-        return ask(self._stocked(goals), goals, containers, self, items)
+        stocked = self.for_goals(goals)
+        if everything:
+            return ask(stocked.data, goals, containers, self, items)
+        # of what may run out, more may have to be made
+        counted = {self.names.object_id(node) for node in (items.stock if items else ())}
+        at_hand = stocked.kitchen.changed((), [o for o in counted if o is not None])
+        cone = self.source.cone(goals, container_rule(containers), self.utensils, at_hand, None)
+        network = self.source.whole() if cone is None else self.source.part(cone.units, goals)
+        return ask(stocked._data_of(network), _places(network, goals), containers, self, items)
 
-    def _stocked(self, goals: Iterable[int]) -> Data:
-        """Return the data with the kitchen for goals."""
-        kitchen = self.kitchen_for(goals)
-        return self.data if kitchen is self.data.kitchen else self.data._replace(kitchen=kitchen)
+    def nearby(
+        self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = FIRST
+    ) -> Problem:
+        """Ask for goals that can need many units, of which of a store at ``first`` so many are read.
 
-    def nearby(self, goals: Sequence[int], containers: str, items: UsedUp | None = None) -> Problem:
-        """Ask for goals that can need many units, which of a store are read when they are looked at."""
-        return self.problem(goals, containers, items=items)
+        Where they need more than these, the rest is read when it is looked at. Where no kitchen was given,
+        all that they need is read, since what is taken to be at hand is listed.
+        """
+        cone = None
+        if items is None and self.has_kitchen:
+            at_hand = self.for_goals(goals).kitchen
+            cone = self.source.cone(goals, container_rule(containers), self.utensils, at_hand, first)
+        if cone is None:
+            return self.problem(goals, containers, items=items)
+        from foon_asp.dataset.nearby import Nearby, NearbyProblem  # noqa: PLC0415 (text does without)
+
+        return NearbyProblem.of(Nearby(self, cone, containers), first)
+
+    def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
+        """Ask for goals over a part of a network that has these units."""
+        network = self.source.part(units, goals)
+        return ask(self.for_goals(goals)._data_of(network), _places(network, goals), containers, self)
+
+    def elsewhere(self, containers: str, objective: Objective) -> "Elsewhere | None":
+        """Look at all units of a store, unless all would have to be read to know what is at hand."""
+        if self.starting:
+            return None
+        implied = container_rule(containers) is ContainerRule.IMPLIED
+        return self.source.elsewhere(
+            self.kitchen.ids, self.utensils if implied else (), self.rates, objective
+        )
 
     def part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()
     ) -> tuple[Data, tuple[int, ...]]:
-        """Give data with at least these goals, these units by id, and what a tree is made of.
+        """Return data with at least these goals, these units by id, and what a tree is made of.
 
         With it come the ids that the goals have there. Raises :class:`UserError` for ids of no unit.
         """
-        self._check_units(units, len(self.data.network))
-        return self._stocked(goals), tuple(goals)
-
-    def _check_units(self, units: Iterable[int], count: int) -> None:
+        units, names = list(units), self.names
         for unit in units:
-            if not 0 <= unit < count:
+            if not 0 <= unit < self.source.unit_count:
+                count = self.source.unit_count
                 raise UserError(f"there is no unit {unit}: the network has units 0 to {count - 1}")
+        tree = list(tree)
+        known = [number for unit in tree if (number := names.unit_id(unit)) is not None]
+        nodes = {node for unit in tree for node in (*unit.inputs, *unit.outputs)}
+        objects = [o for node in nodes if (o := names.object_id(node)) is not None]
+        network = self.source.part([*units, *known], [*goals, *objects])
+        return self.for_goals(goals)._data_of(network), _places(network, goals)
+
+
+def _places(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
+    """Return the ids that goals have in a network that may be a part."""
+    if not network.object_numbers:
+        return tuple(goals)
+    places = {o: place for place, o in enumerate(network.object_numbers)}
+    return tuple(places[goal] for goal in goals)
 
 
 def left_out(count: int) -> str:
-    """Say that lines were left out."""
+    """Return a warning that lines were left out."""
     return f"warning: {counted(count, 'line')} left out"
 
 
 def _whole_goals(problem: Problem) -> tuple[int, ...]:
-    """Give the goals of a problem by id in the whole network."""
+    """Return the goals of a problem by id in the whole network."""
     from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
 
     problem = shown(problem)
@@ -407,7 +525,7 @@ def _whole_goals(problem: Problem) -> tuple[int, ...]:
 
 
 def _with_own_rates(posed: Problem, problem: Problem) -> Problem:
-    """Give a problem the rates that units of another one over the same network have of their own."""
+    """Return a problem with the rates that units of another one over the same network have of their own."""
     if not problem.own_rates:
         return posed
     numbered = {problem.network.unit_number(unit): rate for unit, rate in problem.own_rates.items()}

@@ -9,8 +9,8 @@ from foon_asp.dataset.names import node_id
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 from foon_asp.problem import ITEMS, UsedUp
-from foon_asp.text.item_list import read_stays, read_stock, stated_name
 from foon_asp.text.line import LineError
+from foon_asp.text.tables import STAYS, read_stock, stated_name
 
 Stock = str | PathLike[str] | Mapping[str | ObjectNode, int] | Mapping[ObjectNode, int]
 """The path of a stock file, or the number of copies by object node."""
@@ -48,7 +48,7 @@ def require_contents(level: int) -> None:
 
 def _told(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
     if isinstance(stays, str | PathLike):
-        found = read_stays(Path(stays))
+        found = STAYS.read(Path(stays))
     else:
         try:
             found = {stated_name(n) if isinstance(n, str) else n: bool(told) for n, told in stays.items()}

@@ -28,11 +28,11 @@ class Named(Protocol):
         """Whether the kitchen has an object node, by id."""
 
 
-class Units(Protocol):
-    """What units are looked up in."""
+class NamesAndUnits(NodeNames, Protocol):
+    """What nodes and units are looked up in."""
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
-        """Give the id of a unit, or ``None`` where it is none of these."""
+        """Return the id of a unit, or ``None`` where the network does not have it."""
 
 
 def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
@@ -97,7 +97,7 @@ def _label(name: str) -> str | None:
 def changed_rates(
     known: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None, motions: Collection[str]
 ) -> Mapping[str, Fraction] | None:
-    """Give success rates by motion with some of them changed; ``motions`` are those of the network."""
+    """Return success rates by motion with some of them changed; ``motions`` are those of the network."""
     if changed is None:
         return known
     rates = dict(known or {})
@@ -114,13 +114,10 @@ def changed_rates(
 
 
 def changed_prices(
-    known: UnitPrices | None, changed: UnitPricesNamed | None, motions: Collection[str], names: Units
-) -> UnitPrices | None:
-    """Give prices of units with some of them changed; ``names`` has the units, and ``motions`` are theirs."""
-    if changed is None:
-        return known
-    by_motion = dict(known.motions) if known else {}
-    by_unit = dict(known.units) if known else {}
+    known: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NamesAndUnits
+) -> UnitPrices:
+    """Return prices of units with some changed; ``names`` has the units, and ``motions`` are theirs."""
+    by_motion, by_unit = dict(known.motions), dict(known.units)
     for named, given in changed.items():
         price = unit_price(given, f"the price of {str(named)!r}")
         if isinstance(named, FunctionalUnit):
@@ -143,12 +140,12 @@ def changed_prices(
 
 
 def listed(names: Names) -> list[str | ObjectNode]:
-    """Give one name or several as a list."""
+    """Return one name or several as a list."""
     # a node is a tuple, and so could pass for several names
     return [names] if isinstance(names, str | ObjectNode) else list(names)
 
 
 def in_python(error: GoalError) -> str:
-    """Give the candidates of an error as Python has them."""
+    """Return the candidates of an error as Python has them."""
     lines = [error.said, *(f"  {candidate!r}" for candidate in error.candidates)]
     return "\n".join(lines + ([f"  ... and {error.more} more"] if error.more else []))

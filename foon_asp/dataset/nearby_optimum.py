@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # plain answers do not need it
 
 
 def near_goals(problem: Problem, objectives: Sequence[Objective], how: Settings) -> "Nearby | None":
-    """Give what is near the goals of a large store, where the whole may not have to be read for an answer."""
+    """Return what is near the goals of a large store, where an answer may not need the whole."""
     near: Callable[[], Nearby | None] | None = getattr(problem, "near", None)
     if near is None or how.reductions != ALL or how.clingo_options:
         return None
@@ -93,7 +93,7 @@ def solve_nearby(
 
 
 def _leads(near: "Nearby", deadline: Deadline) -> bool:
-    """Say whether there is a tree without rules, or at a limit, whether there may be one."""
+    """Whether there is a tree without rules, or at a limit, whether there may be one."""
     while True:
         relaxed = near.relaxed
         found = reach(relaxed)
@@ -133,7 +133,7 @@ def _fewest(near: "Nearby", how: Settings, mattered: set[int]) -> list[int]:
 
 
 def least_with_more(costs: Costs, order: Sequence[Objective], units: int = 1) -> tuple[int | Fraction, ...]:
-    """Give the key that no tree is better than which has more units than one that costs this or more."""
+    """Return the key that no tree is better than which has more units than one that costs this or more."""
     least = dict(zip(order, costs.key(order), strict=True))
     least[Objective.UNITS] += units
     return tuple(least.values())

@@ -66,7 +66,7 @@ class _Search:
         self.best = _unknown(near, free)  # that was found so far, without a proof
 
     def result(self) -> Outcome | None:
-        """Give it, or what a limit left of it; ``None`` where what matters elsewhere cannot be told.
+        """Return it, or what a limit left of it; ``None`` where what matters elsewhere cannot be told.
 
         Raises :class:`LimitError`.
         """
@@ -157,7 +157,7 @@ class _Search:
         return None
 
     def _within(self, costs: Costs) -> int:
-        """Give what a unit elsewhere may cost in a tree that is better than one that costs this."""
+        """Return what a unit elsewhere may cost in a tree that is better than one that costs this."""
         order, least = self._order, self._free.costs
         assert least is not None
         key = costs.key(order)
@@ -181,7 +181,7 @@ def _numbers(found: Outcome) -> list[int]:
 
 
 def _unknown(near: Nearby, free: Outcome) -> Outcome:
-    """Give the bound of the best tree without rules, and no tree."""
+    """Return the bound of the best tree without rules, and no tree."""
     first = levels(free.objectives)[0]
     bounds = {each: bound for each, bound in free.bounds.items() if each == first}
     blank = free._replace(status=Status.UNKNOWN, units=None, costs=None, proof=None, cuts=(), cases=None)

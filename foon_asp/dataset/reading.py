@@ -18,7 +18,7 @@ def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dat
     began = time.perf_counter()
     if any(map(is_store, files.network)):
         # stores take SQLite along, which text does without
-        from foon_asp.dataset.stored_dataset import read_stored  # noqa: PLC0415
+        from foon_asp.dataset.reading_store import read_stored  # noqa: PLC0415
 
         return read_stored(files, level)
     data = read_data(files, lenient, level)
@@ -26,7 +26,6 @@ def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dat
     if data.rates is not None:
         remarks += unrated_remarks(first_places(data.network), data.rates)
     remarks += repeated_note(data.repeated)
-    told = (*summarize(data.warnings), *remarks)
-    dataset = Dataset(data, time.perf_counter() - began, told, files.kitchen is not None)
-    dataset.brief = (*in_brief(data.warnings), *remarks)
-    return dataset
+    dataset = Dataset.of(data, time.perf_counter() - began)
+    given = files.kitchen is not None
+    return dataset.remarked(summarize(data.warnings), in_brief(data.warnings), remarks, given)

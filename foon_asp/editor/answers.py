@@ -16,12 +16,12 @@ from foon_asp.linting.sheet import Sheet
 from foon_asp.network import Contents, ObjectNode, counted
 from foon_asp.text.data_folder import kitchen_file
 from foon_asp.text.diagnostics import InputError, Rename, Severity
-from foon_asp.text.formatter import format_text
+from foon_asp.text.formats import format_of
 from foon_asp.text.json_value import Json
-from foon_asp.text.line import Line, StateLine
+from foon_asp.text.line import Line, NameKind, StateLine, line_names
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import split_lines
-from foon_asp.text.renaming import NameKind, Renaming, is_name, line_names
+from foon_asp.text.renaming import Renaming, is_name
 
 _MAX_ITEMS = 100  # names or fixes in an answer: more are slower, and the next letter typed selects among them
 _MAX_UNITS_SHOWN = 8  # of a node, in its hover
@@ -217,7 +217,10 @@ def _definitions(checked: CheckedText, parameters: object) -> list[Json]:
     if node is None:
         return []
     sheet = Sheet("", text.lines, checked.names.files.reader)
-    lines = (sheet.line_of(node, first) for first, _ in _achievers_and_consumers(checked, node)[0])
+    lines = (
+        next((index for index, listed in sheet.blocks(first) if listed == node), first)
+        for first, _ in _achievers_and_consumers(checked, node)[0]
+    )
     return [{"uri": text.uri, "range": text.range(line)} for line in lines]
 
 
@@ -277,7 +280,7 @@ def _rename(checked: CheckedText, parameters: object) -> Json:
 
 def _renamed(checked: CheckedText, rename: Rename) -> list[Json]:
     """Return the edits of a renaming."""
-    renaming = Renaming(rename, checked.names.files.reader)
+    renaming = Renaming(rename)
     renaming.learn_ids(_ids(checked.names, NameKind(rename.kind), rename.new))
     return checked.text.edits([renaming.line(line) for line in checked.text.lines])
 
@@ -285,7 +288,7 @@ def _renamed(checked: CheckedText, rename: Rename) -> list[Json]:
 def formatted(text: EditedText) -> list[Json]:
     """Return the edits that bring the text into canonical form; none for a text with errors."""
     try:
-        return text.edits(split_lines(format_text(text.text, "", lenient=True)))
+        return text.edits(split_lines(format_of(text.text).normalised(text.text, "", lenient=True)))
     except InputError:
         return []
 

@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 from foon_asp.editor.edited_text import EditedText
 from foon_asp.errors import UserError
+from foon_asp.linting.context import Context
 from foon_asp.linting.linted_files import LintedFiles
-from foon_asp.linting.linter import lint_names
+from foon_asp.linting.linter import lint_context
 from foon_asp.linting.names import Names
 from foon_asp.linting.settings import LintSettings, find_settings
 from foon_asp.text.diagnostics import Diagnostic
@@ -30,9 +31,9 @@ def check(text: EditedText) -> CheckedText:
         settings = find_settings([text.file])
     except UserError as error:
         settings_error = str(error)
-    names = Names(LintedFiles([text.file], {text.file: text.text.encode("utf-8", "replace")}))
+    context = Context(LintedFiles([text.file], {text.file: text.text.encode("utf-8", "replace")}))
     findings = [
         (min(max(1, finding.source.line), len(text.lines)) - 1, finding)
-        for finding in settings.applied(lint_names(names))
+        for finding in settings.applied(lint_context(context))
     ]
-    return CheckedText(text, names, findings, settings_error)
+    return CheckedText(text, context.names, findings, settings_error)

@@ -6,8 +6,9 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from foon_asp.editor.json_rpc import parameter
+from foon_asp.text.formats import format_of
 from foon_asp.text.json_value import Json
-from foon_asp.text.plain_file import is_json, split_lines
+from foon_asp.text.plain_file import split_lines
 
 
 class EditedText:
@@ -18,7 +19,7 @@ class EditedText:
         self.text = text
         self.lines = split_lines(text)
         self.end = "\r\n" if "\r\n" in text else "\n"
-        self.is_json = is_json(text)
+        self.is_json = not format_of(text).has_comments
 
     @property
     def file(self) -> Path:

@@ -3,7 +3,7 @@
 import re
 from typing import NamedTuple
 
-from foon_asp.text.renaming import NameKind
+from foon_asp.text.line import NameKind
 
 _LINE_HEAD = re.compile(r"([OSM])(\d*)\t")
 NAME_KINDS: dict[str, tuple[NameKind, ...]] = {

@@ -11,7 +11,7 @@ from foon_asp.escapes import encodable
 from foon_asp.grounding.exact import LARGEST
 from foon_asp.network import ObjectNode, Source
 from foon_asp.problem import Objective, Problem, multiplies
-from foon_asp.text.exact_price import decimal_text
+from foon_asp.text.exact_number import decimal_text
 
 # What is said of every question, with arity; encodings/README.md gives the meanings. What an encoding of a
 # question reads beside it, its header says.

@@ -2,41 +2,57 @@
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
-from foon_asp.document.json_document import document
+from msgspec import Struct, ValidationError, convert
+
 from foon_asp.errors import UserError
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.json_value import Json, read_json, schema_name
+from foon_asp.text.json_value import read_json, schema_name
 from foon_asp.text.plain_file import read_content
 
-_KIND = "lint-baseline"
-_Key = tuple[str, str, str]  # file as seen from the baseline, code, and the line or, without one, the message
+
+class KnownFinding(Struct, frozen=True):
+    """How often a finding is known.
+
+    ``file`` is named as seen from the folder of the baseline, and ``text`` is the line, or the message where
+    there is none: a finding is the same wherever in the file its line stands.
+    """
+
+    file: str
+    code: str
+    text: str
+    count: int
 
 
-class Baseline:
-    """The known findings, as often as each is known."""
+class Baseline(Struct, frozen=True, tag_field="schema", tag=schema_name("lint-baseline")):
+    """The findings that are known."""
 
-    def __init__(self, file: Path, known: Counter[_Key]) -> None:
-        self._file, self._known = file, known
+    known: tuple[KnownFinding, ...]
 
-    def new(self, findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-        """Give the findings that are not known; where a line has more of a code than known, the last ones."""
-        left = self._known.copy()
+    @classmethod
+    def of(cls, file: Path, findings: Iterable[Diagnostic]) -> "Baseline":
+        """Return the baseline of a file by which these findings are known."""
+        counts = Counter(_key(file, finding) for finding in findings)
+        return cls(tuple(KnownFinding(*key, count) for key, count in sorted(counts.items())))
+
+    def compared(self, file: Path, findings: Iterable[Diagnostic]) -> tuple[list[Diagnostic], int]:
+        """Return the findings that the baseline of a file does not know, and how many of its own are gone.
+
+        Where a line has more findings of a code than are known, the last ones are new.
+        """
+        remaining = Counter[tuple[str, str, str]]()
+        for each in self.known:
+            remaining[each.file, each.code, each.text] += each.count
         new = []
         for finding in findings:
-            key = _key(self._file, finding)
-            if left[key]:
-                left[key] -= 1
+            key = _key(file, finding)
+            if remaining[key] > 0:
+                remaining[key] -= 1
             else:
                 new.append(finding)
-        return new
-
-    def gone(self, findings: Iterable[Diagnostic]) -> int:
-        """Count what is known and not found any more."""
-        return (self._known - Counter(_key(self._file, finding) for finding in findings)).total()
+        return new, remaining.total()
 
 
 def read_baseline(file: Path) -> Baseline:
@@ -45,18 +61,9 @@ def read_baseline(file: Path) -> Baseline:
     if not file.exists():
         raise UserError(f"{file}: there is no such file, {expected}")
     try:
-        read: Any = read_json(read_content(file))
-        if read["schema"] != schema_name(_KIND):
-            raise ValueError
-        known: Counter[_Key] = Counter()
-        for entry in read["known"]:
-            name, code, text, count = (entry[key] for key in ("file", "code", "text", "count"))
-            if not (isinstance(count, int) and all(isinstance(each, str) for each in (name, code, text))):
-                raise ValueError
-            known[name, code, text] += count
-    except (ValueError, LookupError, TypeError):
+        return convert(read_json(read_content(file)), Baseline)
+    except (ValueError, ValidationError):
         raise UserError(f"{file}: {expected}") from None
-    return Baseline(file, known)
 
 
 def check_replaceable(file: Path) -> None:
@@ -70,15 +77,6 @@ def check_replaceable(file: Path) -> None:
             ) from None
 
 
-def baseline_json(file: Path, findings: Sequence[Diagnostic]) -> Json:
-    """Give what to write into a baseline file, so that these findings are known."""
-    counts = Counter(_key(file, finding) for finding in findings)
-    keys = ("file", "code", "text", "count")
-    return document(
-        _KIND, known=[dict(zip(keys, (*key, n), strict=True)) for key, n in sorted(counts.items())]
-    )
-
-
-def _key(file: Path, finding: Diagnostic) -> _Key:
+def _key(file: Path, finding: Diagnostic) -> tuple[str, str, str]:
     within = Path(os.path.relpath(finding.source.file, file.parent)).as_posix()
     return within, finding.code, finding.excerpt or finding.message

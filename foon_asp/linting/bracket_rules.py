@@ -1,122 +1,113 @@
-"""What there is to say of brackets: of another kind than a word has elsewhere, or none."""
+"""Brackets of another kind than a word has elsewhere, and lines without them or with a wrong letter."""
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator
 
-from foon_asp.linting.names import Kind, Names, times
+from foon_asp.linting.context import Context
+from foon_asp.linting.names import Kind, times
+from foon_asp.linting.rule import WARNING, rule
 from foon_asp.linting.vocabulary import Bracket, Vocabulary
 from foon_asp.network import Contents, Relation
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import StateLine
-from foon_asp.text.reader import FoonReader
 
-_LONGEST = 3  # words of a relation: attached to, on top of
+_LETTERS = {Kind.STATE: "S", Kind.OBJECT: "O"}
+_MAX_WORDS = 3  # of a relation: attached to, on top of
 
 
-def bracket_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
-    """Give a finding for each distinct line whose bracket differs from what its word has elsewhere.
+@rule("other-bracket", WARNING, "a bracket of another kind than the word has elsewhere")
+def other_bracket(context: Context) -> Iterator[Diagnostic]:
+    """In `{ }` is an ingredient, in `[ ]` a place.
 
-    ``known`` has the words of the files, too.
+    In the files and in the vocabulary, the word stands with the other bracket nearly always, or the same
+    thing does.
     """
-    items = _of_items(names)
-    for word, mentions in names.mentions[Kind.WORD].items():
-        usual = known.usual_bracket(word)
-        for sheet, line, first, _ in mentions:
-            if not isinstance(line, StateLine) or line.remarks:
-                continue
-            attribute = line.attribute
-            held: tuple[str, ...]
-            other: Bracket
-            if isinstance(attribute, Relation):
-                held, other = (attribute.object,), Contents
-            elif isinstance(attribute, Contents):
-                held, other = attribute.ingredients, Relation
-            else:
-                continue
-            message = ""
-            if usual is other:
-                message = f"{word!r} stands with {_sign(usual)} nearly everywhere"
-            elif len(held) == 1 and usual is None:
-                here, there = items[word, held[0], type(attribute)], items.get((word, held[0], other), 0)
-                if there > here:
-                    message = f"'{word} {_written(other, held[0])}' stands {times(there)}, this {times(here)}"
-                elif other is Relation and held[0] in known.utensils and other in known.brackets[word]:
-                    message = f"{held[0]!r} is something that others are in or on"
-            if message:
-                shown = f"{word} {_written(other, ','.join(held))}"
-                message = f"{message}; is {shown!r} meant?"
-                yield names.sheets[sheet].finding(
-                    "other-bracket", message, first, column=names.sheets[sheet].lines[first].rfind("\t") + 2
-                )
-    for state in names.mentions[Kind.STATE]:
-        if meant := _bare(state, names, known):
-            for sheet, index, _ in names.by_sheet(Kind.STATE, state):
-                message = f"{state!r} is read as a state; is {meant!r} meant, with brackets behind a tab?"
-                yield names.sheets[sheet].finding("no-bracket", message, index, state)
+    mentions = [each for listed in context.names.mentions[Kind.WORD].values() for each in listed]
+    clean = [
+        (each, each.line.attribute)
+        for each in mentions
+        if isinstance(each.line, StateLine) and not isinstance(each.line.attribute, str)
+    ]
+    counts = Counter[Relation | Contents]()
+    for mention, attribute in clean:
+        counts[attribute] += mention.often
+    for mention, attribute in clean:
+        if not mention.line.remarks and (message := _other_is_meant(attribute, counts, context.known)):
+            sheet = context.sheets[mention.sheet]
+            meant = f"; is '{_in_other_bracket(attribute)}' meant?"
+            column = sheet.lines[mention.first].rfind("\t") + 2
+            yield sheet.finding(message + meant, mention.first, column=column)
 
 
-def without_doubtful_fixes(
-    remarks: Sequence[Diagnostic], known: Vocabulary, reader: FoonReader
-) -> list[Diagnostic]:
-    """Give remarks without the fixes of lines whose brackets are of two kinds, where the other may be meant.
-
-    What is a list, or what a word ``contains``, is in braces; else the word has to stand with that kind of
-    bracket elsewhere.
-    """
-    doubtful = set()
-    for remark in remarks:
-        if remark.code != "bracket" or "wrong bracket" not in remark.message:
-            continue
-        line = reader.parse(remark.excerpt)
-        attribute = line.attribute if isinstance(line, StateLine) else ""
-        if isinstance(attribute, Relation):
-            certain = known.usual_bracket(attribute.word) is Relation
-        elif isinstance(attribute, Contents):
-            listed = len(attribute.ingredients) > 1 or attribute.word == "contains"
-            certain = listed or known.usual_bracket(attribute.word) is Contents
-        else:
-            continue
-        if not certain:
-            doubtful.add(remark.source[:2])
-    return [remark._replace(fix=None) if remark.source[:2] in doubtful else remark for remark in remarks]
-
-
-def _of_items(names: Names) -> dict[tuple[str, str, Bracket], int]:
-    """Count the lines of a word with one thing in brackets, of each kind."""
-    counts: dict[tuple[str, str, Bracket], int] = {}
-    for word, mentions in names.mentions[Kind.WORD].items():
-        for mention in mentions:
-            attribute = mention.line.attribute if isinstance(mention.line, StateLine) else ""
-            if isinstance(attribute, Relation):
-                key: tuple[str, str, Bracket] = (word, attribute.object, Relation)
-            elif isinstance(attribute, Contents) and len(attribute.ingredients) == 1:
-                key = (word, attribute.ingredients[0], Contents)
-            else:
-                continue
-            counts[key] = counts.get(key, 0) + mention.often
-    return counts
-
-
-def _bare(state: str, names: Names, known: Vocabulary) -> str:
-    """Give the relation or the contents that a state may be: it begins as one and goes on with objects."""
-    words = state.split(" ")
-    for length in range(min(_LONGEST, len(words) - 1), 0, -1):
-        word, rest = " ".join(words[:length]), " ".join(words[length:])
-        counts = known.brackets.get(word)
-        if not counts or rest in known.names[Kind.STATE]:
-            continue
-        kind = counts.most_common(1)[0][0]
-        held = [item.strip() for item in rest.split(",")]
-        objects = known.names[Kind.OBJECT]
-        if kind is Contents and (word == "contains" or all(item in objects for item in held)):
-            return f"{word} {_written(kind, ','.join(held))}"
-        if kind is Relation and (rest in objects or rest in names.objects):
-            return f"{word} {_written(kind, rest)}"
+def _other_is_meant(
+    attribute: Relation | Contents, counts: Counter[Relation | Contents], known: Vocabulary
+) -> str:
+    """Return why the other bracket is probably meant; empty where nothing speaks for it."""
+    other: Bracket = Contents if isinstance(attribute, Relation) else Relation
+    usual = known.usual_bracket(attribute.word)
+    if usual is other:
+        return f"{attribute.word!r} stands with {'{ }' if other is Contents else '[ ]'} nearly everywhere"
+    held = _held(attribute)
+    if len(held) > 1 or usual is not None:
+        return ""
+    swapped = Contents(attribute.word, held) if other is Contents else Relation(attribute.word, held[0])
+    here, there = counts[attribute], counts[swapped]
+    if there > here:
+        return f"'{_in_other_bracket(attribute)}' stands {times(there)}, this {times(here)}"
+    if other is Relation and held[0] in known.utensils and other in known.brackets(attribute.word):
+        return f"{held[0]!r} is something that others are in or on"
     return ""
 
 
-def _sign(kind: Bracket) -> str:
-    return "[ ]" if kind is Relation else "{ }"
+def _held(attribute: Relation | Contents) -> tuple[str, ...]:
+    return attribute.ingredients if isinstance(attribute, Contents) else (attribute.object,)
 
 
-def _written(kind: Bracket, held: str) -> str:
-    return f"[{held}]" if kind is Relation else f"{{{held}}}"
+def _in_other_bracket(attribute: Relation | Contents) -> str:
+    held = ",".join(_held(attribute))
+    return f"{attribute.word} " + (f"{{{held}}}" if isinstance(attribute, Relation) else f"[{held}]")
+
+
+@rule("misread-line", WARNING, "a line that is read as a state or an object, and is probably something else")
+def misread_line(context: Context) -> Iterator[Diagnostic]:
+    """A state begins with a word that has brackets elsewhere and continues with the name of an object.
+
+    It is a relation or contents, but without brackets behind a tab. Or a state is known as an object and an
+    object as a state, and the letter at the beginning of the line is the wrong one.
+    """
+    names, vocabulary = context.names, context.vocabulary
+    states, objects = names.counts[Kind.STATE], names.objects
+    for state in states:
+        if meant := _bracketed(state, context):
+            for sheet, index, _ in names.by_sheet(Kind.STATE, state):
+                message = f"{state!r} is read as a state; is {meant!r} meant, with brackets behind a tab?"
+                yield sheet.finding(message, index, state)
+    for kind, other, here, there in (
+        (Kind.STATE, "an object", states, objects),
+        (Kind.OBJECT, "a state", objects, states),
+    ):
+        for name, count in here.items():
+            known_elsewhere = there.get(name, 0) > count or name in vocabulary.utensils
+            is_other = known_elsewhere and name not in vocabulary.names[kind]
+            for sheet, index, _ in names.by_sheet(kind, name) if is_other else ():
+                # JSON has no letters; the name may be that of a container or an ingredient first
+                if sheet.places is None and sheet.lines[index][0] == _LETTERS[kind]:
+                    message = f"{name!r} is known as {other}; is it {other} here, and the letter wrong?"
+                    yield sheet.finding(message, index, name)
+
+
+def _bracketed(state: str, context: Context) -> str:
+    """Return the relation or the contents that a state may be, which begins as one and ends with objects."""
+    known, words = context.known, state.split(" ")
+    for length in range(min(_MAX_WORDS, len(words) - 1), 0, -1):
+        word, held = " ".join(words[:length]), " ".join(words[length:])
+        brackets = list(known.brackets(word))
+        if not brackets or held in known.names[Kind.STATE]:
+            continue
+        items = [item.strip() for item in held.split(",")]
+        if brackets[0] is Relation:
+            if held in known.names[Kind.OBJECT]:
+                return f"{word} [{held}]"
+        elif word == "contains" or known.names[Kind.OBJECT] >= set(items):
+            return f"{word} {{{','.join(items)}}}"
+    return ""

@@ -1,71 +1,97 @@
-"""What there is to say of what a unit changes: what comes from nothing, vanishes, or leaves the contents."""
+"""What a unit changes: what comes from nothing, vanishes, or leaves the contents."""
 
 from collections.abc import Iterator
 
-from foon_asp.linting.habits import Habit, mentioned
-from foon_asp.linting.names import Names
-from foon_asp.linting.vocabulary import Vocabulary
+from foon_asp.linting.context import Context
+from foon_asp.linting.habits import Changes, Habit, mentioned
+from foon_asp.linting.rule import WARNING, rule
+from foon_asp.network import ObjectNode
 from foon_asp.text.diagnostics import Diagnostic
 
-_KNOWN, _SELDOM = 3, 8  # units of a motion, and one in that many: then it is no habit
-
-
-def change_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
-    """Give the findings about each unit, but for what units with its motion are known to do.
-
-    ``known`` has the habits of the motions of the files, too.
-    """
-    network = names.network
-    grown: dict[int, list[int]] = {}  # by node, the units that make it out of what is called so
-    for unit, (inputs, outputs) in enumerate(zip(network.inputs, network.outputs, strict=True)):
-        before = mentioned([network.objects[node] for node in inputs])
-        for node in set(outputs).difference(inputs):
-            if network.objects[node].label in before:
-                grown.setdefault(node, []).append(unit)
-    for unit, motion in enumerate(network.motions):
-        changes = names.habits.units[unit]
-        habit = known.habits.get(motion, Habit())
-        said: list[tuple[str, int, str]] = []
-        if _is_seldom(habit.lose, habit.keep):
-            for node, lost in changes.lost.items():
-                said.append(
-                    ("lost-contents", node, f"contains {_all(lost)} before {motion!r}, and no output has it")
-                )
-        for node, gained in () if _is_habit(habit.gain, habit.keep) else changes.gained.items():
-            said.append(
-                ("gained-contents", node, f"contains {_all(gained)} after {motion!r}, and no input has it")
-            )
-        for node in changes.new:
-            if node in grown:
-                place = names.files.copies[grown[node][0]][0]
-                where = names.sheets[place.sheet].where(place.at)
-                said.append(
-                    ("from-nothing", node, f"comes from no input of {motion!r}; the unit on {where} makes it")
-                )
-            elif _is_seldom(habit.make, habit.units):
-                said.append(("from-nothing", node, f"comes from no input of {motion!r}"))
-        if _is_seldom(habit.end, habit.units):
-            said += [
-                ("vanished", node, f"is in no output of {motion!r}; where is it then?")
-                for node in changes.gone
-            ]
-        if not said:
-            continue
-        copy = names.files.copies[unit][0]
-        sheet = names.sheets[copy.sheet]
-        lines = {node: index for index, node in sheet.blocks(copy.at)}  # an output where it is an input, too
-        for code, number, message in said:
-            found = network.objects[number]
-            yield sheet.finding(code, f"{found.label!r} {message}", lines.get(found, copy.at), found.label)
+_MIN_UNITS = 3  # of a motion, before it has habits
+_SELDOM = 8  # what one unit in that many does is no habit
 
 
 def _is_seldom(often: int, of: int) -> bool:
-    return of >= _KNOWN and _SELDOM * often <= of
+    return of >= _MIN_UNITS and _SELDOM * often <= of
 
 
-def _is_habit(often: int, of: int) -> bool:
-    return often > 0 and not _is_seldom(often, of)
+def _units(context: Context) -> Iterator[tuple[int, str, Changes, Habit]]:
+    """Yield each unit with its motion, what it changes, and what units with its motion do."""
+    for unit, motion in enumerate(context.network.motions):
+        yield unit, motion, context.habits.units[unit], context.known.habit(motion)
 
 
-def _all(names: list[str]) -> str:
-    return ", ".join(names)
+def _finding(context: Context, unit: int, side: int, node: int, message: str) -> Diagnostic:
+    found = context.network.objects[node]
+    copy = context.files.copies[unit][0]
+    return context.at_node(copy, side, found, f"{found.label!r} {message}")
+
+
+@rule("lost-contents", WARNING, "contents that lose something, which no output has")
+def lost_contents(context: Context) -> Iterator[Diagnostic]:
+    """A container keeps a part of its contents, and the rest is in no output of the unit.
+
+    Nothing is said of motions that are known to take something out, such as `drain`, nor of those that are
+    not known.
+    """
+    for unit, motion, changes, habit in _units(context):
+        for node, lost in changes.lost.items() if _is_seldom(habit.lose, habit.keep) else ():
+            message = f"contains {', '.join(lost)} before {motion!r}, and no output has it"
+            yield _finding(context, unit, 1, node, message)
+
+
+@rule("gained-contents", WARNING, "contents that gain something, which no input has")
+def gained_contents(context: Context) -> Iterator[Diagnostic]:
+    """A container keeps its contents and has more after the unit, which is in no input.
+
+    Nothing is said of motions that show what is inside, such as `open`.
+    """
+    for unit, motion, changes, habit in _units(context):
+        is_habit = habit.gain and not _is_seldom(habit.gain, habit.keep)
+        for node, gained in () if is_habit else changes.gained.items():
+            message = f"contains {', '.join(gained)} after {motion!r}, and no input has it"
+            yield _finding(context, unit, 1, node, message)
+
+
+@rule("from-nothing", WARNING, "an output that nothing among the inputs is or contains")
+def from_nothing(context: Context) -> Iterator[Diagnostic]:
+    """The output is no product of the inputs, as far as names and contents tell.
+
+    It is reported if units with the motion seldom make anything new, or if another unit makes the same object
+    out of itself.
+    """
+    made_of_itself = _made_of_itself(context)
+    for unit, motion, changes, habit in _units(context):
+        for node in changes.new:
+            message = f"comes from no input of {motion!r}"
+            maker = made_of_itself.get(context.network.objects[node])
+            if maker is not None:
+                copy = context.files.copies[maker][0]
+                message += f"; the unit on {context.sheets[copy.sheet].where(copy.at)} makes it"
+            elif not _is_seldom(habit.make, habit.units):
+                continue
+            yield _finding(context, unit, 1, node, message)
+
+
+def _made_of_itself(context: Context) -> dict[ObjectNode, int]:
+    """Return the first unit that makes each node out of what is called so."""
+    units: dict[ObjectNode, int] = {}
+    for side in context.sides:
+        before = mentioned(side.others) if side.number == 1 else set()
+        for node in set(side.nodes).difference(side.others):
+            if node.label in before:
+                units.setdefault(node, side.unit)
+    return units
+
+
+@rule("vanished", WARNING, "an input that no output is or contains")
+def vanished(context: Context) -> Iterator[Diagnostic]:
+    """An ingredient is in no output, neither as an object nor among the contents, and nothing new is made.
+
+    Nothing is said of motions that use things up, such as `wash`, nor of those that are not known.
+    """
+    for unit, motion, changes, habit in _units(context):
+        for node in changes.gone if _is_seldom(habit.end, habit.units) else ():
+            message = f"is in no output of {motion!r}; where is it then?"
+            yield _finding(context, unit, 0, node, message)

@@ -1,57 +1,57 @@
-"""What there is to say of dead cycles."""
+"""Dead cycles: objects that only units make which need them."""
 
 from collections.abc import Iterator
 
-from foon_asp.linting.linted_files import LintedFiles
-from foon_asp.linting.names import Names
-from foon_asp.linting.vocabulary import Vocabulary
+from foon_asp.linting.context import Context
+from foon_asp.linting.rule import NOTE, rule
 from foon_asp.network import counted
-from foon_asp.network.dead_cycles import DeadCycle, dead_cycles
+from foon_asp.network.dead_cycles import dead_cycles
 from foon_asp.text.diagnostics import Diagnostic
 
-_SHOWN = 4  # steps of a cycle
+_MAX_SHOWN_STEPS = 4
 
 
-def cycle_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
-    """Give a finding for each dead cycle, where the cycle is entered; kitchens among the files break some.
+@rule("dead-cycle", NOTE, "objects that are made only by units that need them")
+def dead_cycle(context: Context) -> Iterator[Diagnostic]:
+    """No task tree can make any of these objects unless one is available, as each needs another of them.
 
-    A utensil that is nothing but on, off or empty is at hand: a tap that is turned on and off is no slip.
+    This may be intended, as with a bottle that is opened and closed again. Then put one of them into the
+    kitchen; linted together with that kitchen, the cycle is not reported. Or the cycle was meant to begin
+    elsewhere, and a state is wrong. An object that a unit both needs and gives, such as the knife that chops,
+    does not count as made by it. Everything else is assumed to be available, and so is a utensil in a state,
+    such as a stove that is off. The cycle is reported where it is first entered.
     """
-    files, network = names.files, names.network
-    at_hand = {
-        node
-        for sheet in files.sheets
-        if sheet.entries is not None and not sheet.lists_goals
-        for entry in sheet.entries
-        for node in network.find(entry.pattern)
-    }
-    at_hand.update(
+    network, sheets = context.network, context.sheets
+    for cycle in dead_cycles(network, _available(context)):
+        start, first_unit = cycle.steps[0]
+        copy = context.files.copies[first_unit][0]
+        steps = []
+        for (_, unit), (node, _) in zip(cycle.steps, (*cycle.steps[1:], cycle.steps[0]), strict=True):
+            place = context.files.copies[unit][0]
+            where = sheets[place.sheet].where(place.at, sheets[copy.sheet])
+            steps.append(f"{network.motions[unit]!r} ({where}) makes {str(network.objects[node])!r}")
+        if len(steps) > _MAX_SHOWN_STEPS:
+            hidden = counted(len(steps) - _MAX_SHOWN_STEPS, "more step")
+            steps[_MAX_SHOWN_STEPS - 1 : -1] = [hidden]
+        others = ""
+        if len(cycle.nodes) > len(cycle.steps):
+            others = f"; {len(cycle.nodes)} objects wait for each other"
+        message = (
+            f"only units that need {str(network.objects[start])!r} make it: from it "
+            f"{', from that '.join(steps)}{others}; it has to be in the kitchen, or made in another way"
+        )
+        line = context.node_line(copy, 0, network.objects[start])
+        yield sheets[copy.sheet].finding(message, line)
+
+
+def _available(context: Context) -> set[int]:
+    """Return the nodes of kitchens among the files, and utensils that are only on, off or empty."""
+    available = {
         number
-        for number, node in enumerate(network.objects)
-        if node.label in known.utensils and not node.relations and not node.contents
-    )
-    for cycle in dead_cycles(network, at_hand):
-        yield _finding(files, cycle)
-
-
-def _finding(files: LintedFiles, cycle: DeadCycle) -> Diagnostic:
-    network = files.network
-    start, first_unit = cycle.steps[0]
-    copy = files.copies[first_unit][0]
-    sheet = files.sheets[copy.sheet]
-    ways = []
-    for (_, unit), (node, _) in zip(cycle.steps, (*cycle.steps[1:], cycle.steps[0]), strict=True):
-        place = files.copies[unit][0]
-        where = files.sheets[place.sheet].where(place.at, sheet)
-        ways.append(f"{network.motions[unit]!r} ({where}) makes {str(network.objects[node])!r}")
-    if len(ways) > _SHOWN:
-        ways[_SHOWN - 1 : -1] = [counted(len(ways) - _SHOWN, "more step")]
-    name = str(network.objects[start])
-    others = (
-        f"; {len(cycle.nodes)} objects wait for each other" if len(cycle.nodes) > len(cycle.steps) else ""
-    )
-    message = (
-        f"only units that need {name!r} make it: from it {', from that '.join(ways)}{others}; "
-        "it has to be in the kitchen, or made in another way"
-    )
-    return sheet.finding("dead-cycle", message, sheet.line_of(network.objects[start], copy.at))
+        for number, node in enumerate(context.network.objects)
+        if node.label in context.vocabulary.utensils and not node.relations and not node.contents
+    }
+    for sheet in context.sheets:
+        for entry in sheet.entries or () if not sheet.lists_goals else ():
+            available.update(context.network.find(entry.pattern))
+    return available

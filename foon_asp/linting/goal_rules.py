@@ -1,9 +1,10 @@
-"""Findings about goals and kitchens, compared with a network."""
+"""Goals and kitchens, compared with the network."""
 
 from collections.abc import Iterator
 
-from foon_asp.linting.linted_files import LintedFiles
-from foon_asp.linting.sheet import Entry, Sheet
+from foon_asp.linting.context import Context
+from foon_asp.linting.rule import NOTE, WARNING, rule
+from foon_asp.linting.sheet import Sheet
 from foon_asp.network import Network
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import ObjectLine
@@ -11,70 +12,79 @@ from foon_asp.text.line import ObjectLine
 _MANY = 10  # entries of a list: if most of it is unknown, it is told of as a whole
 
 
-def goal_findings(files: LintedFiles) -> Iterator[Diagnostic]:
-    """Give the goals that no unit makes, and the kitchen items that are no object node.
+@rule("unmade-goal", WARNING, "a goal that no unit makes")
+def unmade_goal(context: Context) -> Iterator[Diagnostic]:
+    """The goal is not an output of any unit, or only of units that need it.
 
-    A unit makes what is among its outputs and not among its inputs. Without units, nothing is said of lists.
+    It is an object line with a recipe category or `!`, or an entry of a list of goals (a file with `goal` in
+    its name). Lists are compared with the networks that are linted together with them.
     """
-    network = files.network
-    sides = zip(network.inputs, network.outputs, strict=True)
-    made = {node for inputs, outputs in sides for node in set(outputs).difference(inputs)}
-    for sheet in files.sheets:
+    for sheet in context.sheets:
         if sheet.entries is None:
-            yield from _tagged(sheet, network, made)
-        elif len(network):
-            yield from _listed(sheet, network, made)
+            yield from _tagged(sheet, context)
+    for sheet in _lists(context, of_goals=True):
+        yield from _unknown(sheet, context.network)
+        for pattern, index in sheet.entries or ():
+            nodes = context.network.find(pattern)
+            if nodes and context.made.isdisjoint(nodes):
+                message = f"{str(pattern)!r} is a goal, and no unit makes it"
+                yield sheet.finding(message, index, pattern.label)
 
 
-def _tagged(sheet: Sheet, network: Network, made: set[int]) -> Iterator[Diagnostic]:
+@rule("unknown-item", NOTE, "an entry of a kitchen that is not in the network")
+def unknown_item(context: Context) -> Iterator[Diagnostic]:
+    """No unit of the networks linted with the kitchen has this node.
+
+    There may be a slip in one of the two, or the item is not needed. If most entries of a kitchen are
+    unknown, they are reported together.
+    """
+    for sheet in _lists(context, of_goals=False):
+        yield from _unknown(sheet, context.network)
+
+
+def _lists(context: Context, of_goals: bool) -> Iterator[Sheet]:
+    """Yield the lists of goals, or the kitchens; without units, there is nothing to compare them with."""
+    for sheet in context.sheets if len(context.network) else ():
+        if sheet.entries is not None and sheet.lists_goals is of_goals:
+            yield sheet
+
+
+def _tagged(sheet: Sheet, context: Context) -> Iterator[Diagnostic]:
     tagged = {
         sheet.lines[written.first]
         for written in sheet.distinct_lines
         if isinstance(written.line, ObjectLine) and written.line.is_goal
     }
-    if not tagged:
-        return
-    said = set()
-    for index, line in enumerate(sheet.lines):
+    told = set()
+    for index, line in enumerate(sheet.lines) if tagged else ():
         if line not in tagged:
             continue
         _, node = next(sheet.blocks(index))
-        if node in said or network.object_id(node) in made:
-            continue
-        said.add(node)
-        message = f"{str(node)!r} is marked as a goal, and no unit makes it"
-        yield sheet.finding("unmade-goal", message, index, node.label)
+        if node not in told and context.network.object_id(node) not in context.made:
+            told.add(node)
+            message = f"{str(node)!r} is marked as a goal, and no unit makes it"
+            yield sheet.finding(message, index, node.label)
 
 
-def _listed(sheet: Sheet, network: Network, made: set[int]) -> Iterator[Diagnostic]:
-    unknown: list[Entry] = []
-    for entry in sheet.entries or ():
-        pattern, index = entry
-        found = network.find(pattern)
-        if not found:
-            unknown.append(entry)
-        elif sheet.lists_goals and made.isdisjoint(found):
-            message = f"{str(pattern)!r} is a goal, and no unit makes it"
-            yield sheet.finding("unmade-goal", message, index, pattern.label)
-    if len(unknown) > _MANY and 2 * len(unknown) > len(sheet.entries or ()):
+def _unknown(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
+    """Yield a finding for each entry of a list that is no object node, or one where most are none."""
+    entries = sheet.entries or ()
+    unknown = [entry for entry in entries if not network.find(entry.pattern)]
+    if len(unknown) > _MANY and 2 * len(unknown) > len(entries):
         pattern, index = unknown[0]
         message = (
-            f"{len(unknown)} of the {len(sheet.entries or ())} entries are no object nodes of the network, "
+            f"{len(unknown)} of the {len(entries)} entries are no object nodes of the network, "
             f"{str(pattern)!r} first; is the list for another network?"
         )
-        yield sheet.finding(_code(sheet), message, index, pattern.label)
+        yield sheet.finding(message, index, pattern.label)
         return
     for pattern, index in unknown:
         message = f"{str(pattern)!r} is no object node of the network; {_alike(pattern.label, network)}"
-        yield sheet.finding(_code(sheet), message, index, pattern.label)
-
-
-def _code(sheet: Sheet) -> str:
-    return "unmade-goal" if sheet.lists_goals else "unknown-item"
+        yield sheet.finding(message, index, pattern.label)
 
 
 def _alike(label: str, network: Network) -> str:
-    """Say which nodes have the label."""
+    """Return which nodes have the label, in words."""
     nodes = network.by_label.get(label, ())
     if not nodes:
         return f"none there is called {label!r}"

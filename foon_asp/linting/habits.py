@@ -26,12 +26,12 @@ class Changes(NamedTuple):
 
 
 def held(node: ObjectNode) -> AbstractSet[str]:
-    """Give the names of what a node contains."""
+    """Return the names of what a node contains."""
     return _NOTHING if not node.contents else {item for _, items in node.contents for item in items}
 
 
 def mentioned(nodes: Collection[ObjectNode]) -> set[str]:
-    """Give every name in nodes: labels, contents and places."""
+    """Return every name in nodes: labels, contents and places."""
     names = {node.label for node in nodes}
     names.update(place for node in nodes for _, place in node.relations)
     return names.union(*map(held, nodes))
@@ -47,21 +47,19 @@ class Habit(NamedTuple):
     make: int = 0
     end: int = 0
 
-    def plus(self, *more: int) -> "Habit":
-        """Add another one."""
-        return Habit(*map(sum, zip(self, more, strict=True)))
-
 
 class Habits:
-    """Looks at the units of a network one by one."""
+    """What the units of a network change.
+
+    ``foods`` are the names of what is among contents, and never a container or a place.
+    """
 
     def __init__(self, network: Network) -> None:
         self.network = network
         objects = network.objects
         self.ingredients = {name for node in objects for name in held(node)}
-        self.holders = {node.label for node in objects if node.contents}
-        self.holders.update(place for node in objects for _, place in node.relations)
-        self.foods = self.ingredients - self.holders
+        holders = {node.label for node in objects if node.contents}
+        self.foods = self.ingredients - holders - {place for node in objects for _, place in node.relations}
 
     @cached_property
     def units(self) -> list[Changes]:
@@ -69,12 +67,23 @@ class Habits:
         return [self.changes(unit) for unit in range(len(self.network))]
 
     def changes(self, unit: int) -> Changes:
-        """Say what a unit changes."""
+        """Return what a unit changes."""
         objects = self.network.objects
         inputs = {node: objects[node] for node in self.network.inputs[unit]}
         outputs = {node: objects[node] for node in self.network.outputs[unit]}
         before, after = mentioned(inputs.values()), mentioned(outputs.values())
-        new = [node for node, found in outputs.items() if found.label not in before]
+        emptied = {node.label for node in inputs.values() if held(node) and held(node) <= after}
+        lost: dict[int, list[str]] = {}
+        gained: dict[int, list[str]] = {}
+        kept = list(_containers(inputs, outputs))
+        for node, had, has in kept:
+            missing = _unlike(had - has - after - emptied, has - had)
+            added = _unlike(has - had - before, before)
+            if missing and not added:
+                lost[node] = missing
+            elif added and not missing:
+                gained[node] = added
+        new = {node: found for node, found in outputs.items() if found.label not in before}
         gone = [
             node
             for node, found in inputs.items()
@@ -83,60 +92,31 @@ class Habits:
             and not _comes_from(found, before)
             and not _is_said(found.label, outputs.values())
         ]
-        lost: dict[int, list[str]] = {}
-        gained: dict[int, list[str]] = {}
-        keeps = False
-        for node, had, has in _containers(inputs, outputs):
-            keeps = True
-            missing = sorted(
-                name
-                for name in had - has - after
-                if words_in([name]).isdisjoint(words_in(has - had))
-                and not any(
-                    node.label == name and held(node) and held(node) <= after for node in inputs.values()
-                )
-            )
-            known = words_in(before)
-            more = sorted(name for name in has - had - before if known.isdisjoint(words_in([name])))
-            if missing and not more:
-                lost[node] = missing
-            elif more and not missing:
-                gained[node] = more
         if gone or not new:
-            return Changes(lost, gained, [], [] if new else gone, keeps)
-        known = words_in(before.union(*(node.states for node in inputs.values())))
+            return Changes(lost, gained, [], [] if new else gone, bool(kept))
         # a product stands in something, or something of its name or in it was there
         products = {name for node in outputs.values() for name in held(node)}
+        stems = words_in(before.union(*(node.states for node in inputs.values())))
         fresh = [
             node
-            for node in new
-            if outputs[node].label not in products
-            and not _comes_from(outputs[node], before)
+            for node, found in new.items()
+            if found.label not in products
+            and not _comes_from(found, before)
+            and before.isdisjoint(held(found))
             and not any(
-                word.startswith(other[:_STEM])
-                for word in words_in([outputs[node].label])
-                for other in known
-                if len(other) >= _SHORTEST
+                word.startswith(stem[:_STEM])
+                for word in words_in([found.label])
+                for stem in stems
+                if len(stem) >= _SHORTEST
             )
-            and before.isdisjoint(held(outputs[node]))
         ]
-        return Changes(lost, gained, fresh, [], keeps)
+        return Changes(lost, gained, fresh, [], bool(kept))
 
-    def of_motions(self) -> dict[str, Habit]:
-        """Count what the units with each motion do."""
-        found: dict[str, Habit] = {}
-        for unit, motion in enumerate(self.network.motions):
-            seen = self.units[unit]
-            new = (
-                1,
-                int(seen.keeps),
-                int(bool(seen.lost)),
-                int(bool(seen.gained)),
-                int(bool(seen.new)),
-                int(bool(seen.gone)),
-            )
-            found[motion] = found.get(motion, Habit()).plus(*new)
-        return found
+    def of_units(self) -> Iterator[tuple[str, Habit]]:
+        """Yield the motion of each unit, and what the unit does."""
+        for motion, seen in zip(self.network.motions, self.units, strict=True):
+            changed = seen.keeps, seen.lost, seen.gained, seen.new, seen.gone
+            yield motion, Habit(1, *(int(bool(each)) for each in changed))
 
 
 def _comes_from(node: ObjectNode, places: AbstractSet[str]) -> bool:
@@ -154,7 +134,7 @@ def _is_said(name: str, nodes: Collection[ObjectNode]) -> bool:
 def _containers(
     inputs: dict[int, ObjectNode], outputs: dict[int, ObjectNode]
 ) -> Iterator[tuple[int, AbstractSet[str], AbstractSet[str]]]:
-    """Give the outputs that keep some contents, with what they had and what they have."""
+    """Yield the outputs that keep some contents, with what they had and what they have."""
     for node, after in outputs.items():
         befores = [other for other in inputs.values() if other.label == after.label]
         if len(befores) == 1 and sum(other.label == after.label for other in outputs.values()) == 1:
@@ -163,6 +143,12 @@ def _containers(
                 yield node, had, has
 
 
+def _unlike(names: Collection[str], others: Collection[str]) -> list[str]:
+    """Return the names that have no word of the others, sorted."""
+    words = words_in(others)
+    return sorted(name for name in names if words.isdisjoint(words_in([name])))
+
+
 def words_in(names: Collection[str]) -> set[str]:
-    """Give the words of names, in the singular."""
+    """Return the words of names, in the singular."""
     return {word.removesuffix("s") for name in names for word in name.replace("-", " ").split(" ")}

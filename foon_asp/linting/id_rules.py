@@ -1,12 +1,14 @@
-"""What there is to say of ids: one file should give one id to one name."""
+"""Ids and motion flags: one file should give one id to one name, and has them everywhere or nowhere."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from foon_asp.linting.context import Context
 from foon_asp.linting.names import times
-from foon_asp.linting.sheet import Sheet, WrittenLine
+from foon_asp.linting.rule import NOTE, WARNING, rule
+from foon_asp.linting.sheet import Sheet
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.line import name_of
+from foon_asp.text.line import ObjectLine, name_of
 
 _KINDS = {"O": "object", "S": "state", "M": "motion"}
 _NEARLY_ALL = 20  # lines with an id for one without
@@ -14,71 +16,92 @@ _MANY = 4  # names of one id: then it means nothing, and they are told together
 
 
 class _Use(NamedTuple):
-    """How often an id stands with a name, less than nothing so that they sort, where first, and the other."""
+    """A name with an id, or the other way round: how often they stand together, and where first."""
 
-    rarity: int
+    text: str
+    often: int
     first: int
-    other: str
-
-    def times(self) -> str:
-        return times(-self.rarity)
 
 
-def id_findings(sheet: Sheet) -> Iterator[Diagnostic]:
-    """Give a finding for each id with a second name, and for each name with a second id, of each kind."""
-    lines: dict[tuple[str, str, str], list[WrittenLine]] = {}
-    for written in sheet.distinct_lines:
-        if id_ := written.line.id:
-            key = sheet.lines[written.first][0], id_, name_of(written.line)
-            lines.setdefault(key, []).append(written)
-    names: dict[tuple[str, str], list[_Use]] = {}
-    ids: dict[tuple[str, str], list[_Use]] = {}
-    for (letter, id_, name), alike in lines.items():
-        rarity, first = -sum(line.often for line in alike), min(line.first for line in alike)
-        names.setdefault((letter, id_), []).append(_Use(rarity, first, name))
-        ids.setdefault((letter, name), []).append(_Use(rarity, first, id_))
-    yield from _missing(sheet)
-    for (letter, id_), of_id in names.items():
-        yield from _names_of_id(sheet, letter, id_, sorted(of_id))
-    for (letter, name), of_name in ids.items():
-        yield from _ids_of_name(sheet, letter, name, sorted(of_name))
+def _shared(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
+    """Yield the letter of each id with several names, the id, and the names, the most frequent first.
+
+    Or, not ``by_id``, of each name with several ids.
+    """
+    uses: dict[tuple[str, str], dict[str, _Use]] = {}
+    for line, first, often in sheet.distinct_lines:
+        if line.id:
+            key, text = (line.id, name_of(line)) if by_id else (name_of(line), line.id)
+            known = uses.setdefault((sheet.lines[first][0], key), {})
+            earlier = known.get(text, _Use(text, 0, first))
+            known[text] = _Use(text, earlier.often + often, min(earlier.first, first))
+    for (letter, key), known in uses.items():
+        if len(known) > 1:
+            yield letter, key, sorted(known.values(), key=lambda use: (-use.often, use.first))
 
 
-def _missing(sheet: Sheet) -> Iterator[Diagnostic]:
-    """Give the lines without an id, where nearly all have one."""
-    without = [written for written in sheet.distinct_lines if not written.line.id]
-    often = sum(written.often for written in without)
-    if not without or _NEARLY_ALL * often > sum(written.often for written in sheet.distinct_lines):
-        return
-    for written in without:
-        letter = sheet.lines[written.first][0]
-        message = f"no {_KINDS[letter]} id behind {letter}; nearly all lines of the file have ids"
-        yield sheet.finding("missing-id", message, written.first)
+@rule("id-of-two-names", WARNING, "one id for two names")
+def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
+    """Ids are compared within each file, separately for objects, states and motions.
+
+    An id with four names or more means nothing and is reported once. foon-asp ignores ids, but other programs
+    use them.
+    """
+    for sheet in context.sheets:
+        for letter, id_, uses in _shared(sheet, by_id=True):
+            most, *others = uses
+            if len(uses) >= _MANY:
+                shown = ", ".join(f"{use.text!r} ({use.often})" for use in uses[: _MANY - 1])
+                message = (
+                    f"the {_KINDS[letter]} id {letter}{id_} is that of {len(uses)} names: {shown}, ...; "
+                    "ids should tell names apart, or be left out"
+                )
+                yield sheet.finding(message, min(use.first for use in uses))
+                continue
+            for use in others:
+                message = (
+                    f"the {_KINDS[letter]} id {letter}{id_} is that of {use.text!r} ({times(use.often)}) and "
+                    f"of {most.text!r} ({times(most.often)}, first on {sheet.where(most.first, sheet)}); one "
+                    "needs another id"
+                )
+                yield sheet.finding(message, use.first)
 
 
-def _names_of_id(sheet: Sheet, letter: str, id_: str, uses: list[_Use]) -> Iterator[Diagnostic]:
-    most, where = uses[0], sheet.where(uses[0].first, sheet)
-    if len(uses) >= _MANY:
-        shown = ", ".join(f"{use.other!r} ({-use.rarity})" for use in uses[: _MANY - 1])
-        message = (
-            f"the {_KINDS[letter]} id {letter}{id_} is that of {len(uses)} names: {shown}, ...; "
-            "ids should tell names apart, or be left out"
-        )
-        yield sheet.finding("id-of-two-names", message, min(use.first for use in uses))
-        return
-    for use in uses[1:]:
-        message = (
-            f"the {_KINDS[letter]} id {letter}{id_} is that of {use.other!r} ({use.times()}) and "
-            f"of {most.other!r} ({most.times()}, first on {where}); one needs another id"
-        )
-        yield sheet.finding("id-of-two-names", message, use.first)
+@rule("name-of-two-ids", WARNING, "one name with two ids")
+def name_of_two_ids(context: Context) -> Iterator[Diagnostic]:
+    """The same problem as one id for two names, the other way around."""
+    for sheet in context.sheets:
+        for letter, name, (most, *others) in _shared(sheet, by_id=False):
+            for use in others:
+                message = (
+                    f"the {_KINDS[letter]} {name!r} has the id {letter}{use.text} ({times(use.often)}) and "
+                    f"{letter}{most.text} ({times(most.often)}, first on {sheet.where(most.first, sheet)}); "
+                    "it should have one"
+                )
+                yield sheet.finding(message, use.first)
 
 
-def _ids_of_name(sheet: Sheet, letter: str, name: str, uses: list[_Use]) -> Iterator[Diagnostic]:
-    most, where = uses[0], sheet.where(uses[0].first, sheet)
-    for use in uses[1:]:
-        message = (
-            f"the {_KINDS[letter]} {name!r} has the id {letter}{use.other} ({use.times()}) and "
-            f"{letter}{most.other} ({most.times()}, first on {where}); it should have one"
-        )
-        yield sheet.finding("name-of-two-ids", message, use.first)
+@rule("missing-field", NOTE, "no id or motion flag, in a file where other lines have one")
+def missing_field(context: Context) -> Iterator[Diagnostic]:
+    """Ids and motion flags are optional, but a file has them everywhere or nowhere.
+
+    A line without an id is reported where nearly all lines have one. Where most object lines have a motion
+    flag, one finding covers all that have none.
+    """
+    for sheet in context.sheets:
+        lines = sheet.distinct_lines
+        without_id = [each for each in lines if not each.line.id]
+        often = sum(each.often for each in without_id)
+        if _NEARLY_ALL * often <= sum(each.often for each in lines):
+            for each in without_id:
+                letter = sheet.lines[each.first][0]
+                message = f"no {_KINDS[letter]} id behind {letter}; nearly all lines of the file have ids"
+                yield sheet.finding(message, each.first)
+        objects = [(each.line, each.first, each.often) for each in lines if isinstance(each.line, ObjectLine)]
+        without_flag = [(line.label, first, often) for line, first, often in objects if not line.fields]
+        missing, total = (sum(often for *_, often in each) for each in (without_flag, objects))
+        if sheet.entries is None and 0 < 2 * missing < total:  # lists of objects have no motion to be in
+            have = "have no motion flag, this one first" if missing > 1 else "has no motion flag"
+            message = f"{missing} of {total} object lines {have}; write 1 if it is in motion, 0 if not"
+            label, index, _ = without_flag[0]
+            yield sheet.finding(message, index, label)

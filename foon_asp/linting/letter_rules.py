@@ -1,73 +1,78 @@
-"""What there is to say of letters that nobody sees, or takes for others."""
+"""Letters that nobody sees, or takes for others."""
 
 import re
 import unicodedata
+from collections import Counter
 from collections.abc import Iterator
 
-from foon_asp.linting.linted_files import LintedFiles
-from foon_asp.linting.sheet import Sheet
+from foon_asp.linting.context import Context
+from foon_asp.linting.rule import ERROR, rule
 from foon_asp.text.diagnostics import Diagnostic
 
 _PLAIN = re.compile(r"[\t\x20-\x7e]*")
 _WORD = re.compile(r"(?:[^\W\d_]|[\u0300-\u036f])+")  # letters, and accents that stand behind theirs
 _SCRIPTS = {"LATIN", "CYRILLIC", "GREEK"}  # those whose letters look alike
-_UNSEEN = {"Cc", "Cf", "Zl", "Zp"}
+_UNSEEN = {"Cc", "Cf", "Zl", "Zp", "Zs"}
 
 
-def letter_findings(files: LintedFiles) -> Iterator[Diagnostic]:
-    """Give a finding for each line with odd letters, of each kind: unseen, of another script, two accents."""
+@rule("ambiguous-letter", ERROR, "a letter that is not seen, or that looks like another")
+def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
+    """Names are different that look the same: nobody can see why they do not go together.
+
+    One has a control character, a letter without width or a blank that is no usual blank; or a Cyrillic or
+    Greek letter among Latin ones, while a word in one script is fine; or an accented letter that is two
+    characters in one place and one in another, of which the rarer form is reported. Type the name again, or
+    copy it.
+    """
     odd = [
         (sheet, index, line)
-        for sheet in files.sheets
+        for sheet in context.sheets
         for index, line in enumerate(sheet.lines)
         if line[:1] != "#" and not _PLAIN.fullmatch(line)
     ]
-    forms: dict[str, dict[str, int]] = {}
-    for _, _, line in odd:
-        for word in _WORD.findall(line):
-            spelt = forms.setdefault(unicodedata.normalize("NFC", word), {})
-            spelt[word] = spelt.get(word, 0) + 1
+    spelt = Counter(word for _, _, line in odd for word in _WORD.findall(line))
+    usual: dict[
+        str, str
+    ] = {}  # of the forms of a word, by its composed form, which is usual if all are as rare
+    for word in sorted(spelt, key=lambda form: (spelt[form], unicodedata.is_normalized("NFC", form))):
+        usual[unicodedata.normalize("NFC", word)] = word
     for sheet, index, line in odd:
-        yield from _unseen(sheet, index, line)
-        yield from _of_two_scripts(sheet, index, line)
+        told = [_unseen(line), _of_two_scripts(line)]
         for word in dict.fromkeys(_WORD.findall(line)):
-            spelt = forms[unicodedata.normalize("NFC", word)]
-            if word != max(spelt, key=lambda form: (spelt[form], unicodedata.is_normalized("NFC", form))):
+            if word != usual[unicodedata.normalize("NFC", word)]:
                 message = (
                     f"{word!r} looks the same elsewhere, where its accents are other characters; the names "
                     "differ, so copy the word from there"
                 )
-                yield sheet.finding("accent", message, index, column=line.index(word) + 1)
+                told.append((line.index(word) + 1, message))
+        for column, message in filter(None, told):
+            yield sheet.finding(message, index, column=column)
 
 
-def _unseen(sheet: Sheet, index: int, line: str) -> Iterator[Diagnostic]:
+def _unseen(line: str) -> tuple[int, str] | None:
+    """Return the column of the first character that is not seen, and the message about it."""
     for column, letter in enumerate(line, 1):
         category = unicodedata.category(letter)
-        if letter not in "\t " and (category in _UNSEEN or category == "Zs"):
+        if letter not in "\t " and category in _UNSEEN:
             name = unicodedata.name(letter, "control character").lower()
-            what = "is no usual blank" if category == "Zs" else "is not seen"
-            message = (
-                f"the character U+{ord(letter):04X} ({name}) {what}, and makes another name; type it anew"
-            )
-            yield sheet.finding("unseen-letter", message, index, column=column)
-            return
+            fault = "is no usual blank" if category == "Zs" else "is not seen"
+            character = f"the character U+{ord(letter):04X} ({name})"
+            return column, f"{character} {fault}, and makes another name; type it anew"
+    return None
 
 
-def _of_two_scripts(sheet: Sheet, index: int, line: str) -> Iterator[Diagnostic]:
+def _of_two_scripts(line: str) -> tuple[int, str] | None:
+    """Return the column of the first letter of a rarer script in a word, and the message about it."""
     for match in _WORD.finditer(line):
-        if match[0].isascii():
-            continue
         scripts: dict[str, list[int]] = {}
         for place, letter in enumerate(match[0]):
-            script = unicodedata.name(letter, "").partition(" ")[0]
-            if script in _SCRIPTS:
-                scripts.setdefault(script, []).append(place)
+            scripts.setdefault(unicodedata.name(letter, "").partition(" ")[0], []).append(place)
+        scripts = {script: places for script, places in scripts.items() if script in _SCRIPTS}
         if len(scripts) > 1:
             script, places = min(scripts.items(), key=lambda each: len(each[1]))
-            letter = match[0][places[0]]
             message = (
-                f"{match[0]!r} has a {script.capitalize()} letter, U+{ord(letter):04X}, among others that "
-                "look like it, which makes another name; type it anew"
+                f"{match[0]!r} has a {script.capitalize()} letter, U+{ord(match[0][places[0]]):04X}, among "
+                "others that look like it, which makes another name; type it anew"
             )
-            yield sheet.finding("foreign-letter", message, index, column=match.start() + places[0] + 1)
-            return
+            return match.start() + places[0] + 1, message
+    return None

@@ -5,6 +5,7 @@ from codecs import BOM_UTF8
 from collections.abc import Iterable
 
 from foon_asp.text.diagnostics import Diagnostic, Rename
+from foon_asp.text.formats import format_of
 from foon_asp.text.renaming import Renaming
 
 _LINE = re.compile(rb"([^\r\n]*)(\r\n|\r|\n|\Z)")
@@ -55,6 +56,7 @@ def mended(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False)
     text = content.removeprefix(mark).decode()
     for rename in renames:
         renaming = Renaming(rename)
-        renaming.learn(text, "")
-        text = renaming.renamed(text, "")
+        format_ = format_of(text)
+        renaming.learn(format_.names(text, ""))
+        text = format_.renamed(text, "", renaming)
     return mark + text.encode()

@@ -1,45 +1,37 @@
-"""What there is to say of names: slips of the pen, and objects that are never there."""
+"""Names: typing errors, and objects that are never there."""
 
 import re
 from collections.abc import Iterator
 
-from foon_asp.linting.names import Kind, Names, times
-from foon_asp.linting.near_names import near_names, near_word
-from foon_asp.linting.vocabulary import Vocabulary, words_of
+from foon_asp.linting.context import Context
+from foon_asp.linting.names import Kind, times
+from foon_asp.linting.rule import NOTE, WARNING, rule
+from foon_asp.linting.vocabulary import Bracket, words_of
 from foon_asp.network import Contents, Relation
 from foon_asp.text.diagnostics import Diagnostic, Rename
 from foon_asp.text.line import StateLine
 
-_A = {Kind.OBJECT: "an object", Kind.STATE: "a state"}
-_LETTERS = {Kind.OBJECT: "O", Kind.STATE: "S"}
 
+@rule("near-name", WARNING, "two names that differ by a likely typing error")
+def near_name(context: Context) -> Iterator[Diagnostic]:
+    """Two names of one kind are probably meant to be the same.
 
-def name_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
-    """Give the findings about near names, and about containers and ingredients that are no object.
-
-    ``known`` are names that FOONs have elsewhere.
+    The kinds are objects with containers and ingredients, states, motions, and words of relations. Names that
+    differ only in doubled letters, capitals, spaces or hyphens are reported however often they occur; others
+    are reported if a single letter is missing, added, changed, or swapped with the next, and one of them is
+    rare, not in the vocabulary, or never made or never taken. Singular and plural, `cube` and `cubed` (but
+    not `gratd`), digits, and different first letters do not count as slips. Each pair is reported once in
+    each file, at the rarer name, which need not be the wrong one.
     """
-    said = set()
-    for kind in Kind:
-        verbs = kind is not Kind.OBJECT
-        for name, meant in near_names(names.counts[kind], verbs, known.words, names.loose[kind]):
-            said |= {(kind, name), (kind, meant)}
-            yield from _near(names, kind, name, meant, known)
-        for name in names.counts[kind]:
-            if (kind, name) not in said and name not in known.names[kind]:
-                for finding in _misspelt(names, kind, name, known):
-                    said.add((kind, name))
-                    yield finding
-    yield from _of_the_other_kind(names, known)
-    if names.has_network:
-        for name in names.mentions[Kind.OBJECT]:
-            if name not in names.objects and (Kind.OBJECT, name) not in said:
-                yield from _unknown(names, name, known)
+    for kind, pairs in context.near_names.items():
+        for name, meant in pairs:
+            yield from _near(context, kind, name, meant)
 
 
-def _near(names: Names, kind: Kind, name: str, meant: str, known: Vocabulary) -> Iterator[Diagnostic]:
+def _near(context: Context, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
+    names, words = context.names, context.vocabulary.words
     counts = names.counts[kind]
-    is_slip = known.words.issuperset(words_of(meant)) and not known.words.issuperset(words_of(name))
+    is_slip = words.issuperset(words_of(meant)) and not words.issuperset(words_of(name))
     # two names that stand equally often: which one is wrong?
     rename = Rename(kind, name, meant) if counts[meant] > counts[name] or is_slip else None
     roles = ""
@@ -52,65 +44,67 @@ def _near(names: Names, kind: Kind, name: str, meant: str, known: Vocabulary) ->
             f"the {kind} {name!r} stands {times(counts[name])}{others}, {meant!r} {times(counts[meant])}"
             f"{roles}: if they mean the same, write one of them everywhere"
         )
-        yield names.sheets[sheet].finding("near-name", message, index, name)._replace(rename=rename)
+        yield sheet.finding(message, index, name)._replace(rename=rename)
 
 
-def _of_the_other_kind(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
-    """Say of states that are objects and of objects that are states, where they are known as nothing else."""
-    states, objects = names.counts[Kind.STATE], names.objects
-    for kind, here, other in ((Kind.STATE, states, Kind.OBJECT), (Kind.OBJECT, objects, Kind.STATE)):
-        there = names.objects if other is Kind.OBJECT else states
-        for name, count in here.items():
-            is_other = there.get(name, 0) > count or name in known.utensils
-            if is_other and kind is not other and name not in known.names[kind]:
-                message = f"{name!r} is known as {_A[other]}; is it {_A[other]} here, and the letter wrong?"
-                for sheet, index, _ in names.by_sheet(kind, name):
-                    if names.sheets[sheet].lines[index][:1] == _LETTERS[kind]:
-                        yield names.sheets[sheet].finding("other-kind", message, index, name)
+@rule("misspelt", WARNING, "a word that is nearly one of the vocabulary")
+def misspelt(context: Context) -> Iterator[Diagnostic]:
+    """A word that is not in the vocabulary differs from one of it by one letter, as typing errors do.
 
-
-def _misspelt(names: Names, kind: Kind, name: str, known: Vocabulary) -> Iterator[Diagnostic]:
-    """Say of a name that a word of it is nearly one that is known."""
-    for word in words_of(name):
-        if word in known.words:
-            continue
-        meant = near_word(word, known.near[kind], verbs=kind is not Kind.OBJECT)
-        if meant is not None:
-            message = f"{word!r} in the {kind} {name!r} is no word that is known; is it {meant!r}?"
-            right = re.sub(rf"(?<![^\W\d_]){word}(?![^\W\d_])", meant, name)
-            rename = Rename(kind, name, right) if right != name else None  # it has capitals or accents
-            for sheet, index, _ in names.by_sheet(kind, name):
-                yield names.sheets[sheet].finding("misspelt", message, index, name)._replace(rename=rename)
-            return
-
-
-def _unknown(names: Names, name: str, known: Vocabulary) -> Iterator[Diagnostic]:
-    """Say once of a name that no file has it as an object: as a container, and as an ingredient.
-
-    Where no other name may be meant, it has to have a word that is not known.
+    If the right name stands in the files, too, this is a `near-name`.
     """
-    alike = " or ".join(map(repr, names.objects_alike(name)))
-    if not alike and all(word in known.words for word in name.lower().replace("-", " ").split()):
+    for kind, counts in context.names.counts.items():
+        for name in counts:
+            if (slip := context.vocabulary.slip(kind, name)) and (kind, name) not in context.paired_names:
+                word, meant = slip
+                message = f"{word!r} in the {kind} {name!r} is no word that is known; is it {meant!r}?"
+                right = re.sub(rf"(?<![^\W\d_]){word}(?![^\W\d_])", meant, name)
+                rename = Rename(kind, name, right) if right != name else None  # it has capitals or accents
+                for sheet, index, _ in context.names.by_sheet(kind, name):
+                    yield sheet.finding(message, index, name)._replace(rename=rename)
+
+
+@rule("unknown-container", NOTE, "an object in [ ] that is never an object line")
+def unknown_container(context: Context) -> Iterator[Diagnostic]:
+    """No unit takes or makes the container, and it may have another name as an object.
+
+    Where no other name is like it, it is reported only if the vocabulary does not have its words. It is
+    reported once for all files, where it first occurs.
+    """
+    return _unknown(context, Relation, "stands in [ ]", "no unit takes or makes it")
+
+
+@rule("unknown-ingredient", WARNING, "an ingredient in { } that is never an object line")
+def unknown_ingredient(context: Context) -> Iterator[Diagnostic]:
+    """No unit can have put it there, and it may have another name as an object.
+
+    Where no other name is like it, it is reported only if the vocabulary does not have its words. It is
+    reported once for all files, where it first occurs.
+    """
+    return _unknown(context, Contents, "is an ingredient", "no unit adds it")
+
+
+def _unknown(context: Context, bracket: Bracket, role: str, advice: str) -> Iterator[Diagnostic]:
+    names, known = context.names, context.vocabulary
+    if all(sheet.entries is not None for sheet in context.sheets):
         return
-    for code, part in (("unknown-container", Relation), ("unknown-ingredient", Contents)):
-        found = [
-            mention
-            for mention in names.mentions[Kind.OBJECT][name]
-            if isinstance(mention.line, StateLine)
-            and isinstance(mention.line.attribute, part)
-            and names.sheets[mention.sheet].entries is None
-        ]
-        if not found:
+    for name, mentions in names.mentions[Kind.OBJECT].items():
+        if name in names.objects or (Kind.OBJECT, name) in context.paired_names:
             continue
-        first = min(found, key=lambda mention: (mention.sheet, mention.first))
-        often = times(sum(mention.often for mention in found))
-        sheets = len({mention.sheet for mention in found})
-        often += f" in {sheets} files" if sheets > 1 else ""
-        if part is Relation:
-            message = f"{name!r} stands in [ ] {often}, and is never an object"
-            advice = "no unit takes or makes it"
-        else:
-            message = f"{name!r} is an ingredient {often}, and is never an object"
-            advice = "no unit adds it"
-        message += f"; is it {alike}?" if alike else f"; {advice}"
-        yield names.sheets[first.sheet].finding(code, message, first.first, name)
+        held = [
+            each
+            for each in mentions
+            if isinstance(each.line, StateLine)
+            and isinstance(each.line.attribute, bracket)
+            and context.sheets[each.sheet].entries is None
+        ]
+        if not held or known.slip(Kind.OBJECT, name):
+            continue
+        alike = " or ".join(map(repr, names.objects_alike(name)))
+        if not alike and all(word in known.words for word in name.lower().replace("-", " ").split()):
+            continue
+        first = min(held, key=lambda mention: (mention.sheet, mention.first))
+        sheets = len({mention.sheet for mention in held})
+        often = times(sum(mention.often for mention in held)) + (f" in {sheets} files" if sheets > 1 else "")
+        message = f"{name!r} {role} {often}, and is never an object; {f'is it {alike}?' if alike else advice}"
+        yield context.sheets[first.sheet].finding(message, first.first, name)

@@ -1,68 +1,79 @@
 """Comments that silence linting: ``# noqa: near-name`` above a line, or ``# noqa`` for everything there."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import NamedTuple
 
-from foon_asp.linting.catalog import CATALOG
+from foon_asp.linting.context import Context
+from foon_asp.linting.rule import RULES, WARNING, rule
 from foon_asp.linting.sheet import Sheet
 from foon_asp.text.diagnostics import Diagnostic
 
 _COMMENT = re.compile(r"#\s*noqa\b\s*(?P<colon>:?)(?P<codes>.*)", re.IGNORECASE)
 
 
-class _Silence(NamedTuple):
+class _Comment(NamedTuple):
     """A comment: its index, the number of the line it is about, and the codes, none for all."""
 
     at: int
     line: int
-    codes: frozenset[str]
+    codes: tuple[str, ...]
+
+    def silences(self, finding: Diagnostic) -> bool:
+        """Whether a finding in the same file is left out."""
+        return finding.source.line == self.line and (not self.codes or finding.code in self.codes)
 
 
 def silencing(code: str) -> str:
-    """Give the comment that silences a code on the next line."""
+    """Return the comment that silences a code on the next line."""
     return f"# noqa: {code}"
 
 
-def unsilenced(findings: Iterable[Diagnostic], sheets: Iterable[Sheet]) -> Iterator[Diagnostic]:
-    """Leave out what comments silence, and give a finding for a comment that silences nothing or no code.
-
-    A comment is about the next line that is neither blank nor a comment. JSON has no comments.
-    """
-    silences: dict[tuple[str, int], list[_Silence]] = {}
-    for sheet in sheets:
-        if sheet.places is None:
-            for silence, unknown in _silences(sheet):
-                silences.setdefault((sheet.file, silence.line), []).append(silence)
-                for code in unknown:
-                    message = f"there is no code {code!r}; this comment does not silence it"
-                    yield sheet.finding("noqa", message, silence.at, code)
-    used: set[_Silence] = set()
-    for finding in findings:
-        here = silences.get((finding.source.file, finding.source.line), ())
-        by = {silence for silence in here if not silence.codes or finding.code in silence.codes}
-        used |= by
-        if not by:
+def unsilenced(context: Context) -> Iterator[Diagnostic]:
+    """Yield the findings that no comment silences."""
+    comments = {sheet.file: _comments(sheet) for sheet in _commented(context)}
+    for finding in context.findings:
+        if not any(comment.silences(finding) for comment in comments.get(finding.source.file, ())):
             yield finding
-    for sheet in sheets:
-        for silence in (s for (file, _), listed in silences.items() if file == sheet.file for s in listed):
-            known = silence.codes & CATALOG.keys()
-            if silence not in used and (known or not silence.codes):
-                what = f"no {' or '.join(sorted(known))}" if known else "nothing"
-                message = f"there is {what} to silence on line {silence.line}; leave the comment out"
-                yield sheet.finding("noqa", message, silence.at)
 
 
-def _silences(sheet: Sheet) -> Iterator[tuple[_Silence, list[str]]]:
-    """Give every comment, with the codes in it that there are not."""
-    waiting: list[tuple[int, list[str]]] = []
-    for index, line in enumerate(sheet.lines):
-        if match := _COMMENT.match(line) if line[:1] == "#" else None:
+@rule("noqa", WARNING, "a noqa comment that silences nothing")
+def noqa(context: Context) -> Iterator[Diagnostic]:
+    """The finding that it silenced is gone, or the code is misspelt.
+
+    A comment is about the next line that is neither blank nor a comment, and about findings whose place is
+    that line.
+    """
+    for sheet in _commented(context):
+        here = [finding for finding in context.findings if finding.source.file == sheet.file]
+        for comment in _comments(sheet):
+            for code in comment.codes:
+                if code not in RULES:
+                    message = f"there is no code {code!r}; this comment does not silence it"
+                    yield sheet.finding(message, comment.at, code)
+            known = sorted(RULES.keys() & comment.codes)
+            if (known or not comment.codes) and not any(map(comment.silences, here)):
+                what = f"no {' or '.join(known)}" if known else "nothing"
+                message = f"there is {what} to silence on line {comment.line}; leave the comment out"
+                yield sheet.finding(message, comment.at)
+
+
+def _commented(context: Context) -> Iterator[Sheet]:
+    """Yield the sheets and tables with comments; JSON has none."""
+    for sheet in (*context.sheets, *context.files.tables):
+        if sheet.places is None and any(line[:1] == "#" and _COMMENT.match(line) for line in sheet.lines):
+            yield sheet
+
+
+def _comments(sheet: Sheet) -> list[_Comment]:
+    """Return the comments of a sheet; one at the end is about the last line, on which there is nothing."""
+    comments: list[_Comment] = []
+    following = len(sheet.lines)
+    for index in range(len(sheet.lines) - 1, -1, -1):
+        line = sheet.lines[index]
+        if line[:1] != "#" and line.strip():
+            following = index + 1
+        elif match := _COMMENT.match(line):
             codes = re.findall(r"[^\s,]+", match["codes"]) if match["colon"] else []
-            waiting.append((index, codes))
-        elif waiting and line[:1] != "#" and line.strip():
-            for at, codes in waiting:
-                yield _Silence(at, index + 1, frozenset(codes)), [c for c in codes if c not in CATALOG]
-            waiting = []
-    for at, codes in waiting:  # at the end of the file there is nothing it could be about
-        yield _Silence(at, len(sheet.lines), frozenset(codes)), [c for c in codes if c not in CATALOG]
+            comments.insert(0, _Comment(index, following, tuple(codes)))
+    return comments

@@ -3,7 +3,7 @@
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
@@ -13,9 +13,10 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.plain_file import read_plain_text, split_lines
 
 _FILES = ("foon-asp.toml", "pyproject.toml")
-_TABLE = ("tool", "foon-asp", "lint")
-_KEYS = ("select", "ignore", "per-file", "severity")
+_TABLE = "tool.foon-asp.lint"
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+# a comment, a text on lines or on one line, or a bare key of TOML
+_WORD = re.compile(r"""#[^\n]*|\"{3}.*?\"{3}|'{3}.*?'{3}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[\w-]+""", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -29,28 +30,26 @@ class LintSettings:
 
     select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
-    per_file: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    per_file: Mapping[str, Sequence[str]] = field(default_factory=dict)
     severity: Mapping[str, Severity] = field(default_factory=dict)
     file: Path | None = None
 
     def applied(self, findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-        """Give the findings that are wanted, with the severities that are wanted."""
-        wanted = {code for code in self.select or CATALOG if code not in self.ignore}
-        left_out: dict[str, set[str]] = {}
-        kept = []
-        for finding in findings:
-            file, code = finding.source.file, finding.code
-            if file not in left_out:
-                left_out[file] = self._left_out(file)
-            if code in wanted and code not in left_out[file]:
-                kept.append(finding._replace(severity=self.severity.get(code, finding.severity)))
-        return kept
+        """Return the findings that are wanted, with the severities that are wanted."""
+        return [
+            finding._replace(severity=self.severity.get(finding.code, finding.severity))
+            for finding in findings
+            if finding.code in (self.select or CATALOG)
+            and finding.code not in self.ignore
+            and not self._is_ignored_in(finding.source.file, finding.code)
+        ]
 
-    def _left_out(self, file: str) -> set[str]:
-        if self.file is None:
-            return set()
+    def _is_ignored_in(self, file: str, code: str) -> bool:
+        patterns = [pattern for pattern, codes in self.per_file.items() if code in codes]
+        if not patterns or self.file is None:
+            return False
         path = PurePosixPath(Path(os.path.relpath(file, self.file.parent)).as_posix())
-        return {code for pattern, codes in self.per_file.items() if _matches(path, pattern) for code in codes}
+        return any(_matches(path, pattern) for pattern in patterns)
 
 
 def _matches(path: PurePosixPath, pattern: str) -> bool:
@@ -83,109 +82,82 @@ def read_settings(file: Path) -> LintSettings | None:
 
     Raises :class:`InputError` with line and column of everything that is not understood.
     """
-    return _Table(file).settings()
+    text = read_plain_text(file)
+    try:
+        table: object = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        match = _PLACE.search(str(error))
+        place = (int(match[1]), int(match[2])) if match and match[1] else _line_and_column(text, len(text))
+        message = f"the file is not TOML: {_PLACE.sub('', str(error))}"
+        raise InputError([_error(file, text, place, message)]) from None
+    faults: list[_Fault] = []
+    if file.name == _FILES[0] and isinstance(table, dict) and "lint" in table:
+        faults.append((("lint",), f"found the table [lint], expected [{_TABLE}]"))
+    for key in _TABLE.split("."):
+        table = table.get(key) if isinstance(table, dict) else None
+    faults += [] if table is None else _faults(table)
+    if faults:
+        errors = [_error(file, text, _place(text, path), message) for path, message in faults]
+        raise InputError(sorted(errors, key=lambda error: error.source))
+    if not isinstance(table, dict):
+        return None
+    select, ignore = (tuple(table.get(key, ())) for key in ("select", "ignore"))
+    severity = {code: Severity(value) for code, value in table.get("severity", {}).items()}
+    return LintSettings(select, ignore, table.get("per-file", {}), severity, file)
 
 
-class _Table:
-    """A file of settings, and the places of what is wrong in it."""
+_Fault = tuple[tuple[str, ...], str]  # the keys that lead to what is wrong, and the message
 
-    def __init__(self, file: Path) -> None:
-        self.file = file
-        self.text = read_plain_text(file)
-        self.errors: list[Diagnostic] = []
-        try:
-            self.document = tomllib.loads(self.text)
-        except tomllib.TOMLDecodeError as error:
-            match = _PLACE.search(str(error))
-            lines = split_lines(self.text)
-            line, column = (
-                (int(match[1]), int(match[2])) if match and match[1] else (len(lines), len(lines[-1]) + 1)
-            )
-            self._error(f"the file is not TOML: {_PLACE.sub('', str(error))}", line, column)
-            raise InputError(self.errors) from None
 
-    def settings(self) -> LintSettings | None:
-        if self.file.name == _FILES[0] and "lint" in self.document:
-            self._wrong(("lint",), f"found the table [lint], expected [{'.'.join(_TABLE)}]")
-        table = self._at(_TABLE)
-        if isinstance(table, dict):
-            for key in table.keys() - set(_KEYS):
-                self._wrong((*_TABLE, key), f"found the setting {key!r}, expected one of {', '.join(_KEYS)}")
-            select, ignore = (self._codes((*_TABLE, key), table.get(key, [])) for key in _KEYS[:2])
-            per_file = {
-                pattern: self._codes((*_TABLE, "per-file", pattern), codes)
-                for pattern, codes in self._table("per-file", table).items()
-            }
-            severity = self._severities(self._table("severity", table))
-        elif table is not None:
-            self._wrong(_TABLE, "expected a table of settings")
-        if self.errors:
-            raise InputError(sorted(self.errors, key=lambda error: error.source))
-        if table is None:
-            return None
-        return LintSettings(select, ignore, per_file, severity, self.file)
+def _faults(table: object) -> Iterator[_Fault]:
+    """Yield what is not understood in the table of settings."""
+    if not isinstance(table, dict):
+        yield ("lint",), "expected a table of settings"
+        return
+    for key, value in table.items():
+        if key in {"select", "ignore"}:
+            yield from _faults_of_codes((key,), value)
+        elif key not in {"per-file", "severity"}:
+            expected = "select, ignore, per-file, severity"
+            yield (key,), f"found the setting {key!r}, expected one of {expected}"
+        elif not isinstance(value, dict):
+            yield (key,), f"expected a table [{_TABLE}.{key}]"
+        else:
+            for name, inner in value.items():
+                if key == "per-file":
+                    yield from _faults_of_codes((key, name), inner)
+                elif name not in CATALOG:
+                    yield (key, name), unknown_code(name)
+                elif inner not in list(Severity):
+                    expected = ", ".join(repr(str(severity)) for severity in Severity)
+                    yield (key, name), f"found {inner!r}, expected one of {expected}"
 
-    def _table(self, key: str, table: dict[str, object]) -> dict[str, object]:
-        value = table.get(key, {})
-        if isinstance(value, dict):
-            return value
-        self._wrong((*_TABLE, key), f"expected a table [{'.'.join((*_TABLE, key))}]")
-        return {}
 
-    def _codes(self, path: tuple[str, ...], value: object) -> tuple[str, ...]:
-        if not isinstance(value, list) or not all(isinstance(code, str) for code in value):
-            self._wrong(path, f'expected a list of codes such as {path[-1]} = ["near-name"]')
-            return ()
-        for code in value:
-            if code not in CATALOG:
-                self._wrong(path, unknown_code(code), code)
-        return tuple(value)
+def _faults_of_codes(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
+    if not isinstance(value, list) or not all(isinstance(code, str) for code in value):
+        yield path, f'expected a list of codes such as {path[-1]} = ["near-name"]'
+        return
+    for code in value:
+        if code not in CATALOG:
+            yield (*path, code), unknown_code(code)
 
-    def _severities(self, table: dict[str, object]) -> dict[str, Severity]:
-        found = {}
-        for code, value in table.items():
-            path = (*_TABLE, "severity", code)
-            if code not in CATALOG:
-                self._wrong(path, unknown_code(code))
-            elif value in list(Severity):
-                found[code] = Severity(str(value))
-            else:
-                self._wrong(
-                    path, f"found {value!r}, expected one of {', '.join(map(repr, map(str, Severity)))}"
-                )
-        return found
 
-    def _wrong(self, path: tuple[str, ...], message: str, value: str = "") -> None:
-        """Note what is wrong about a key, or about a text in the list that it has."""
-        start = self._place(path, path[-1], 0)
-        if value:
-            start = self._place(path, value, start)
-        before = self.text[:start].replace("\r\n", "\n")
-        self._error(message, before.count("\n") + 1, len(before) - before.rfind("\n"))
+def _place(text: str, path: tuple[str, ...]) -> tuple[int, int]:
+    """Return line and column of the last of the words that stand behind the name of the table, in order."""
+    found = [match for match in _WORD.finditer(text) if match[0][0] != "#"]
+    words = [match[0].strip("\"'") for match in found]
+    table = _TABLE.split(".")[1:]
+    at = next((at for at in range(len(words)) if words[at : at + 2] == table), 0)
+    for word in path:
+        at = words.index(word, at) if word in words[at:] else at
+    return _line_and_column(text, found[at].start() + (found[at][0][0] in "\"'"))
 
-    def _place(self, path: tuple[str, ...], word: str, start: int) -> int:
-        """Give where a key or text stands: there, another word would make what stands under ``path`` another.
 
-        So the places are those of TOML itself, whatever it is that stands in comments or in other tables.
-        """
-        value = self._at(path)
-        for match in re.finditer(re.escape(word), self.text[start:]):
-            place = start + match.start()
-            changed = f"{self.text[:place]}{'x' * (len(word) + 1)}{self.text[start + match.end() :]}"
-            try:
-                if self._at(path, tomllib.loads(changed)) != value:
-                    return place
-            except tomllib.TOMLDecodeError:
-                continue
-        return start
+def _line_and_column(text: str, offset: int) -> tuple[int, int]:
+    before = text[:offset].replace("\r\n", "\n")
+    return before.count("\n") + 1, len(before) - before.rfind("\n")
 
-    def _at(self, path: Iterable[str], document: object = None) -> object:
-        found: object = self.document if document is None else document
-        for key in path:
-            found = found.get(key) if isinstance(found, dict) else None
-        return found
 
-    def _error(self, message: str, line: int, column: int) -> None:
-        excerpt = split_lines(self.text)[line - 1]
-        source = Source(str(self.file), line, column)
-        self.errors.append(Diagnostic(Severity.ERROR, "settings", message, source, excerpt))
+def _error(file: Path, text: str, place: tuple[int, int], message: str) -> Diagnostic:
+    excerpt = split_lines(text)[place[0] - 1]
+    return Diagnostic(Severity.ERROR, "settings", message, Source(str(file), *place), excerpt)

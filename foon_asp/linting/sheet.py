@@ -3,14 +3,14 @@
 import json
 import re
 from bisect import bisect_left
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
-from foon_asp.linting.catalog import CATALOG
-from foon_asp.network import NodePattern, ObjectNode, Source
-from foon_asp.text.diagnostics import Diagnostic
+from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
+from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.line import Line, LineError, ObjectLine, StateLine
 from foon_asp.text.listed_unit import node_of
 from foon_asp.text.reader import FoonReader
@@ -36,6 +36,14 @@ class WrittenLine(NamedTuple):
     often: int
 
 
+class WrittenBlock(NamedTuple):
+    """An object as it is written: the index of its object line, its label, and the lines under it."""
+
+    at: int
+    label: str
+    attributes: list[tuple[int, str | Relation | Contents]]
+
+
 @dataclass
 class Sheet:
     """The lines of a file, from index 0.
@@ -51,7 +59,6 @@ class Sheet:
     places: Sequence[Source] | None = None
     entries: list[Entry] | None = None
     source_lines: Sequence[str] = field(default=(), repr=False)
-    _columns: tuple[int, dict[str, int]] = field(default_factory=lambda: (-1, {}), repr=False)
 
     @property
     def lists_goals(self) -> bool:
@@ -62,43 +69,51 @@ class Sheet:
     @cached_property
     def distinct_lines(self) -> list[WrittenLine]:
         """Every distinct line that says something, in order."""
-        lines = self.lines
-        first = dict(zip(reversed(lines), range(len(lines) - 1, -1, -1), strict=True))
-        counts: dict[str, int] = {}
-        for line in lines:
-            counts[line] = counts.get(line, 0) + 1
-        self.reader.parse_new(counts)
-        found = []
-        for line, count in counts.items():
-            if line[:1] in _LETTERS and not isinstance(parsed := self.reader.parse(line), LineError):
-                found.append(WrittenLine(parsed, first[line], count))
-        return found
+        counts, first = Counter(self.lines), dict[str, int]()
+        for index, line in enumerate(self.lines):
+            first.setdefault(line, index)
+        return [
+            WrittenLine(parsed, first[line], often)
+            for line, often in counts.items()
+            if line[:1] in _LETTERS and not isinstance(parsed := self.reader.parse(line), LineError)
+        ]
 
     def blocks(self, start: int) -> Iterator[tuple[int, ObjectNode]]:
-        """Give the object nodes of the unit whose first line has that index, each with its object line."""
-        index, attributes = -1, []
-        label = ""
+        """Yield the object nodes of the unit whose first line has that index, each with its object line."""
+        for block in self.written_blocks(start):
+            if block is None:
+                return
+            yield block.at, node_of(block.label, (attribute for _, attribute in block.attributes))
+
+    @cached_property
+    def _parsed(self) -> dict[str, Line]:
+        """What the lines that are understood say."""
+        return {self.lines[first]: line for line, first, _ in self.distinct_lines}
+
+    @cached_property
+    def longer_blocks(self) -> list[WrittenBlock]:
+        """The objects of the sheet as they are written, with two lines or more under them."""
+        return [block for block in self.written_blocks(0) if block and len(block.attributes) > 1]
+
+    def written_blocks(self, start: int) -> Iterator[WrittenBlock | None]:
+        """Yield the objects from a line on, as they are written, and ``None`` where a unit ends."""
+        block: WrittenBlock | None = None
         for number in range(start, len(self.lines)):
             text = self.lines[number]
-            line = self.reader.parse(text) if text[:1] in _LETTERS else None
+            line = self._parsed.get(text)
             if isinstance(line, StateLine):
-                attributes.append(line.attribute)
+                if block is not None:
+                    block.attributes.append((number, line.attribute))
                 continue
             if text[:1] == "#" or not text.strip():
                 continue
-            if index >= 0:
-                yield index, node_of(label, attributes)
-            index, attributes = -1, []
-            if isinstance(line, ObjectLine):
-                index, label = number, line.label
-            elif text[:2] == "//":
-                return
-        if index >= 0:
-            yield index, node_of(label, attributes)
-
-    def line_of(self, node: ObjectNode, start: int) -> int:
-        """Give the index of the object line of a node in the unit that begins there."""
-        return next((index for index, found in self.blocks(start) if found == node), start)
+            if block is not None:
+                yield block
+            block = WrittenBlock(number, line.label, []) if isinstance(line, ObjectLine) else None
+            if text[:2] == "//":
+                yield None
+        if block is not None:
+            yield block
 
     def where(self, index: int, beside: "Sheet | None" = None) -> str:
         """Name a line for a message: by its number, and by its file where that is another than ``beside``."""
@@ -106,35 +121,20 @@ class Sheet:
         return f"line {line}" if beside is self else str(Source(self.file, line))
 
     def place(self, index: int, column: int = 1) -> Source:
-        """Give the place of a line in the file."""
+        """Return the place of a line in the file."""
         return self.places[index] if self.places is not None else Source(self.file, index + 1, column)
 
-    def finding(self, code: str, message: str, index: int, name: str = "", column: int = 1) -> Diagnostic:
-        """Make a finding about a line, or about a name or a column of it."""
-        severity = CATALOG[code].severity
+    def finding(self, message: str, index: int, name: str = "", column: int = 1) -> Diagnostic:
+        """Return a finding about a line, or about a name or a column of it; its rule adds the code."""
         if self.places is not None:
             source, line = self._in_json(index, name)
-            return Diagnostic(severity, code, message, source, line)
-        column = self._column(index, name) if name else column
-        return Diagnostic(severity, code, message, self.place(index, column), self.lines[index])
-
-    def _column(self, index: int, name: str) -> int:
-        """Give the column of a whole name in a line: ``rice`` is not where ``rice vinegar`` is.
-
-        The columns of the last line are kept: a long list is not searched anew for each of its names.
-        """
-        line = self.lines[index]
-        start = line.find("\t") + 1
-        if self._columns[0] != index:
-            columns: dict[str, int] = {}
-            for match in _NAME.finditer(line, start):
-                text = match[0]
-                columns.setdefault(text.strip(), match.end() - len(text.lstrip()) + 1)
-            self._columns = index, columns
-        return self._columns[1].get(name) or max(0, line.find(name, start)) + 1
+        else:
+            line = self.lines[index]
+            source = self.place(index, _column(line, name) if name else column)
+        return Diagnostic(Severity.NOTE, "", message, source, line)
 
     def _in_json(self, index: int, name: str) -> tuple[Source, str]:
-        """Give the place and line of a name, in quotes, behind the place where its unit or entry begins."""
+        """Return the place and line of a name, in quotes, behind the place where its unit or entry begins."""
         start = self.place(index)
         places = self._quoted.get(name, [])
         number = bisect_left(places, (start.line, start.column))
@@ -156,3 +156,16 @@ class Sheet:
                     text = json.loads(match[0], strict=False)
                 found.setdefault(text, []).append((number, match.start() + 2))
         return found
+
+
+def _column(line: str, name: str) -> int:
+    """Return the column of a whole name in a line: ``rice`` is not where ``rice vinegar`` is."""
+    return _columns(line).get(name) or max(0, line.find(name, line.find("\t") + 1)) + 1
+
+
+@lru_cache(1)  # a long list is not searched anew for each of its names
+def _columns(line: str) -> dict[str, int]:
+    columns: dict[str, int] = {}
+    for match in _NAME.finditer(line, line.find("\t") + 1):
+        columns.setdefault(match[0].strip(), match.end() - len(match[0].lstrip()) + 1)
+    return columns

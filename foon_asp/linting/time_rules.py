@@ -1,29 +1,39 @@
-"""What there is to say of times: steps that end before they begin, or come before what they use is made."""
+"""Times: steps that end before they begin, or come before what they use is made."""
 
 import re
 from bisect import bisect_right
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from statistics import median
 from typing import NamedTuple
 
-from foon_asp.linting.linted_files import LintedFiles
+from foon_asp.linting.context import Context
+from foon_asp.linting.linted_files import Copy
+from foon_asp.linting.rule import WARNING, rule
 from foon_asp.linting.sheet import Sheet
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import MotionLine
-from foon_asp.text.motion_times import MotionFields
 
 _CLOCK = re.compile(r"\d+:\d\d(?::\d\d)?")
-_HOUR, _LONG, _MINUTE = 3600, 1200, 60
+_SPAN = re.compile(rf"({_CLOCK.pattern}) ?- ?({_CLOCK.pattern})")
+_HOUR, _LONG, _MINUTE = 3600, 1200, 60  # seconds
 _LATER, _MUCH_LATER = 2, 4  # times as late as the latest one of another form, and as most
 _MUCH_LONGER = 20  # times as long as most steps
 
 
 class _Clock(NamedTuple):
-    """A time as it is written, its column, and its seconds."""
+    """A time in seconds, its column, and how it is written."""
 
-    text: str
-    column: int
     seconds: int
+    column: int
+    text: str
+
+    @classmethod
+    def of(cls, match: re.Match[str], group: int = 0) -> "_Clock":
+        """Read the time that a group of a match is."""
+        seconds = 0
+        for number in match[group].split(":"):
+            seconds = 60 * seconds + int(number)
+        return cls(seconds, match.start(group) + 1, match[group])
 
 
 class _Step(NamedTuple):
@@ -35,114 +45,111 @@ class _Step(NamedTuple):
 
     @property
     def first(self) -> _Clock:
-        return min((start for start, _ in self.spans), key=lambda clock: clock.seconds)
+        return min(start for start, _ in self.spans)
 
     @property
     def last(self) -> _Clock:
-        return max((end for _, end in self.spans), key=lambda clock: clock.seconds)
+        return max(end for _, end in self.spans)
 
 
-def time_findings(files: LintedFiles) -> Iterator[Diagnostic]:
-    """Give the findings about times of each network, in linear time."""
-    by_sheet: dict[int, list[tuple[int, int]]] = {}
-    for unit, copies in enumerate(files.copies):
-        for copy in copies:
-            by_sheet.setdefault(copy.sheet, []).append((copy.at, unit))
-    for number, units in by_sheet.items():
-        sheet = files.sheets[number]
-        steps = list(_steps(sheet, sorted(units)))
-        odd = yield from _values(sheet, steps)
-        yield from _order(files, sheet, [step for step in steps if step.motion not in odd])
+def _timed_sheets(context: Context) -> Iterator[tuple[Sheet, list[_Step], dict[int, tuple[str, int]]]]:
+    """Yield each sheet with its steps that have times, and what is odd of these, by the motion line."""
+    for sheet, copies in zip(context.sheets, context.files.copies_by_sheet, strict=True):
+        steps = list(_steps(sheet, copies))
+        if steps:
+            yield sheet, steps, _odd_times(steps)
 
 
-def _steps(sheet: Sheet, units: list[tuple[int, int]]) -> Iterator[_Step]:
-    starts = [at for at, _ in units]
+def _steps(sheet: Sheet, copies: list[tuple[Copy, int]]) -> Iterator[_Step]:
+    starts = [copy.at for copy, _ in copies]
     for index, text in enumerate(sheet.lines):
-        if text[:1] != "M" or ":" not in text:
-            continue
-        line = sheet.reader.parse(text)
-        if not isinstance(line, MotionLine):
-            continue
-        spans = _spans(text, MotionFields.of(line.fields).times)
-        place = bisect_right(starts, index) - 1
-        if spans and place >= 0:
-            yield _Step(units[place][1], index, spans)
+        if text[:1] == "M" and ":" in text and isinstance(sheet.reader.parse(text), MotionLine):
+            spans = _spans(text)
+            place = bisect_right(starts, index) - 1
+            if spans and place >= 0:
+                yield _Step(copies[place][1], index, spans)
 
 
-def _spans(text: str, fields: tuple[str, ...]) -> list[tuple[_Clock, _Clock]]:
-    """Give the beginnings and ends in two fields, or in one, where ``-`` or else a comma stands between."""
+def _spans(text: str) -> list[tuple[_Clock, _Clock]]:
+    """Return the beginnings and ends behind a motion: in two fields, or in one with ``-`` between."""
     start = text.find("\t", text.find("\t") + 1)
-    clocks = [_clock(match) for match in _CLOCK.finditer(text, start)]
-    joined = " ".join(fields)
-    if "," in joined and "-" in joined:
-        spans, at = [], 0
-        for part in joined.split(","):
-            found = clocks[at : at + len(_CLOCK.findall(part))]
-            at += len(found)
-            if len(found) == 2:
-                spans.append((found[0], found[1]))
-        return spans
-    return [(clocks[0], clocks[1])] if len(clocks) == 2 else []
+    spans = [(_Clock.of(match, 1), _Clock.of(match, 2)) for match in _SPAN.finditer(text, start)]
+    clocks = [_Clock.of(match) for match in _CLOCK.finditer(text, start)]
+    return spans or ([(clocks[0], clocks[1])] if len(clocks) == 2 else [])
 
 
-def _clock(match: re.Match[str]) -> _Clock:
-    seconds = 0
-    for part in match[0].split(":"):
-        seconds = 60 * seconds + int(part)
-    return _Clock(match[0], match.start() + 1, seconds)
+@rule("time-value", WARNING, "a time that is hardly meant: too many seconds, hours, an end before its start")
+def time_value(context: Context) -> Iterator[Diagnostic]:
+    """A step ends before it begins or lasts long beside others, or a time has more than 59 seconds.
+
+    Or there is an hour among minutes, or `1:38:50` where other times of the file are `m:ss`: then the last
+    number is usually a fraction of a second, and the time is read as hours.
+    """
+    for sheet, _, odd in _timed_sheets(context):
+        for motion, (message, column) in odd.items():
+            yield sheet.finding(message, motion, column=column)
 
 
-def _values(sheet: Sheet, steps: list[_Step]) -> Generator[Diagnostic, None, set[int]]:
-    """Give the findings about single times, and return the lines that they are on."""
-    if not steps:
-        return set()
+def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
+    """Return a message, and the column that it is about, for each line with a time that is hardly meant."""
     clocks = [clock for step in steps for span in step.spans for clock in span]
     usual = median(clock.seconds for clock in clocks)
     in_three = 4 * sum(clock.text.count(":") == 2 for clock in clocks) > len(clocks)
     latest = max((clock.seconds for clock in clocks if clock.text.count(":") == 1), default=0)
     length = median(max(0, end.seconds - start.seconds) for step in steps for start, end in step.spans)
-    odd = set()
+
+    def odd_clock(clock: _Clock) -> str:
+        parts = clock.text.split(":")
+        if any(int(part) >= _MINUTE for part in parts[1:]):
+            return f"{clock.text!r} has more than 59 seconds or minutes"
+        if len(parts) == 3 and not in_three and clock.seconds > _LATER * latest:
+            minutes, seconds, fraction = parts
+            return (
+                f"{clock.text!r} is h:mm:ss, long after other times here; if {fraction} is a fraction of a "
+                f"second, write {minutes}:{seconds}"
+            )
+        if clock.seconds >= _HOUR and clock.seconds > _MUCH_LATER * usual:
+            return f"{clock.text!r} is after hours, most times here within minutes"
+        return ""
+
+    def odd_span(start: _Clock, end: _Clock) -> str:
+        if end.seconds < start.seconds:
+            return f"the step ends at {end.text}, before it begins at {start.text}"
+        if end.seconds - start.seconds >= max(_LONG, _MUCH_LONGER * length):
+            return f"the step lasts from {start.text} to {end.text}, much longer than others here"
+        return ""
+
+    odd: dict[int, tuple[str, int]] = {}
     for step in steps:
         for start, end in step.spans:
-            message, at = "", end
-            for clock in (start, end):
-                if any(int(part) >= _MINUTE for part in clock.text.split(":")[1:]):
-                    message, at = f"{clock.text!r} has more than 59 seconds or minutes", clock
-                elif clock.text.count(":") == 2 and not in_three and clock.seconds > _LATER * latest:
-                    minutes, seconds, rest = clock.text.split(":")
-                    message, at = f"{clock.text!r} is h:mm:ss, long after other times here", clock
-                    message += f"; if {rest} is a fraction of a second, write {minutes}:{seconds}"
-                elif clock.seconds >= _HOUR and clock.seconds > _MUCH_LATER * usual:
-                    message, at = f"{clock.text!r} is after hours, most times here within minutes", clock
+            told = ((odd_clock(start), start), (odd_clock(end), end), (odd_span(start, end), end))
+            for message, clock in told:
                 if message:
-                    break
-            if not message and end.seconds < start.seconds:
-                message = f"the step ends at {end.text}, before it begins at {start.text}"
-            elif not message and end.seconds - start.seconds >= max(_LONG, _MUCH_LONGER * length):
-                message = f"the step lasts from {start.text} to {end.text}, much longer than others here"
-            if message:
-                odd.add(step.motion)
-                yield sheet.finding("time-value", message, step.motion, column=at.column)
-                break
+                    odd.setdefault(step.motion, (message, clock.column))
     return odd
 
 
-def _order(files: LintedFiles, sheet: Sheet, steps: list[_Step]) -> Iterator[Diagnostic]:
-    """Give the steps that end before the one begins that stands before them and makes what they use."""
-    network = files.network
-    makers: dict[int, _Step] = {}
-    for step in steps:
-        inputs = network.inputs[step.unit]
-        late = [(makers[node].first.seconds, node) for node in inputs if node in makers]
-        if late and max(late)[0] > step.last.seconds:
-            node = max(late)[1]
-            maker = makers[node]
-            message = (
-                f"the step ends at {step.last.text}, and uses {str(network.objects[node])!r}, which "
-                f"{network.motions[maker.unit]!r} ({sheet.where(maker.motion, sheet)}) begins to make at "
-                f"{maker.first.text}; is one of the times wrong?"
+@rule("time-order", WARNING, "a step before the one that makes what it uses")
+def time_order(context: Context) -> Iterator[Diagnostic]:
+    """The step ends before the one begins that stands above it and makes what it uses.
+
+    One of the times, or the order of the steps, is wrong.
+    """
+    network = context.network
+    for sheet, steps, odd in _timed_sheets(context):
+        makers: dict[int, _Step] = {}
+        for step in (step for step in steps if step.motion not in odd):
+            inputs = network.inputs[step.unit]
+            seconds, node = max(
+                ((makers[node].first.seconds, node) for node in inputs if node in makers), default=(0, 0)
             )
-            yield sheet.finding("time-order", message, step.motion, column=step.first.column)
-        for node in set(network.outputs[step.unit]).difference(inputs):
-            known = makers.setdefault(node, step)
-            makers[node] = min(known, step, key=lambda maker: maker.first.seconds)
+            if seconds > step.last.seconds:
+                maker = makers[node]
+                message = (
+                    f"the step ends at {step.last.text}, and uses {str(network.objects[node])!r}, which "
+                    f"{network.motions[maker.unit]!r} ({sheet.where(maker.motion, sheet)}) begins to make at "
+                    f"{maker.first.text}; is one of the times wrong?"
+                )
+                yield sheet.finding(message, step.motion, column=step.first.column)
+            for node in set(network.outputs[step.unit]).difference(inputs):
+                makers[node] = min(makers.get(node, step), step, key=lambda maker: maker.first)

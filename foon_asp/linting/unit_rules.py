@@ -1,59 +1,130 @@
-"""What there is to say of units: copies, nodes listed twice, units that change nothing."""
+"""Units and the objects in them: listed twice, changed by nothing, in two places at once."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
+from operator import eq
 
-from foon_asp.linting.linted_files import Copy, LintedFiles
+from foon_asp.linting.context import Context
+from foon_asp.linting.linted_files import Copy
+from foon_asp.linting.names import times
+from foon_asp.linting.rule import NOTE, WARNING, rule
+from foon_asp.linting.sheet import Sheet
+from foon_asp.network import Contents, Relation
 from foon_asp.text.diagnostics import Diagnostic
+from foon_asp.text.line import ObjectLine
+
+_Attribute = str | Relation | Contents
+_PLACES = {"in", "on", "inside", "under", "below", "at", "into", "onto", "on top of"}
 
 
-def unit_findings(files: LintedFiles) -> Iterator[Diagnostic]:
-    """Give the findings about each unit by itself and about its copies, in linear time."""
-    network = files.network
-    for unit, copies in enumerate(files.copies):
-        inputs, outputs = network.inputs[unit], network.outputs[unit]
+@rule("no-effect", WARNING, "a unit whose outputs are its inputs")
+def no_effect(context: Context) -> Iterator[Diagnostic]:
+    """Nothing is made, so no task tree needs the unit. Usually a state is missing in the outputs."""
+    network = context.network
+    for motion, inputs, outputs, copies in zip(
+        network.motions, network.inputs, network.outputs, context.files.copies, strict=True
+    ):
         if outputs and len(inputs) == len(outputs) and set(inputs) == set(outputs):
-            yield from _no_effect(files, unit, copies)
-        if len(copies) > 1:
-            yield from _copies(files, unit, copies)
+            message = f"the outputs of the unit {motion!r} are its inputs; say what {motion!r} changes, or "
+            for copy in copies:
+                yield context.at_unit(copy, message + "leave it out")
+
+
+@rule("duplicate-unit", WARNING, "a unit that the file already contains")
+def duplicate_unit(context: Context) -> Iterator[Diagnostic]:
+    """Motion, inputs and outputs are the same, but for the order of lines and states, ids, flags and times.
+
+    A universal FOON has every unit once; `foon-asp merge` takes care of that. That several recipes have a
+    unit is as it should be.
+    """
+    for motion, copies in zip(context.network.motions, context.files.copies, strict=True):
+        firsts: dict[int, Copy] = {}
         for copy in copies:
-            if copy.inputs > len(inputs) or copy.outputs > len(outputs):
-                yield from _repeated_objects(files, copy)
-
-
-def _no_effect(files: LintedFiles, unit: int, copies: list[Copy]) -> Iterator[Diagnostic]:
-    motion = files.network.motions[unit]
-    message = (
-        f"the outputs of the unit {motion!r} are its inputs; say what {motion!r} changes, or leave it out"
-    )
-    for copy in copies:
-        yield files.sheets[copy.sheet].finding("no-effect", message, copy.at)
-
-
-def _copies(files: LintedFiles, unit: int, copies: list[Copy]) -> Iterator[Diagnostic]:
-    """Name the first copy in the file; that recipes have units in common is as it should be."""
-    motion = files.network.motions[unit]
-    firsts: dict[int, Copy] = {}
-    for copy in copies:
-        sheet = files.sheets[copy.sheet]
-        first = firsts.setdefault(copy.sheet, copy)
-        if first is not copy:
-            message = (
-                f"the unit {motion!r} is already on {sheet.where(first.at, sheet)}, with the "
-                "same inputs and outputs; one is enough"
-            )
-            yield sheet.finding("duplicate-unit", message, copy.at)
-
-
-def _repeated_objects(files: LintedFiles, copy: Copy) -> Iterator[Diagnostic]:
-    sheet = files.sheets[copy.sheet]
-    blocks = list(sheet.blocks(copy.at))
-    for side, part in (("inputs", blocks[: copy.inputs]), ("outputs", blocks[copy.inputs :])):
-        seen: dict[object, int] = {}
-        for index, node in part:
-            first = seen.setdefault(node, index)
-            if first != index:
+            sheet = context.sheets[copy.sheet]
+            first = firsts.setdefault(copy.sheet, copy)
+            if first is not copy:
                 message = (
-                    f"{str(node)!r} is among the {side} of the unit already, on "
-                    f"{sheet.where(first, sheet)}; it counts once"
+                    f"the unit {motion!r} is already on {sheet.where(first.at, sheet)}, with the "
+                    "same inputs and outputs; one is enough"
                 )
-                yield sheet.finding("repeated-object", message, index, node.label)
+                yield context.at_unit(copy, message)
+
+
+@rule("repeated-object", WARNING, "an object node listed twice on one side of a unit, or a state of it")
+def repeated_object(context: Context) -> Iterator[Diagnostic]:
+    """The inputs of a unit are a set, and so are its outputs and the states of an object: each counts once.
+
+    Two eggs are two nodes only if they differ, for example in where they are. Often a state line is missing
+    under one of the two.
+    """
+    network = context.network
+    for unit, copies in enumerate(context.files.copies):
+        for copy in copies:
+            if copy.inputs > len(network.inputs[unit]) or copy.outputs > len(network.outputs[unit]):
+                yield from _repeated_nodes(context, copy)
+    for sheet in context.sheets:
+        for label, _, state, indices in _clashes(sheet, eq):
+            message = f"{str(state)!r} is given twice for the object {label!r}; one line is enough"
+            yield _once(sheet, message, indices)
+
+
+def _repeated_nodes(context: Context, copy: Copy) -> Iterator[Diagnostic]:
+    sheet = context.sheets[copy.sheet]
+    for side, blocks in zip(("inputs", "outputs"), context.node_lines(copy), strict=True):
+        firsts: dict[object, int] = {}
+        for index, node in blocks:
+            first = firsts.setdefault(node, index)
+            if first != index:
+                message = f"{str(node)!r} is among the {side} of the unit already, on "
+                message += f"{sheet.where(first, sheet)}; it counts once"
+                yield sheet.finding(message, index, node.label)
+
+
+@rule("second-relation", NOTE, "two places, or two relations or lists by one word, under one object")
+def second_relation(context: Context) -> Iterator[Diagnostic]:
+    """An object can be in two relations, such as `on [tray]` and `covered [foil]`, but not in two places.
+
+    Nor in two relations or with two lists by one word: when it is moved, the old place has to be removed,
+    and of contents one line has all.
+    """
+    for sheet in context.sheets:
+        labels = {each.line.label for each in sheet.distinct_lines if isinstance(each.line, ObjectLine)}
+        for label, first, second, indices in _clashes(sheet, partial(_exclude_each_other, labels)):
+            if isinstance(second, Contents):
+                message = f"{label!r} has {str(second)!r} beside {str(first)!r}; both count: if they are "
+                message += "one list, write one line"
+            else:
+                message = f"{label!r} is {str(second)!r} besides {str(first)!r}; both count: if one is "
+                message += "outdated, take it out"
+            yield _once(sheet, message, indices)
+
+
+def _clashes(
+    sheet: Sheet, clash: Callable[[_Attribute, _Attribute], bool]
+) -> Iterator[tuple[str, _Attribute, _Attribute, list[int]]]:
+    """Yield each label with two attributes under it that clash, and the lines that have the second."""
+    told: dict[tuple[str, _Attribute, _Attribute], list[int]] = {}
+    for block in sheet.longer_blocks:
+        for number, (index, second) in enumerate(block.attributes):
+            for _, first in block.attributes[:number]:
+                if clash(first, second):
+                    told.setdefault((block.label, first, second), []).append(index)
+                    break
+    for (label, first, second), indices in told.items():
+        yield label, first, second, indices
+
+
+def _once(sheet: Sheet, message: str, indices: list[int]) -> Diagnostic:
+    """Return a finding about the first of several lines, with their number."""
+    count = f" ({times(len(indices))} in this file)" if len(indices) > 1 else ""
+    return sheet.finding(message + count, indices[0])
+
+
+def _exclude_each_other(labels: set[str], first: _Attribute, second: _Attribute) -> bool:
+    """Whether two attributes cannot both be true: two by one word, or two places that are objects."""
+    if isinstance(first, Contents) and isinstance(second, Contents):
+        return first.word == second.word and first != second
+    if not isinstance(first, Relation) or not isinstance(second, Relation) or first == second:
+        return False
+    are_places = {first.word, second.word} <= _PLACES and {first.object, second.object} <= labels
+    return first.word == second.word or are_places

@@ -1,64 +1,80 @@
 """The names that FOONs know, the brackets of words, and what units with a motion do."""
 
 import unicodedata
-from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from functools import cached_property
 from pathlib import Path
 
-from foon_asp.linting.habits import Habit
+from foon_asp.linting.habits import Habit, Habits
 from foon_asp.linting.names import Kind, Names
-from foon_asp.linting.near_names import by_what_is_left
+from foon_asp.linting.near_names import by_what_is_left, near_word
 from foon_asp.network import Contents, Relation, counted
 from foon_asp.text.line import LineError, StateLine
-from foon_asp.text.table_rows import read_rows
+from foon_asp.text.table import read_rows
 
 _UTENSILS = "utensils.txt"
 UTENSIL, HABIT = "utensil", "habit"
 Bracket = type[Relation] | type[Contents]
-_BRACKETS: dict[str, Bracket] = {"[ ]": Relation, "{ }": Contents}
-_LEAST = 3  # lines of a word before it says anything of its brackets
+_BRACKETS: dict[Bracket, str] = {Relation: f"{Kind.WORD} [ ]", Contents: f"{Kind.WORD} {{ }}"}
+_NUMBERS = {
+    **dict.fromkeys((Kind.OBJECT, Kind.STATE, Kind.MOTION, UTENSIL), 0),
+    **dict.fromkeys(_BRACKETS.values(), 1),
+    HABIT: len(Habit._fields),
+}
+"""The kinds of rows in a vocabulary, with how many numbers stand behind a name."""
+_MIN_LINES = 3  # of a word before it says anything of its brackets
+_Row = tuple[str, str, Sequence[int]]
 
 
 class Vocabulary:
-    """Names of each kind, how often words of relations stand with each bracket, and what units mostly do."""
+    """Names by kind, each with its numbers; those of several rows for a name are added.
 
-    def __init__(self) -> None:
-        self.names: dict[Kind, set[str]] = {kind: set() for kind in Kind}
-        self.utensils: set[str] = set()
-        self.brackets: dict[str, Counter[Bracket]] = {}
-        self.habits: dict[str, Habit] = {}
+    A word of a relation has how often it stood with a bracket, and a motion the numbers of its habit.
+    """
+
+    def __init__(self, rows: Iterable[_Row] = ()) -> None:
+        self.numbers: dict[str, dict[str, Sequence[int]]] = {kind: {} for kind in _NUMBERS}
+        for kind, name, numbers in rows:
+            known = self.numbers[kind]
+            known[name] = [*map(sum, zip(known[name], numbers, strict=True))] if name in known else numbers
 
     @classmethod
-    def of(cls, names: Names) -> "Vocabulary":
+    def of(cls, names: Names, habits: Habits) -> "Vocabulary":
         """Learn from files; a utensil is an object that others are in or on, or that a table says is one."""
-        learned = cls()
-        for kind in Kind:
-            learned.names[kind].update(names.mentions[kind])
+        rows: list[_Row] = [
+            (kind, name, ()) for kind in Kind if kind is not Kind.WORD for name in names.mentions[kind]
+        ]
         for table in names.files.tables:
             if Path(table.file).name == _UTENSILS:
-                learned.utensils.update(line.strip() for line in table.lines if line.strip()[:1] not in "#")
-        learned.names[Kind.OBJECT] |= learned.utensils
-        learned.habits = names.habits.of_motions()
+                rows += [(UTENSIL, line.strip(), ()) for line in table.lines if line.strip()[:1] not in "#"]
         for word, mentions in names.mentions[Kind.WORD].items():
-            counts = learned.brackets.setdefault(word, Counter())
-            for mention in mentions:
-                if isinstance(mention.line, StateLine) and not mention.line.remarks:
-                    attribute = mention.line.attribute
-                    counts[Relation if isinstance(attribute, Relation) else Contents] += mention.often
-                    if isinstance(attribute, Relation) and attribute.object in names.objects:
-                        learned.utensils.add(attribute.object)
-        return learned
+            for line, often in ((mention.line, mention.often) for mention in mentions):
+                if isinstance(line, StateLine) and not line.remarks and not isinstance(line.attribute, str):
+                    rows.append((_BRACKETS[type(line.attribute)], word, [often]))
+                    if isinstance(line.attribute, Relation) and line.attribute.object in names.objects:
+                        rows.append((UTENSIL, line.attribute.object, ()))
+        return cls([*rows, *((HABIT, motion, habit) for motion, habit in habits.of_units())])
 
-    def add(self, other: "Vocabulary") -> None:
-        """Add what another one knows."""
-        for kind in Kind:
-            self.names[kind] |= other.names[kind]
-        self.utensils |= other.utensils
-        for motion, habit in other.habits.items():
-            self.habits[motion] = self.habits.get(motion, Habit()).plus(*habit)
-        for word, counts in other.brackets.items():
-            self.brackets.setdefault(word, Counter()).update(counts)
+    def plus(self, other: "Vocabulary") -> "Vocabulary":
+        """Return a vocabulary of all that this and another one know."""
+        return Vocabulary([*self._rows(), *other._rows()])
+
+    def _rows(self) -> Iterator[_Row]:
+        for kind, known in self.numbers.items():
+            yield from ((kind, name, numbers) for name, numbers in known.items())
+
+    @property
+    def utensils(self) -> AbstractSet[str]:
+        """Labels of what other objects are in or on."""
+        return self.numbers[UTENSIL].keys()
+
+    @cached_property
+    def names(self) -> dict[Kind, AbstractSet[str]]:
+        """The names of each kind."""
+        names = {kind: self.numbers[kind].keys() for kind in (Kind.STATE, Kind.MOTION)}
+        words = {word for kind in _BRACKETS.values() for word in self.numbers[kind]}
+        return {**names, Kind.WORD: words, Kind.OBJECT: self.numbers[Kind.OBJECT].keys() | self.utensils}
 
     @cached_property
     def words(self) -> frozenset[str]:
@@ -66,7 +82,7 @@ class Vocabulary:
         return frozenset(word for names in self.names.values() for name in names for word in words_of(name))
 
     @cached_property
-    def near(self) -> dict[Kind, dict[str, list[str]]]:
+    def _near(self) -> dict[Kind, dict[str, list[str]]]:
         """The words of each kind by themselves and by what is left of them when a letter is taken away."""
         found = {}
         for kind in Kind:
@@ -76,65 +92,62 @@ class Vocabulary:
             found[kind] = by_what_is_left(words | opposites)
         return found
 
-    def usual_bracket(self, word: str) -> Bracket | None:
-        """Give ``Relation`` or ``Contents`` for a word that stands with one of them nearly always."""
-        counts = self.brackets.get(word)
-        if not counts:
+    def slip(self, kind: Kind, name: str) -> tuple[str, str] | None:
+        """Return a word of a name that is not known, and the known word for which it is likely a slip."""
+        if name in self.names[kind]:
             return None
-        (kind, often), *others = counts.most_common()
-        return kind if often >= max(_LEAST, 10 * sum(count for _, count in others)) else None
+        for word in words_of(name):
+            if word not in self.words:
+                meant = near_word(word, self._near[kind], verbs=kind is not Kind.OBJECT)
+                if meant is not None:
+                    return word, meant
+        return None
+
+    def habit(self, motion: str) -> Habit:
+        """Return what units with a motion do."""
+        return Habit(*self.numbers[HABIT].get(motion, ()))
+
+    def brackets(self, word: str) -> dict[Bracket, int]:
+        """Return how often a word stands with each bracket, the more frequent one first."""
+        counts = {
+            bracket: self.numbers[kind][word][0]
+            for bracket, kind in _BRACKETS.items()
+            if word in self.numbers[kind]
+        }
+        return dict(sorted(counts.items(), key=lambda each: -each[1]))
+
+    def usual_bracket(self, word: str) -> Bracket | None:
+        """Return ``Relation`` or ``Contents`` for a word that stands with one of them nearly always."""
+        for bracket, often in self.brackets(word).items():
+            others = sum(self.brackets(word).values()) - often
+            return bracket if often >= max(_MIN_LINES, 10 * others) else None
+        return None
 
     def text(self) -> str:
         """Write a vocabulary, as :func:`read_vocabulary` reads it."""
-        rows = [(str(kind), name) for kind in Kind if kind is not Kind.WORD for name in self.names[kind]]
-        rows += [(UTENSIL, name) for name in self.utensils]
-        rows += [
-            (f"{Kind.WORD} {sign}", f"{word}\t{self.brackets[word][bracket]}")
-            for word in self.brackets
-            for sign, bracket in _BRACKETS.items()
-            if self.brackets[word][bracket]
-        ]
-        rows += [(HABIT, "\t".join(map(str, (motion, *habit)))) for motion, habit in self.habits.items()]
-        return "".join(f"{kind}\t{name}\n" for kind, name in sorted(rows))
+        rows = [(kind, "\t".join(map(str, (name, *numbers)))) for kind, name, numbers in self._rows()]
+        return "".join(f"{kind}\t{row}\n" for kind, row in sorted(rows))
 
 
 def words_of(name: str) -> Iterator[str]:
-    """Give the words of a name that are made of letters alone, small and without accents."""
+    """Yield the words of a name that are made of letters alone, small and without accents."""
     if not name.isascii():
         name = "".join(c for c in unicodedata.normalize("NFD", name) if not unicodedata.combining(c))
     return (word for word in name.lower().replace("-", " ").split(" ") if word.isalpha())
 
 
-def _counted(kind: str, row: str, count: int) -> tuple[str, list[int]]:
-    """Give a name and the numbers behind it."""
-    name, *numbers = row.split("\t")
-    if len(numbers) != count or not all(number.isascii() and number.isdigit() for number in numbers):
-        raise LineError(len(kind) + 2, repr(row), (f"a name and, behind tabs, {counted(count, 'number')}",))
-    return name, [int(number) for number in numbers]
-
-
 def read_vocabulary(file: Path) -> Vocabulary:
-    """Read ``kind⇥name`` lines; raises :class:`InputError` for a line of another form."""
-    found = Vocabulary()
-    kinds = {str(kind): kind for kind in Kind if kind is not Kind.WORD}
+    """Read ``kind⇥name`` lines with numbers behind; raises :class:`InputError` for a line of another form."""
+    rows: list[_Row] = []
 
-    def read(kind: str, name: str, _: object) -> None:
-        sign = _BRACKETS.get(kind.removeprefix(f"{Kind.WORD} "))
-        if kind in kinds:
-            found.names[kinds[kind]].add(name)
-        elif kind == UTENSIL:
-            found.utensils.add(name)
-            found.names[Kind.OBJECT].add(name)
-        elif sign:
-            word, (often,) = _counted(kind, name, 1)
-            found.names[Kind.WORD].add(word)
-            found.brackets.setdefault(word, Counter())[sign] += often
-        elif kind == HABIT:
-            motion, counts = _counted(kind, name, len(Habit._fields))
-            found.habits[motion] = found.habits.get(motion, Habit()).plus(*counts)
-        else:
-            expected = (*kinds, UTENSIL, HABIT, *(f"{Kind.WORD} {sign}" for sign in _BRACKETS))
-            raise LineError(1, repr(kind), expected)
+    def read(kind: str, row: str, _: object) -> None:
+        if kind not in _NUMBERS:
+            raise LineError(1, repr(kind), tuple(_NUMBERS))
+        name, *numbers = row.split("\t")
+        if len(numbers) != _NUMBERS[kind] or not all(each.isascii() and each.isdigit() for each in numbers):
+            expected = f"a name and, behind tabs, {counted(_NUMBERS[kind], 'number')}"
+            raise LineError(len(kind) + 2, repr(row), (expected if _NUMBERS[kind] else "a name alone",))
+        rows.append((kind, name, list(map(int, numbers))))
 
     read_rows(file, "vocabulary", "a name", read)
-    return found
+    return Vocabulary(rows)

@@ -68,7 +68,7 @@ def _components(network: Network, made: list[tuple[int, ...]], nodes: Collection
 
 
 def _unreached(network: Network, made: list[tuple[int, ...]], component: dict[int, int]) -> set[int]:
-    """Give the nodes of each component that cannot be made although all nodes outside of it are at hand."""
+    """Return the nodes of each component that cannot be made although all nodes outside of it are at hand."""
     lacking: dict[tuple[int, int], int] = {}  # inputs that a unit lacks, within a component of its outputs
     for unit, outputs in enumerate(made):
         for number in {component[node] for node in outputs if node in component}:

@@ -8,7 +8,7 @@ UNREACHED = -1
 
 
 def layers(network: Network, start: Iterable[int]) -> tuple[list[int], list[int]]:
-    """Give the layer of every object node and of every unit, or ``UNREACHED``, when ``start`` is at hand.
+    """Return the layer of every object node and of every unit, or ``UNREACHED``, when ``start`` is at hand.
 
     A node of ``start`` is in layer 0; a unit is one layer above the highest of its inputs, and a node in the
     layer of the lowest unit that makes it. A unit without inputs is in layer 1.
@@ -40,7 +40,7 @@ def layers(network: Network, start: Iterable[int]) -> tuple[list[int], list[int]
 
 
 def cycles(network: Network) -> list[list[int]]:
-    """Give the sets of object nodes that need each other: strongly connected components with a cycle.
+    """Return the sets of object nodes that need each other: strongly connected components with a cycle.
 
     There is an edge from each input of a unit to each of its outputs. A node that a unit both needs and gives
     is a cycle by itself. (Tarjan, SIAM J. Comput. 1, 1972; units are vertices too, so that a unit with many
@@ -93,7 +93,7 @@ def cycles(network: Network) -> list[list[int]]:
 
 
 def parts(network: Network) -> list[int]:
-    """Give the number of units in each part that shares no object node with another, largest first."""
+    """Return the number of units in each part that shares no object node with another, largest first."""
     parent = list(range(len(network.objects)))
 
     def root(node: int) -> int:

@@ -20,7 +20,7 @@ class Slip(NamedTuple):
 
 
 def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | None:
-    """Give the name in which two nodes differ, where it is one and its spellings are one edit apart.
+    """Return the name in which two nodes differ, where it is one and its spellings are one edit apart.
 
     One edit is a letter too many, too few, another or swapped with the next; doubled letters, capitals,
     blanks and hyphens count as one edit together. Two relations to one object by different words
@@ -48,7 +48,7 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
 
 
 def nearest(node: ObjectNode, others: Iterable[ObjectNode], most: int) -> list[ObjectNode]:
-    """Give the few nodes with the same label that have most else in common with a node, the nearest first."""
+    """Return the few nodes of the same label that have most in common with a node, the nearest first."""
     wanted = set(_parts(node, loose=False))
     ranked = sorted(
         (len(wanted.symmetric_difference(_parts(other, loose=False))), str(other), other)

@@ -46,7 +46,7 @@ class NearUnits(NamedTuple):
 
 
 def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitDifference, ...]:
-    """Say in what two units differ, as few things as possible: each pair of names counts once."""
+    """Return in what two units differ, as few things as possible: each pair of names counts once."""
     found: list[UnitDifference] = []
     if left.motion != right.motion:
         found.append(UnitDifference("motion", left.motion, right.motion))
@@ -107,7 +107,7 @@ def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit
 
 
 def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
-    """Give the pairs of units in one list that differ in a single thing which may be a slip.
+    """Return the pairs of units in one list that differ in a single thing which may be a slip.
 
     That is the motion, a state, a relation or an ingredient, or a label that is spelt almost like the other.
     Units with other labels are other units.
@@ -126,7 +126,7 @@ def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
 
 
 def _candidates(lefts: Sequence[FunctionalUnit], rights: Sequence[FunctionalUnit]) -> list[list[int]]:
-    """Give for each unit a few of the others, by what they have in common that is rare."""
+    """Return for each unit a few of the others, by what they have in common that is rare."""
     by_part: defaultdict[object, list[int]] = defaultdict(list)
     for j, unit in enumerate(rights):
         for part in _signs(unit):
@@ -144,7 +144,7 @@ def _candidates(lefts: Sequence[FunctionalUnit], rights: Sequence[FunctionalUnit
 
 
 def _signs(unit: FunctionalUnit) -> set[object]:
-    """Give what a unit is found by: its nodes and its labels, alone and with the motion."""
+    """Return what a unit is found by: its nodes and its labels, alone and with the motion."""
     signs: set[object] = {unit.motion}
     for side, nodes in enumerate((unit.inputs, unit.outputs)):
         for node in nodes:
@@ -167,7 +167,7 @@ def _said(unit: FunctionalUnit) -> Iterator[object]:
 
 
 def _parts(node: ObjectNode) -> list[_Part]:
-    """Give what a node is made of."""
+    """Return what a node is made of."""
     return [
         ("label", node.label),
         *(("state", state) for state in sorted(node.states)),
@@ -177,7 +177,7 @@ def _parts(node: ObjectNode) -> list[_Part]:
 
 
 def _between(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifference, ...]:
-    """Say in what two nodes differ; what stands alone on both sides is one difference."""
+    """Return in what two nodes differ; what stands alone on both sides is one difference."""
     here, there = Counter(_parts(node)), Counter(_parts(other))
     found = []
     for kind in ("label", "state", "relation", "ingredient"):
@@ -200,5 +200,5 @@ def _is_same_thing(node: ObjectNode, other: ObjectNode, differences: Sequence[Un
 
 
 def _object(part: str) -> str:
-    """Give the object of a relation, or an ingredient as it is."""
+    """Return the object of a relation, or an ingredient as it is."""
     return part.partition(" [")[2].rstrip("]") or part

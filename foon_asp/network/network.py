@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from foon_asp.network.counted import counted
 from foon_asp.network.functional_unit import FunctionalUnit
-from foon_asp.network.node_pattern import NodePattern
+from foon_asp.network.node_pattern import LookupKey, NodePattern, lookup_keys
 from foon_asp.network.object_node import ObjectNode
 from foon_asp.network.source import Source
 from foon_asp.network.spelling import near_labels
@@ -76,7 +76,7 @@ class Network:
         return f"<Network: {size}, level {self.level}>"
 
     def __iter__(self) -> Iterator[FunctionalUnit]:
-        """Give the units as values, in order of id."""
+        """Return the units as values, in order of id."""
         return map(self.unit, range(len(self)))
 
     def is_like(self, other: "Network") -> bool:
@@ -92,7 +92,7 @@ class Network:
         )
 
     def to_networkx(self) -> Any:
-        """Give the network as a directed graph of the package networkx.
+        """Return the network as a directed graph of the package networkx.
 
         Object nodes are nodes with their parts as attributes; units are nodes ``("unit", id)``, with edges
         from their inputs and to their outputs. ``kind`` is ``object`` or ``unit``.
@@ -122,7 +122,7 @@ class Network:
         return graph
 
     def unit(self, unit_id: int) -> FunctionalUnit:
-        """Give a unit as a value.
+        """Return a unit as a value.
 
         Parameters:
             unit_id: The id of the unit.
@@ -135,7 +135,7 @@ class Network:
         )
 
     def unit_number(self, unit_id: int) -> int:
-        """Give the id that a unit has in the whole network.
+        """Return the id that a unit has in the whole network.
 
         Parameters:
             unit_id: The id of the unit here.
@@ -143,7 +143,7 @@ class Network:
         return self.unit_numbers[unit_id] if self.unit_numbers else unit_id
 
     def unit_of_number(self, number: int) -> int | None:
-        """Give the id of a unit here, or ``None`` if it is not here.
+        """Return the id of a unit here, or ``None`` if it is not here.
 
         Parameters:
             number: The id of the unit in the whole network.
@@ -163,7 +163,7 @@ class Network:
         return tuple(unit for unit in found if unit is not None)
 
     def object_number(self, object_id: int) -> int:
-        """Give the id that a node has in the whole network.
+        """Return the id that a node has in the whole network.
 
         Parameters:
             object_id: The id of the node here.
@@ -171,7 +171,7 @@ class Network:
         return self.object_numbers[object_id] if self.object_numbers else object_id
 
     def object_id(self, node: ObjectNode) -> int | None:
-        """Give the id of a node, or ``None`` if the network does not have it.
+        """Return the id of a node, or ``None`` if the network does not have it.
 
         Parameters:
             node: The node.
@@ -179,7 +179,7 @@ class Network:
         return self._object_ids.get(node)
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
-        """Give the id of a unit, or ``None`` if the network does not have it.
+        """Return the id of a unit, or ``None`` if the network does not have it.
 
         Parameters:
             unit: The unit.
@@ -191,7 +191,7 @@ class Network:
         return self._unit_ids.get((unit.motion, inputs, outputs))
 
     def without(self, units: Iterable[int]) -> "Network":
-        """Give the same network without some units; nodes keep their ids.
+        """Return the same network without some units; nodes keep their ids.
 
         Parameters:
             units: The ids of the units to leave out.
@@ -211,7 +211,7 @@ class Network:
         )
 
     def with_copies(self, units: Sequence[int]) -> "Network":
-        """Give the same network with some units a second time, after all others.
+        """Return the same network with some units a second time, after all others.
 
         Only the ids distinguish a copy from its unit; looked up as a value, a unit has the lower id.
 
@@ -269,7 +269,7 @@ class Network:
         return {ingredient: tuple(found) for ingredient, found in ids.items()}
 
     def node(self, object_id: int) -> ObjectNode:
-        """Give a node as a value.
+        """Return a node as a value.
 
         Parameters:
             object_id: The id of the node.
@@ -277,7 +277,7 @@ class Network:
         return self.objects[object_id]
 
     def labelled(self, label: str) -> tuple[int, tuple[int, ...]]:
-        """Give the number and the ids of the nodes that have a label.
+        """Return the number and the ids of the nodes that have a label.
 
         Parameters:
             label: The label.
@@ -286,7 +286,7 @@ class Network:
         return len(found), found
 
     def beginning(self, start: str, most: int) -> list[str]:
-        """Give labels with a given beginning, in alphabetical order.
+        """Return labels with a given beginning, in alphabetical order.
 
         Parameters:
             start: The beginning.
@@ -295,7 +295,7 @@ class Network:
         return sorted(label for label in self.by_label if label.startswith(start))[:most]
 
     def near(self, label: str, most: int) -> list[str]:
-        """Give labels that are similar to a given one, the most similar first.
+        """Return labels that are similar to a given one, the most similar first.
 
         Parameters:
             label: The label to compare with.
@@ -304,29 +304,20 @@ class Network:
         return near_labels(label, self.by_label, most)
 
     def find(self, pattern: NodePattern) -> tuple[int, ...]:
-        """Give the ids of the nodes that match an entry of a kitchen or goals file.
+        """Return the ids of the nodes that match an entry of a kitchen or goals file.
 
         Parameters:
             pattern: The entry.
         """
-        place = pattern.container
-        if place is None and pattern.relations:
-            place = min(pattern.relations).object
-        found = self._by_attributes.get((pattern.label, pattern.states, pattern.ingredients, place), ())
+        found = self._by_lookup_key.get(pattern.lookup_key, ())
         return tuple(o for o in found if pattern.matches(self.objects[o]))
 
     @cached_property
-    def _by_attributes(self) -> dict[tuple[str, frozenset[str], tuple[str, ...], str | None], list[int]]:
-        """Node ids by label, states, ingredients and each related object, or ``None`` where there is none.
-
-        A label without states may stand in thousands of places, so the place is part of the key.
-        """
-        ids: dict[tuple[str, frozenset[str], tuple[str, ...], str | None], list[int]] = {}
+    def _by_lookup_key(self) -> dict[LookupKey, list[int]]:
+        ids: dict[LookupKey, list[int]] = {}
         for object_id, node in enumerate(self.objects):
-            label, states, relations, contents = node
-            ingredients = node.ingredients if contents else ()
-            for place in {relation.object for relation in relations} if relations else (None,):
-                ids.setdefault((label, states, ingredients, place), []).append(object_id)
+            for key in lookup_keys(node):
+                ids.setdefault(key, []).append(object_id)
         return ids
 
 

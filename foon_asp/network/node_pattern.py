@@ -5,6 +5,12 @@ from typing import NamedTuple
 from foon_asp.network.object_node import Contents, ObjectNode, Relation
 from foon_asp.network.quoted_name import FIRST, LISTED, quoted
 
+LookupKey = tuple[str, frozenset[str], tuple[str, ...], str | None]
+"""Label, states, ingredients and a related object, ``None`` where there is none.
+
+A label without states may stand in thousands of places, so the place is part of the key.
+"""
+
 
 class NodePattern(NamedTuple):
     """An entry of a kitchen or goals file, which knows only the container and not the relation's word.
@@ -25,6 +31,14 @@ class NodePattern(NamedTuple):
     def of(cls, node: ObjectNode) -> "NodePattern":
         """Return the entry that only this node matches."""
         return cls(node.label, node.states, node.ingredients, None, node.relations, node.contents)
+
+    @property
+    def lookup_key(self) -> LookupKey:
+        """The key that every node has, among its :func:`lookup_keys`, which this entry stands for."""
+        place = self.container
+        if place is None and self.relations:
+            place = min(self.relations).object
+        return self.label, self.states, self.ingredients, place
 
     def matches(self, node: ObjectNode) -> bool:
         """Whether the node is one that this entry stands for."""
@@ -50,3 +64,11 @@ class NodePattern(NamedTuple):
         elif self.ingredients:
             parts.append(str(Contents("contains", self.ingredients)))
         return "; ".join(parts)
+
+
+def lookup_keys(node: ObjectNode) -> list[LookupKey]:
+    """Return the keys that a node is found by: one for each object that it is related to, at least one."""
+    label, states, relations, contents = node
+    ingredients = node.ingredients if contents else ()
+    places = {relation.object for relation in relations} if relations else (None,)
+    return [(label, states, ingredients, place) for place in places]

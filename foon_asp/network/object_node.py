@@ -88,7 +88,7 @@ class ObjectNode(NamedTuple):
         return any(relation.object == container for relation in self.relations)
 
     def __str__(self) -> str:
-        """Give the one-line notation: ``sweet potato; chopped; in [cutting board]``."""
+        """Return the one-line notation: ``sweet potato; chopped; in [cutting board]``."""
         parts = [
             quoted(self.label, FIRST),
             *map(quoted, sorted(self.states)),

@@ -9,12 +9,12 @@ _BETWEEN = r"[\s\-_'’.]+"
 
 
 def joined(name: str) -> str:
-    """Give a name without capitals, blanks, hyphens and the like."""
+    """Return a name without capitals, blanks, hyphens and the like."""
     return re.sub(_BETWEEN, "", name.casefold()) or name
 
 
 def without_doubles(name: str) -> str:
-    """Give a name :func:`joined`, with letters that stand doubled once."""
+    """Return a name :func:`joined`, with letters that stand doubled once."""
     return re.sub(_DOUBLED, r"\1", joined(name))
 
 
@@ -31,7 +31,7 @@ def one_letter_apart(word: str, other: str) -> bool:
 
 
 def near_labels(label: str, known: Iterable[str], most: int) -> list[str]:
-    """Give those of the known labels that are like one, whatever their capitals, the likest first."""
+    """Return those of the known labels that are like one, whatever their capitals, the likest first."""
     import difflib  # noqa: PLC0415 (for faults alone)
 
     lower: defaultdict[str, list[str]] = defaultdict(list)

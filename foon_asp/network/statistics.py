@@ -98,7 +98,7 @@ def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
 
 
 def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]:
-    """Give the labels that most units have among their inputs and outputs, with the number of such units.
+    """Return the labels that most units have among their inputs and outputs, with the number of such units.
 
     Of labels with as many units the first in the alphabet comes first.
     """
@@ -110,7 +110,7 @@ def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]
 
 
 def most_connected_objects(network: Network, shown: int) -> list[tuple[int, int, int]]:
-    """Give the object nodes that most units touch: id, units that need it, units that make it.
+    """Return the object nodes that most units touch: id, units that need it, units that make it.
 
     Of nodes with as many units the one that was read first comes first.
     """

@@ -15,7 +15,7 @@ class UnitPrices(NamedTuple):
     units: Mapping[FunctionalUnit, Fraction]
 
     def each(self, network: Network) -> tuple[Fraction | None, ...]:
-        """Give the price of every unit of a network, ``None`` where it has none.
+        """Return the price of every unit of a network, ``None`` where it has none.
 
         Below level 3 it is the least of those that a unit stands for, and all of them need one.
         """
@@ -26,7 +26,7 @@ class UnitPrices(NamedTuple):
         return tuple(map(_least, found))
 
     def price(self, unit: FunctionalUnit, network: Network | None = None) -> Fraction | None:
-        """Give the price of a unit at the level of a network; of one that is not in it, its motion's."""
+        """Return the price of a unit at the level of a network; of one that is not in it, its motion's."""
         if network is None or network.detailed is None:
             return self.units.get(unit, self.motions.get(unit.motion))
         number = network.unit_id(unit)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from foon_asp.errors import UserError
-from foon_asp.report.whole_file import write_whole
+from foon_asp.whole_file import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

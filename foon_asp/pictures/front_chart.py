@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from foon_asp.pictures.chart import write_chart
 from foon_asp.problem import Objective, multiplies
-from foon_asp.report.answer import success_texts
+from foon_asp.results.figure_text import success_texts
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

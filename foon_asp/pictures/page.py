@@ -11,13 +11,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.document.json_document import document, fraction_json, mention_json, nodes_json
 from foon_asp.escapes import UNSAFE
-from foon_asp.pictures.graphviz import coordinates
-from foon_asp.pictures.tree_drawing import network_drawing
-from foon_asp.problem import Problem, reach
-from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.json_value import Json, json_line
+from foon_asp.whole_file import utf_8, write_whole
 
 WEB = Path(__file__).resolve().parent / "web"
 
@@ -32,10 +28,6 @@ _SCRIPTS = (
     "proof",
     "network",
     "start",
-)
-_OTHER_ANSWERS = (
-    *("lasting", "without_rules", "alternatives", "front"),
-    *("proof", "why_not", "shopping_list", "network"),
 )
 
 
@@ -78,54 +70,6 @@ class Page(NamedTuple):
     ) -> dict[str, str]:
         """Return the MIME bundle that a notebook shows."""
         return {"text/plain": f"<Page: {self.title}>", "text/html": self.frame()}
-
-
-def view_json(
-    answer: Json | None, trees: Iterable[tuple[Problem, Iterable[int]]], **other_answers: object
-) -> Json:
-    """Return the data of a page: the document of an answer, ``None`` without one, and of other answers.
-
-    ``trees`` are all trees that the page shows, as units of a problem, whose rates become part of the data.
-    ``other_answers`` are named as in the schema.
-    """
-    rates = {
-        problem.network.unit_number(unit): fraction_json(problem.rate(unit))
-        for problem, units in trees
-        for unit in units
-        if problem.rates is not None
-    }
-    return document(
-        "view",
-        answer=answer,
-        rates=[{"unit": unit, "rate": rates[unit]} for unit in sorted(rates)] or None,
-        **{"searches": [], **dict.fromkeys(_OTHER_ANSWERS), **other_answers},
-    )
-
-
-def network_json(problem: Problem) -> Json:
-    """Return a whole network as JSON, with coordinates: x and y of each unit, then of each object node.
-
-    Raises :class:`UserError` for a network that is too large for a layout, and without Graphviz.
-    """
-    network = problem.network
-    reached = reach(problem)
-    objects, units = range(len(network.objects)), range(len(network))
-    drawing = network_drawing(network, units, (), (), ())
-    by_name = coordinates(drawing)
-    positions = {box.unit if box.node is None else box.node: by_name[box.name] for box in drawing.boxes}
-    pairs = [positions[network.unit_number(u)] for u in units]
-    pairs += [positions.get(node, (0, 0)) for node in network.objects]  # some nodes are in no unit
-    return {
-        "objects": nodes_json(network, objects),
-        "units": [
-            {**mention_json(network, u), "inputs": network.inputs[u], "outputs": network.outputs[u]}
-            for u in units
-        ],
-        "places": [round(number) for pair in pairs for number in pair],
-        "kitchen": sorted(problem.kitchen),
-        "reachable": [o for o in objects if reached.available[o]],
-        "possible": sorted(reached.units),
-    }
 
 
 def web(name: str, folder: Path = WEB) -> str:

@@ -2,16 +2,21 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
-from foon_asp.document.json_document import document, fraction_text, mention_json, named_json, nodes_json
+from msgspec import UNSET, UnsetType
+
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode
 from foon_asp.planning.planning_task import PlanningTask, taking
-from foon_asp.problem import ITEMS, UsedUp
+from foon_asp.problem import ITEMS, Objective, UsedUp
+from foon_asp.results.document import AboutGoals
+from foon_asp.results.plain import fraction_text
+from foon_asp.results.values import Copies, Mention, Node, Value
+from foon_asp.results.values_of import copies_of, head_of, mention_of, named_node, node_of
 from foon_asp.text.json_layout import check_json
 from foon_asp.text.json_node import read_node_json
-from foon_asp.text.json_value import Json, read_json, schema_name
+from foon_asp.text.json_value import read_json, schema_name
 from foon_asp.text.plain_file import read_plain_text
 
 KIND = "pddl-map"
@@ -46,68 +51,116 @@ def map_of(task: PlanningTask) -> NameMap:
     )
 
 
-def map_json(task: PlanningTask) -> Json:
-    """Return the name map of a task as a JSON document, in which units refer to nodes by name."""
-    problem, network = task.problem, task.problem.network
-    objects = dict(task.names)
-    for action in task.actions:  # a unit may have nodes that the task leaves out, such as bought items
-        if action.unit is not None:
-            for o in (*network.inputs[action.unit], *network.outputs[action.unit]):
-                objects.setdefault(o, f"unused-{network.object_number(o)}")
-    actions = []
-    for action in task.actions:
-        unit, inputs, outputs = action.unit, action.preconditions, action.add_effects
-        if unit is not None:
-            inputs, outputs = network.inputs[unit], network.outputs[unit]
-        actions.append(
-            {
-                "name": action.name,
-                "unit": None if unit is None else mention_json(network, unit),
-                "inputs": [objects[o] for o in inputs],
-                "outputs": [objects[o] for o in outputs],
-                "cost": action.cost,
-            }
+class Scale(Value, frozen=True):
+    """How the values of an objective became whole numbers.
+
+    Attributes:
+        factor: What its values were multiplied by.
+        rounded: Whether they were rounded then.
+    """
+
+    objective: Objective
+    factor: str
+    rounded: bool
+
+
+class NamedObject(Value, frozen=True):
+    """An object node, and its name in the planning task."""
+
+    name: str
+    object: Node
+
+
+class NamedAction(Value, frozen=True):
+    """An action of the planning task.
+
+    Attributes:
+        unit: The unit that it executes; null for one that takes a kitchen item.
+        inputs: The names of the inputs.
+        outputs: The names of the outputs.
+        cost: What it costs in the planning task.
+    """
+
+    name: str
+    unit: Mention | None
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    cost: int
+
+
+class Staying(Value, frozen=True):
+    """What the user declared of a label, or of an object node: that it lasts, or is used up."""
+
+    label: str | None
+    object: Node | None
+    stays: bool
+
+
+class MapFile(AboutGoals, frozen=True, kw_only=True, tag=schema_name(KIND)):
+    """The name map of a planning task, in which units refer to nodes by name.
+
+    Attributes:
+        scales: How objectives became the costs of actions.
+        objects: The object nodes of the actions, once each.
+        actions: The actions.
+        stock: Where items are used up: how many copies the kitchen has.
+        stays: Where items are used up: the labels and nodes that the user declared to last or to be used up.
+    """
+
+    scales: tuple[Scale, ...]
+    objects: tuple[NamedObject, ...]
+    actions: tuple[NamedAction, ...]
+    stock: tuple[Copies, ...] | UnsetType = UNSET
+    stays: tuple[Staying, ...] | UnsetType = UNSET
+
+    @classmethod
+    def of(cls, task: PlanningTask) -> Self:
+        """Return the name map of a task."""
+        problem, network = task.problem, task.problem.network
+        objects = dict(task.names)
+        for action in task.actions:  # a unit may have nodes that the task leaves out
+            if action.unit is not None:
+                for o in (*network.inputs[action.unit], *network.outputs[action.unit]):
+                    objects.setdefault(o, f"unused-{network.object_number(o)}")
+        actions = []
+        for action in task.actions:
+            unit, inputs, outputs = action.unit, action.preconditions, action.add_effects
+            if unit is not None:
+                inputs, outputs = network.inputs[unit], network.outputs[unit]
+            actions.append(
+                NamedAction(
+                    action.name,
+                    None if unit is None else mention_of(network, unit),
+                    tuple(objects[o] for o in inputs),
+                    tuple(objects[o] for o in outputs),
+                    action.cost,
+                )
+            )
+        items = problem.items
+        return cls(
+            **head_of(problem, task.objectives),
+            scales=tuple(
+                Scale(scale.objective, fraction_text(scale.factor), scale.rounded)
+                for scale in task.costs.scales
+            ),
+            objects=tuple(NamedObject(name, node_of(network, o)) for o, name in objects.items()),
+            actions=tuple(actions),
+            stock=UNSET if items is None else copies_of(network, items.stock),
+            stays=UNSET if items is None else tuple(_staying(network, *pair) for pair in items.told.items()),
         )
-    named = zip(objects.values(), nodes_json(network, objects), strict=True)
-    return document(
-        KIND,
-        problem,
-        task.objectives,
-        scales=[
-            {
-                "objective": str(scale.objective),
-                "factor": fraction_text(scale.factor),
-                "rounded": scale.rounded,
-            }
-            for scale in task.costs.scales
-        ],
-        objects=[{"name": name, "object": node} for name, node in named],
-        actions=actions,
-        **({} if problem.items is None else _items_json(network, problem.items)),
-    )
 
 
-def _items_json(network: Network, items: UsedUp) -> Json:
-    """Return the stock, and the labels and nodes that the user declared to last or to be used up."""
-    declared = [
-        {"label": name, "object": None}
-        if isinstance(name, str)
-        else {"label": None, "object": named_json(network, name)}
-        for name in items.told
-    ]
-    return {
-        "stock": [{"object": named_json(network, o), "copies": n} for o, n in items.stock.items()],
-        "stays": [
-            {**name, "stays": stays} for name, stays in zip(declared, items.told.values(), strict=True)
-        ],
-    }
+def _staying(network: Network, name: str | ObjectNode, stays: bool) -> Staying:
+    if isinstance(name, str):
+        return Staying(name, None, stays)
+    return Staying(None, named_node(network, name), stays)
 
 
 def read_name_map(file: Path) -> NameMap:
     """Read a map from a file.
 
-    Raises :class:`UserError` for a file that cannot be read, and for one that :func:`map_json` cannot have
-    made, with line and column where it is not JSON.
+    Raises :class:`UserError` for a file that cannot be read, and for one that is no :class:`MapFile`, with
+    line and column where it is not JSON.
     """
     text = read_plain_text(file)
     check_json(text, str(file))

@@ -35,11 +35,11 @@ class Question(NamedTuple):
     gives: Callable[[int], frozenset[int | None]]
 
     def with_motion(self, motion: str) -> Units:
-        """Give the units with a motion."""
+        """Return the units with a motion."""
         return frozenset(unit for unit, name in enumerate(self.network.motions) if name == motion)
 
     def touching(self, nodes: Iterable[int]) -> Units:
-        """Give the units that have one of some nodes among their inputs or outputs."""
+        """Return the units that have one of some nodes among their inputs or outputs."""
         touched, network = frozenset(nodes), self.network
         sides = enumerate(zip(network.inputs, network.outputs, strict=True))
         return frozenset(
@@ -49,11 +49,11 @@ class Question(NamedTuple):
         )
 
     def labelled(self, label: str) -> list[int]:
-        """Give the nodes with a label."""
+        """Return the nodes with a label."""
         return [o for o, node in enumerate(self.network.objects) if node.label == label]
 
     def made_with(self, names: Collection[str]) -> list[int]:
-        """Give the nodes that are labelled as one of some names, or contain one of them."""
+        """Return the nodes that are labelled as one of some names, or contain one of them."""
         wanted = frozenset(names)
         return [
             o
@@ -96,14 +96,14 @@ class Constraint(NamedTuple):
 
 
 def meaning(rule: Rule, question: Question) -> Meaning:
-    """Give what a constraint with its values says, or what is claimed of rules of the user's own."""
+    """Return what a constraint with its values says, or what is claimed of rules of the user's own."""
     if rule["rule"] == OWN:
         return own(rule)
     return LIBRARY[rule["rule"]].meaning(question, **_values(rule))
 
 
 def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
-    """Give what a constraint looks at of the places of each unit; ``None`` where it does not."""
+    """Return what a constraint looks at of the places of each unit; ``None`` where it does not."""
     places = None if rule["rule"] == OWN else LIBRARY[rule["rule"]].places
     if places is None:
         return None
@@ -134,7 +134,7 @@ def _least_rate(question: Question, least_rate: int) -> Meaning:
 
 
 def _vouching(network: Network, unit: int, allowed: list[str]) -> set[str]:
-    """Give those names that are of a place of the unit: a file, with folders or without, or a video."""
+    """Return those names that are of a place of the unit: a file, with folders or without, or a video."""
     return {
         name
         for source in network.sources[unit]
@@ -193,7 +193,7 @@ def _require_intermediate(question: Question, required_intermediate: str) -> Mea
 
 
 def _each(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
-    """Give units as things of their own that count 1 each."""
+    """Return units as things of their own that count 1 each."""
     one = Fraction(1)
     return [(frozenset({unit}), one) for unit in sorted(units)]
 
@@ -273,7 +273,7 @@ OWN = "own"  # in place of a constraint's name: rules of the user's own
 
 
 def own(rule: Rule) -> Meaning:
-    """Give what is claimed of rules of the user's own: no tree has all units of a set and none of another.
+    """Return what is claimed of rules of the user's own: no tree has all units of a set and none of another.
 
     Nor more of units than a limit says. What follows of a claim on a branch: where all units of the first set
     but one are used, and the second set is left out, that one is barred.

@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode
-from foon_asp.problem import Problem, UsedUp, given_outputs, needed_inputs
+from foon_asp.problem import Problem, UsedUp
+from foon_asp.proof.execution import Executions
 
 
 class Copy(NamedTuple):
@@ -68,7 +69,7 @@ def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
 
 
 def waits(replay: Replay) -> Iterator[set[int]]:
-    """Give for each step, in order, the positions of those that have to be done before it.
+    """Yield for each step, in order, the positions of those that have to be done before it.
 
     They made the copies that it takes, or read a copy that it uses up. Of what never runs out there is
     always another copy.
@@ -106,14 +107,10 @@ class _Kitchen:
     """What is there: nodes without end, and single copies of others, the oldest first."""
 
     def __init__(self, problem: Problem) -> None:
-        items = problem.items
-        assert items is not None
-        self._problem, self._items = problem, items
-        self._copies: dict[ObjectNode, list[Copy]] = {}
+        assert problem.items is not None
+        self._goals, self._executions = problem.goal_nodes, Executions(problem)
+        self._copies = {node: [Copy(node, None)] * n for node, n in self._executions.stock().items()}
         self._taken: dict[ObjectNode, list[int]] = {}
-        for node, count in items.stock.items():
-            if problem.at_hand(node):
-                self._copies[node] = [Copy(node, None)] * count
         self._made: Counter[ObjectNode] = Counter()  # copies made less copies used up
         self._least: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
 
@@ -121,46 +118,37 @@ class _Kitchen:
         steps: list[Step] = []
         shortage: Shortage | None = None
         for position, unit in enumerate(plan):
-            needed = self._needed(unit)
-            lacking = next((node for node in needed if not self._has(node)), None)
+            preconditions = self._executions.of(unit).preconditions
+            lacking = next((node for node in preconditions if not self._has(node)), None)
             if lacking is not None:
                 shortage = self._shortage(position, lacking)
                 break
-            steps.append(self._step(position, unit, needed))
+            steps.append(self._step(position, unit))
         if shortage is None:
-            missing = [node for node in self._problem.goal_nodes if not self._has(node)]
+            missing = [node for node in self._goals if not self._has(node)]
             if missing:
                 shortage = self._shortage(None, missing[0])
         left = tuple(copy for copies in self._copies.values() for copy in copies)
         return Replay(tuple(steps), shortage, left, self._least)
 
-    def _step(self, position: int, unit: FunctionalUnit, needed: Sequence[ObjectNode]) -> Step:
-        problem = self._problem
-        gone, stayed = [], []
-        for node in needed:
-            if self._items.fate(unit, node, problem.utensils).stays:
-                stayed.append(self._endless(node) or self._copies[node][0])
-            else:
+    def _step(self, position: int, unit: FunctionalUnit) -> Step:
+        preconditions, consumes, adds = self._executions.of(unit)
+        gone, stayed, came = [], [], []
+        consumed = frozenset(consumes)  # a unit may need very many
+        for node in preconditions:
+            if node in consumed:
                 gone.append(self._take(node, position))
-        came = []
-        made = given_outputs(unit, problem.containers, problem.utensils, problem.network)
-        for node in dict.fromkeys(made):
-            if node not in unit.inputs:
-                came.append(Copy(node, position))
-                if not self._endless(node):
-                    self._copies.setdefault(node, []).append(came[-1])
-                    self._made[node] += 1
+            else:
+                stayed.append(self._endless(node) or self._copies[node][0])
+        for node in adds:
+            came.append(Copy(node, position))
+            if not self._endless(node):
+                self._copies.setdefault(node, []).append(came[-1])
+                self._made[node] += 1
         return Step(unit, tuple(gone), tuple(stayed), tuple(came))
 
-    def _needed(self, unit: FunctionalUnit) -> tuple[ObjectNode, ...]:
-        problem = self._problem
-        return tuple(
-            dict.fromkeys(needed_inputs(unit, problem.containers, problem.utensils, problem.network))
-        )
-
     def _endless(self, node: ObjectNode) -> Copy | None:
-        endless = self._problem.at_hand(node) and node not in self._items.stock
-        return Copy(node, None) if endless else None
+        return Copy(node, None) if self._executions.is_endless(node) else None
 
     def _has(self, node: ObjectNode) -> bool:
         """Whether a copy of a node is there, which is then one that the plan needs."""

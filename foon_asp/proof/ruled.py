@@ -14,7 +14,7 @@ class Limit(NamedTuple):
     most: Fraction
 
     def left(self, used: Iterable[int]) -> Fraction:
-        """Give what is left of the limit where some units and steps are used."""
+        """Return what is left of the limit where some units and steps are used."""
         return self.most - sum(self.amounts.get(member, 0) for member in used)
 
 
@@ -61,7 +61,7 @@ class Ruled:
         self.limits.update((len(meanings) + number, Limit(*limit)) for number, limit in enumerate(several))
 
     def bars(self, used: Units, without: Units) -> dict[int, Units]:
-        """Give by constraint the units that no tree has which has those used and none of the others."""
+        """Return by constraint the units that no tree has which has those used and none of the others."""
         return {place: barred(used, without) for place, barred in self.barred.items()}
 
     def fault(self, units: Units, others: Units) -> str | None:
@@ -78,7 +78,7 @@ class Ruled:
         return None
 
     def used(self, units: Units) -> Units:
-        """Give a tree's units together with the steps that it uses."""
+        """Return a tree's units together with the steps that it uses."""
         given = {node for unit in units for node in self.gives.get(unit, ())}
         asked = {node for unit in units for node in self.needs.get(unit, ())}.union(self.goals)
         steps = (
@@ -103,7 +103,7 @@ class Ruled:
             self.makers[node].append(unit)
 
     def _thing(self, units: Units) -> int:
-        """Give what stands for a thing: its only unit, or a step that all of its units need."""
+        """Return what stands for a thing: its only unit, or a step that all of its units need."""
         if len(units) == 1:
             (only,) = units
             return only

@@ -1,13 +1,14 @@
 """Does a schedule hold? Played through in time, in plain Python, knowing nothing of how it was found."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.network import Contents, FunctionalUnit, ObjectNode
-from foon_asp.problem import Problem, given_outputs, needed_inputs
-from foon_asp.text.duration_list import Duration
+from foon_asp.problem import Problem
+from foon_asp.proof.execution import Executions
+from foon_asp.text.tables import Duration
 
 ToolName = str | ObjectNode
 """What tools are counted by: a label, or one that the kitchen has with something in it."""
@@ -64,7 +65,7 @@ class Means(NamedTuple):
         return label in self.tools and self.tools[label] is None
 
     def name(self, node: ObjectNode, label: str) -> ToolName:
-        """Give what a tool of the kitchen is counted by, which has a label and is, or has in it, a node.
+        """Return what a tool of the kitchen is counted by, which has a label and is, or has in it, a node.
 
         Those with contents are counted by these.
         """
@@ -76,7 +77,7 @@ class Means(NamedTuple):
         return ObjectNode.of(label, (), (), [Contents("contains", tuple(sorted({*inside})))])
 
     def number_of(self, problem: Problem, name: ToolName) -> int:
-        """Give how many there are: as is said, or as the stock has them, or one."""
+        """Return how many there are: as is said, or as the stock has them, or one."""
         said = self.tools.get(name)
         if said is not None:
             return said
@@ -104,8 +105,8 @@ class Asked(NamedTuple):
 
 
 def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, Asked]:
-    """Give what a unit asks for by label: its utensils, and those that its objects are in, on or at."""
-    needed, made = _sides(problem, unit)
+    """Return what a unit asks for by label: its utensils, and those that its objects are in, on or at."""
+    needed, _, made = Executions(problem).of(unit)
     asked: dict[str, Asked] = {}
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
     around = (relation.object for node in nodes for relation in node.relations)
@@ -153,9 +154,9 @@ class _Run:
         self, problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
     ) -> None:
         assert problem.items is not None
-        self._problem, self._items, self._means = problem, problem.items, means
+        self._problem, self._executions, self._means = problem, Executions(problem), means
         self._plan, self._steps = plan, steps
-        self._copies = Counter({n: k for n, k in problem.items.stock.items() if problem.at_hand(n)})
+        self._copies = self._executions.stock()
         self._read: Counter[ObjectNode] = Counter()
         self._working: dict[int | Tool, int] = {}  # who and what is at a step
         self._states: dict[Tool, frozenset[ObjectNode]] = {}
@@ -179,11 +180,11 @@ class _Run:
             if hand in self._working:
                 yield f"waits for {hand}, which is at step {self._working[hand] + 1}"
         yield from self._wrong_tools(unit, step.tools)
-        needed, _ = _sides(self._problem, unit)
+        needed, consumes, _ = self._executions.of(unit)
         for node in needed:
-            if self._endless(node):
+            if self._executions.is_endless(node):
                 continue
-            goes = not self._stays(unit, node)
+            goes = node in consumes
             in_use = 0 if self._means.is_free(node.label) and not goes else self._read[node]
             if self._copies[node] <= in_use:
                 yield f"lacks a copy of {node}"
@@ -193,22 +194,21 @@ class _Run:
 
     def _end(self, number: int) -> None:
         unit, step = self._plan[number], self._steps[number]
-        needed, made = _sides(self._problem, unit)
+        needed, consumes, made = self._executions.of(unit)
         for node in needed:
-            if self._stays(unit, node):
+            if node not in consumes:
                 self._read[node] -= 1  # of what is endless, nobody asks for this
         self._copies.update(made)
-        gone = {node for node in needed if not self._stays(unit, node)}
         for tool in step.tools:
             # what of it is at other tools, nobody asks this one for
-            self._states[tool] = (self._states.get(tool, frozenset()) - gone).union(made)
+            self._states[tool] = self._states.get(tool, frozenset()).difference(consumes).union(made)
         for hand in _hands(step):
             self._working.pop(hand, None)
 
     def _wrong_tools(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
-        """Give what is wrong with the tools of a step, as far as one sees it when it starts."""
+        """Yield what is wrong with the tools of a step, as far as one sees it when it starts."""
         problem, means = self._problem, self._means
-        asked, (needed, _) = tools_asked(problem, means, unit), _sides(problem, unit)
+        asked, needed = tools_asked(problem, means, unit), self._executions.of(unit).preconditions
         given = Counter(tool.label for tool in tools)
         for label in asked.keys() | given.keys():
             wanted = asked[label].number if label in asked else 0
@@ -229,21 +229,7 @@ class _Run:
                 if taken and taken.isdisjoint(self._states.get(tool, ())):
                     self._states[tool] = frozenset()
 
-    def _endless(self, node: ObjectNode) -> bool:
-        return self._problem.at_hand(node) and node not in self._items.stock
-
-    def _stays(self, unit: FunctionalUnit, node: ObjectNode) -> bool:
-        return self._items.fate(unit, node, self._problem.utensils).stays
-
-
-def _sides(problem: Problem, unit: FunctionalUnit) -> tuple[tuple[ObjectNode, ...], tuple[ObjectNode, ...]]:
-    """Give the different nodes that a unit needs, and those that it makes and does not take."""
-    how = problem.containers, problem.utensils, problem.network
-    needed: Iterable[ObjectNode] = needed_inputs(unit, *how)
-    made = (node for node in given_outputs(unit, *how) if node not in unit.inputs)
-    return tuple(dict.fromkeys(needed)), tuple(dict.fromkeys(made))
-
 
 def _hands(step: TimedStep) -> list[int | Tool]:
-    """Give who and what is at a step."""
+    """Return who and what is at a step."""
     return [*step.tools] + ([] if step.agent is None else [step.agent])

@@ -6,11 +6,12 @@ for, depth first.
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode
-from foon_asp.problem import Problem, UsedUp, given_outputs, needed_inputs
+from foon_asp.problem import Problem
+from foon_asp.proof.execution import Execution, Executions
 from foon_asp.proof.replay import Shortage
 
 _MAX_LOOKS = 100_000  # at steps that may be next: some 50 ms; no tree of the corpus takes 1,000
@@ -47,41 +48,22 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     """
     if problem.network.level < 3:
         return UsedUpRun(None, proved=False)
-    items = problem.items or UsedUp()
+    executions = Executions(problem)
 
-    def is_finite(node: ObjectNode) -> bool:
-        return node in items.stock or not problem.at_hand(node)
+    def finite(nodes: Iterable[ObjectNode]) -> tuple[ObjectNode, ...]:
+        return tuple(node for node in nodes if not executions.is_endless(node))
 
-    flows = [_flow(problem, items, unit, is_finite) for unit in tree]
-    stock = Counter({node: n for node, n in items.stock.items() if problem.at_hand(node)})
-    search = _OrderSearch(flows, stock, frozenset(filter(is_finite, problem.goal_nodes)))
+    steps = [Execution(*map(finite, executions.of(unit))) for unit in tree]
+    search = _OrderSearch(steps, executions.stock(), frozenset(finite(problem.goal_nodes)))
     listed = search.listed()
     if listed is None:
-        return UsedUpRun(tuple(range(len(flows))))
+        return UsedUpRun(tuple(range(len(steps))))
     overdrawn = search.overdrawn()
     if overdrawn is not None:
         return UsedUpRun(None, overdrawn)
     order = search.order()
     shortage = None if order else search.dead_end or listed
     return UsedUpRun(order, shortage, order is not None or search.looks_left > 0)
-
-
-class _Flow(NamedTuple):
-    """What a step does with nodes that may run out: it ``asks`` for a copy of each, ``uses`` up some."""
-
-    asks: tuple[ObjectNode, ...]
-    uses: tuple[ObjectNode, ...]
-    adds: tuple[ObjectNode, ...]
-
-
-def _flow(
-    problem: Problem, items: UsedUp, unit: FunctionalUnit, is_finite: Callable[[ObjectNode], bool]
-) -> _Flow:
-    how = problem.containers, problem.utensils, problem.network
-    asks = tuple(filter(is_finite, dict.fromkeys(needed_inputs(unit, *how))))
-    uses = tuple(node for node in asks if not items.fate(unit, node, problem.utensils).stays)
-    made = dict.fromkeys(given_outputs(unit, *how))
-    return _Flow(asks, uses, tuple(node for node in made if node not in unit.inputs and is_finite(node)))
 
 
 class _OrderSearch:
@@ -92,17 +74,19 @@ class _OrderSearch:
     """
 
     def __init__(
-        self, flows: Sequence[_Flow], copies: Counter[ObjectNode], goals: frozenset[ObjectNode]
+        self, steps: Sequence[Execution], copies: Counter[ObjectNode], goals: frozenset[ObjectNode]
     ) -> None:
-        self._flows, self._copies, self._goals = flows, copies, goals
+        self._steps, self._copies, self._goals = steps, copies, goals
         self.looks_left = _MAX_LOOKS
         self.dead_end: Shortage | None = None
         # the steps that wait, as a ring in the order listed, which ends in a step that there is not
-        self._next = [*range(1, len(flows) + 1), 0]
-        self._previous = [len(flows), *range(len(flows))]
+        self._next = [*range(1, len(steps) + 1), 0]
+        self._previous = [len(steps), *range(len(steps))]
         self._done = 0  # a bit for each step that was done
-        self._consumers = Counter(node for flow in flows for node in flow.uses)  # of the steps that wait
-        self._readers = Counter(node for flow in flows for node in set(flow.asks).difference(flow.uses))
+        self._consumers = Counter(node for step in steps for node in step.consumes)  # of the steps that wait
+        self._readers = Counter(
+            node for step in steps for node in set(step.preconditions).difference(step.consumes)
+        )
 
     def listed(self) -> Shortage | None:
         """Return the copy that is missing when the steps are done as listed; ``None`` where none is."""
@@ -112,24 +96,24 @@ class _OrderSearch:
             node = next((node for node in nodes if not copies[node]), None)
             return None if node is None else Shortage(step, node, tuple(taken.get(node, ())))
 
-        for step, (asks, uses, adds) in enumerate(self._flows):
-            shortage = missing(step, asks)
+        for step, (preconditions, consumes, adds) in enumerate(self._steps):
+            shortage = missing(step, preconditions)
             if shortage is not None:
                 return shortage
-            copies.subtract(uses)
+            copies.subtract(consumes)
             copies.update(adds)
-            for node in uses:
+            for node in consumes:
                 taken.setdefault(node, []).append(step)
         return missing(None, self._goals)
 
     def overdrawn(self) -> Shortage | None:
         """Return the first copy that is missing in every order, as more are used up than there ever are."""
-        copies = self._copies + Counter(node for flow in self._flows for node in flow.adds)
+        copies = self._copies + Counter(node for execution in self._steps for node in execution.adds)
         consumers: dict[ObjectNode, list[int]] = {}
-        for position, flow in enumerate(self._flows):
-            for node in flow.uses:
+        for position, execution in enumerate(self._steps):
+            for node in execution.consumes:
                 consumers.setdefault(node, []).append(position)
-        ends = len(self._flows)
+        ends = len(self._steps)
         lacking: list[tuple[int, Shortage]] = []
         for node, steps in consumers.items():
             served = steps[: copies[node]]
@@ -150,7 +134,7 @@ class _OrderSearch:
             if step is not None:
                 self._do(step)
                 done.append(step)
-                if len(done) == len(self._flows):
+                if len(done) == len(self._steps):
                     return tuple(done)
                 choices.append(self._ready(dead))
                 continue
@@ -166,23 +150,25 @@ class _OrderSearch:
 
     def _ready(self, dead: set[int]) -> Iterator[int]:
         """Yield the steps that can be next, up to the first that takes nothing from another."""
-        end = len(self._flows)
+        end = len(self._steps)
         step = end if self._done in dead else self._next[end]
         while step != end and self.looks_left > 0:
             self.looks_left -= 1
-            flow = self._flows[step]
-            if all(self._copies[node] for node in flow.asks):
+            execution = self._steps[step]
+            if all(self._copies[node] for node in execution.preconditions):
                 yield step
-                if all(map(self._plentiful, flow.uses)):  # if no order goes on with this step, none does
+                if all(
+                    map(self._plentiful, execution.consumes)
+                ):  # if no order goes on with this step, none does
                     return
             step = self._next[step]
 
     def _missing(self, done: Sequence[int]) -> Shortage | None:
         """Return what a step that waits is missing, since steps that were done used it up."""
         step = self._next[-1]
-        while step != len(self._flows):
-            for node in self._flows[step].asks:
-                taken = tuple(each for each in sorted(done) if node in self._flows[each].uses)
+        while step != len(self._steps):
+            for node in self._steps[step].preconditions:
+                taken = tuple(each for each in sorted(done) if node in self._steps[each].consumes)
                 if taken and not self._copies[node]:
                     return Shortage(step, node, taken)
             step = self._next[step]
@@ -204,11 +190,11 @@ class _OrderSearch:
 
     def _shift(self, step: int, sign: int) -> None:
         self._done ^= 1 << step
-        asks, uses, adds = self._flows[step]
-        for node in asks:
-            counted = self._consumers if node in uses else self._readers
+        preconditions, consumes, adds = self._steps[step]
+        for node in preconditions:
+            counted = self._consumers if node in consumes else self._readers
             counted[node] -= sign
-        for node in uses:
+        for node in consumes:
             self._copies[node] -= sign
         for node in adds:
             self._copies[node] += sign

@@ -17,7 +17,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -29,20 +29,19 @@ from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import Network, UnitPrices, node_at_level
 from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
-from foon_asp.proof.ruled import Ruled
+from foon_asp.proof.ruled import Limit, Ruled
 
-FORMAT = "foon-asp certificate"
-VERSION = 5
-_WITH_PRICES = 3  # the first version with a digest of them
-_WITH_RULES = 4  # the first version with more rules than motions and objects that are forbidden
 _WITH_DEAR = 5  # the first version whose proofs leave out what is too dear
 _NOTHING = "nothing"  # what a tree that is not there is measured by
 OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "attempts", "price")
 
-KEYS = {
-    *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "rules"),
-    *("measures", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
-}
+KEYS = frozenset(
+    (
+        *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "rules"),
+        *("measures", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
+    )
+)
+_BEFORE_RULES = KEYS - {"rules", "measures"} | {"forbidden"}
 _NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
 _RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
 _SURROGATE = re.compile("[\ud800-\udfff]")
@@ -71,6 +70,26 @@ _VERSION_1 = (
 )
 
 
+class Form(NamedTuple):
+    """A form of certificates: its name, the keys by version, and the first version that names a digest."""
+
+    name: str
+    keys: Mapping[int, frozenset[str]]
+    since: Mapping[str, int] = MappingProxyType({})
+
+    @property
+    def version(self) -> int:
+        """The newest version."""
+        return max(self.keys)
+
+
+TREE = Form(
+    "foon-asp certificate",
+    {1: _BEFORE_RULES, 2: _BEFORE_RULES, 3: _BEFORE_RULES, 4: KEYS, 5: KEYS},
+    {"prices": 3, "sources": 4},
+)
+
+
 class Subject(NamedTuple):
     """What a certificate speaks about; ``kitchen`` are object node ids.
 
@@ -86,8 +105,22 @@ class Subject(NamedTuple):
     trusted: tuple[str, ...] = ()
 
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
-        """Give the digests that a certificate of it names, as :func:`digests` does."""
-        return digests(*self[:-1], rules=rules)
+        """Return the SHA-256 digests that a certificate of it names; ids mean nothing without the network's.
+
+        Those that are ``stated`` are not computed. Of the places where units were read, it is those that the
+        rules look at.
+        """
+        network, rates, prices = self.network, self.rates, self.prices
+        places = [found for rule in rules if (found := looked_at(rule, network)) is not None]
+        values: dict[str, Callable[[], object]] = {
+            "network": lambda: _described(network),
+            "kitchen": lambda: sorted(self.kitchen),
+            "rates": lambda: rates and sorted([motion, str(rate)] for motion, rate in rates.items()),
+            "utensils": lambda: sorted(self.utensils),
+            "prices": lambda: prices and _stated(prices, network.detailed or network),
+            "sources": lambda: places or None,
+        }
+        return {name: self.stated.get(name) or _digest(value()) for name, value in values.items()}
 
 
 class RefusedError(Exception):
@@ -188,39 +221,13 @@ def read_certificate(text: str) -> Any:
         raise RefusedError(f"not JSON: {error}") from None
 
 
-def digests(
-    network: Network,
-    kitchen: Iterable[int],
-    rates: Mapping[str, Fraction] | None,
-    utensils: Iterable[str],
-    prices: UnitPrices | None = None,
-    stated: Mapping[str, str] = MappingProxyType({}),
-    rules: Iterable[Rule] = (),
-) -> dict[str, str]:
-    """Give the SHA-256 digests of what a certificate speaks about; ids mean nothing without the network's.
-
-    Those that are ``stated`` are not computed. Of the places where units were read, it is those that the
-    rules look at.
-    """
-    places = [found for rule in rules if (found := looked_at(rule, network)) is not None]
-    values: dict[str, Callable[[], object]] = {
-        "network": lambda: _described(network),
-        "kitchen": lambda: sorted(kitchen),
-        "rates": lambda: rates and sorted([motion, str(rate)] for motion, rate in rates.items()),
-        "utensils": lambda: sorted(utensils),
-        "prices": lambda: prices and _stated(prices, network.detailed or network),
-        "sources": lambda: places or None,
-    }
-    return {name: stated.get(name) or _digest(value()) for name, value in values.items()}
-
-
 def seal(certificate: Mapping[str, Any]) -> str:
-    """Give the digest of a whole certificate but for its seal, which fits no other certificate."""
+    """Return the digest of a whole certificate but for its seal, which fits no other certificate."""
     return _digest({key: value for key, value in certificate.items() if key != "seal"})
 
 
 def trusted(certificate: Mapping[str, Any]) -> Rule | None:
-    """Give what a certificate takes on trust of rules of the user's own, if anything."""
+    """Return what a certificate takes on trust of rules of the user's own, if anything."""
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
 
 
@@ -234,45 +241,42 @@ def refusing_depth() -> Iterator[None]:
 
 
 @refusing_depth()
-def verify(
-    certificate: Any,
-    network: Network,
-    kitchen: Collection[int],
-    rates: Mapping[str, Fraction] | None,
-    utensils: frozenset[str],
-    prices: UnitPrices | None = None,
-    stated: Mapping[str, str] = MappingProxyType({}),
-) -> Verified:
-    """Check a certificate against the data it speaks about, as a :class:`Subject` has them.
+def verify(certificate: Any, subject: Subject) -> Verified:
+    """Check a certificate of a tree against the data it speaks about.
 
     Takes time linear in cuts times network, and where that is a few seconds more than the digest of the
     network takes, raises :class:`LimitError`. Raises :class:`RefusedError` with the first fault that is
     found.
     """
+    rules = read_frame(certificate, TREE, subject)
+    if certificate["version"] < TREE.since["prices"]:
+        subject = subject._replace(prices=None)
+    return Check(certificate, rules, subject).claim()
+
+
+def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
+    """Check that a certificate has a form, was not changed and is about the data; return its rules."""
     require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
-    require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
+    require(certificate.get("format") == form.name, f"expected the format {form.name!r}")
     version = certificate.get("version")
-    require(type(version) is int and 1 <= version <= VERSION, f"expected version {VERSION} of the format")
-    keys = KEYS if version >= _WITH_RULES else KEYS - {"rules", "measures"} | {"forbidden"}
+    require(type(version) is int and version in form.keys, f"expected version {form.version} of the format")
+    keys = form.keys[version]
     require(certificate.keys() == keys, f"expected the keys {', '.join(sorted(keys))}")
-    require(version > 1 or certificate["containers"] != "implied", _VERSION_1)
+    require(form is not TREE or version > 1 or certificate["containers"] != "implied", _VERSION_1)
     require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
-    level = certificate["level"]
+    level, network = certificate["level"], subject.network
     require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
     rules = (
         read_rules(certificate["rules"], len(network))
-        if version >= _WITH_RULES
+        if "rules" in keys
         else _forbidding(certificate["forbidden"])
     )
-    found = digests(network, kitchen, rates, utensils, prices, stated, rules)
-    for name, since in (("prices", _WITH_PRICES), ("sources", _WITH_RULES)):
-        if version < since:
-            del found[name]
+    found = subject.digests(rules)
+    found = {name: digest for name, digest in found.items() if version >= form.since.get(name, 1)}
     named = read_object(certificate["digests"], tuple(found))
     for name, digest in found.items():
         require(named[name] == digest, f"{name}: not the one that the certificate is about")
-    priced = prices if version >= _WITH_PRICES else None
-    return Check(certificate, rules, network, kitchen, rates, utensils, priced).claim()
+    return rules
 
 
 class Check:
@@ -283,16 +287,8 @@ class Check:
     ``kitchen`` counts them.
     """
 
-    def __init__(
-        self,
-        certificate: dict[str, Any],
-        rules: tuple[Rule, ...],
-        network: Network,
-        kitchen: Collection[int],
-        rates: Mapping[str, Fraction] | None,
-        utensils: frozenset[str],
-        prices: UnitPrices | None,
-    ) -> None:
+    def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
+        network, kitchen, rates, utensils, prices = subject[:5]
         self.allowed = _STEPS + _STEPS_EACH * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
         self.minus_log = cache(self._minus_log)  # of a rate
@@ -361,14 +357,14 @@ class Check:
         return Trusted(name, rules, digest, costs)
 
     def _measured(self, name: str, unit: int) -> Fraction:
-        """Give what a unit is said to cost by a measure, which is taken on trust from now on."""
+        """Return what a unit is said to cost by a measure, which is taken on trust from now on."""
         costs = self.measures[name].costs
         require(unit in costs, "the cost of a unit by a measure is not stated")
         self.looked_at[name][unit] = costs[unit]
         return costs[unit]
 
     def _rates(self, given: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
-        """Give the success rate of each motion."""
+        """Return the success rate of each motion."""
         motions = self.network.different_motions
         rates = {motion: given[motion] for motion in motions if given is not None and motion in given}
         values = None if given is None else [*rates.values()]
@@ -381,16 +377,16 @@ class Check:
         return rates
 
     def rate(self, unit: int) -> Fraction:
-        """Give the success rate of a unit."""
+        """Return the success rate of a unit."""
         return self.rates[self.network.motions[unit]]
 
     def _prices(self, given: UnitPrices | None) -> list[Fraction]:
-        """Give the price of each unit."""
+        """Return the price of each unit."""
         prices = None if given is None else self._each_price(given)
         return self._known(prices, len(self.network), "prices")
 
     def _each_price(self, given: UnitPrices | None) -> Sequence[Fraction | None]:
-        """Give the prices of units, their own or those of their motions; below level 3 it is the least."""
+        """Return the prices of units, their own or those of their motions; below level 3 it is the least."""
         network = self.network
         if given is None:
             return [None] * len(network)
@@ -404,7 +400,7 @@ class Check:
         return prices
 
     def _known(self, values: Sequence[Fraction | None] | None, count: int, what: str) -> list[Fraction]:
-        """Give values of all units, by what they are and where all are there."""
+        """Return values of all units, by what they are and where all are there."""
         require(values is not None, f"a claim needs {what}, but none are given")
         found = [value for value in values or () if value is not None]
         require(len(found) == count, f"a unit has none of the {what} that a claim needs")
@@ -434,7 +430,7 @@ class Check:
             require(bool(self.objectives), "expected objectives")
             bound = self._read(self.certificate["bound"])
             require(
-                listed is None or self._sign(self._sum([amount, negative(bound)])) >= 0, "the bound is false"
+                listed is None or self.sign(self.sum([amount, negative(bound)])) >= 0, "the bound is false"
             )
             amount = bound
         else:
@@ -473,11 +469,11 @@ class Check:
         self._keep(frozenset(units))
         items = {o for unit in units for o in self.needs(unit) if o is not None and o in self.kitchen}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
-        total = self._sum(map(self._cost, members))
+        total = self.sum(map(self._cost, members))
         return total, self._figures(units, total)
 
     def _figures(self, units: list[int], total: Amount) -> list[int | Fraction]:
-        """Give what a tree of these units costs by each objective, as figures."""
+        """Return what a tree of these units costs by each objective, as figures."""
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":
@@ -503,7 +499,7 @@ class Check:
         require(fault is None, f"the tree {fault}")
 
     def _barred(self, place: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Give the units that a rule bars from trees that use some members and have none of others."""
+        """Return the units that a rule bars from trees that use some members and have none of others."""
         self._spend(len(self.network) + 5 * self.claimed)
         units = frozenset(member for member in used if member < len(self.network))
         return self.ruled.barred[place](units, without)
@@ -527,8 +523,7 @@ class Check:
                 waiting.append((node["using"], used | {member}, without))
                 continue
             if keys == {"broken"}:
-                place = node["broken"]
-                require(type(place) is int, "expected the number of a rule")
+                place = read_number(node["broken"], range(len(self.rules)), "the number of a rule")
                 never, barring = place in self.ruled.never, place in self.ruled.barred
                 broken = never or (barring and not used.isdisjoint(self._barred(place, used, without)))
                 require(broken, "a rule called broken is kept")
@@ -549,9 +544,9 @@ class Check:
                 "expected weights, a hopeless cut, a broken rule or a branch",
             )
             packed, left = self._packed(node["weights"], node.get("limits", []), used, barred)
-            paid = self._sum(map(self._cost, used))
+            paid = self.sum(map(self._cost, used))
             for rest in [{}] if dear is None else map(left, dear):
-                total = self._rounded(self._sum([packed, rest]), node.get("multiples", {}))
+                total = self._rounded(self.sum([packed, rest]), node.get("multiples", {}))
                 require(self._enough([total, paid], least), "the weights do not add up to enough")
 
     def _dear(self, choices: Any, decided: frozenset[int]) -> list[int]:
@@ -564,8 +559,8 @@ class Check:
     def _enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
         """Whether a bound is one on all trees that are left."""
         if least is None:
-            return self._sign(self._sum(bound)) > 0
-        return self._sign(self._sum([*bound, negative(least)])) >= 0
+            return self.sign(self.sum(bound)) > 0
+        return self.sign(self.sum([*bound, negative(least)])) >= 0
 
     def _packed(
         self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]
@@ -579,17 +574,12 @@ class Check:
         total: Amount = {}
         loads: dict[int, Amount] = {}
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
-        for place, stated in _pairs(limits):
-            weight = self._read(stated)
-            require(self._sign(weight) > 0, "a weight of a limit is not above zero")
-            require(place in self.ruled.limits, "a rule that limits nothing is given a weight")
-            limit = self.ruled.limits[place]
+        for (place,), weight in self.read_weights("limits", limits, self._read):
+            limit = self.limit_at(place)
             self._spend(len(used))
-            self._add(total, self._times(weight, -limit.left(used)))
+            self._add(total, self.times(weight, -limit.left(used)))
             carried.append((weight, limit.amounts))
-        for number, stated in _pairs(weights):
-            weight = self._read(stated)
-            require(self._sign(weight) > 0, "a weight is not above zero")
+        for (number,), weight in self.read_weights("weights", weights, self._read):
             self._add(total, weight)
             for member in self._crossing(number, used, without):
                 self._add(loads.setdefault(member, {}), weight)
@@ -598,16 +588,16 @@ class Check:
             # a member that is used anyway was paid for, and can carry nothing more
             most = {} if member in used else self._cost(member)
             if carried and member not in used:
-                more = (self._times(w, amounts[member]) for w, amounts in carried if member in amounts)
-                most = self._sum([most, *more])
+                more = (self.times(w, amounts[member]) for w, amounts in carried if member in amounts)
+                most = self.sum([most, *more])
             return most
 
         def left(member: int) -> Amount:
-            return self._sum([allowed(member), negative(loads.get(member, {}))])
+            return self.sum([allowed(member), negative(loads.get(member, {}))])
 
         for member, load in loads.items():
             if allowed(member) != load:
-                require(self._sign(left(member)) >= 0, f"unit or item {member} carries more than it costs")
+                require(self.sign(left(member)) >= 0, f"unit or item {member} carries more than it costs")
         return total, left
 
     def _rounded(self, amount: Amount, stated: Any) -> Amount:
@@ -641,9 +631,8 @@ class Check:
         return True
 
     def _crossing(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Give the members of a cut that are left; the cut has to stand before a goal or a used unit."""
-        require(type(number) is int and 0 <= number < len(self.cuts), "expected the number of a cut")
-        place = int(number)
+        """Return the members of a cut that are left; the cut has to stand before a goal or a used unit."""
+        place = read_number(number, range(len(self.cuts)), "the number of a cut")
         self._spend(1 + len(self.goals) + len(used) + len(self.members[place]))
         self.met.add(place)
         cut = self.cuts[place]
@@ -656,7 +645,7 @@ class Check:
         return self.members[place] - without
 
     def _members(self, cut: frozenset[int]) -> Iterator[int]:
-        """Give the units that make a node of the cut and need none, and the kitchen items in it."""
+        """Yield the units that make a node of the cut and need none, and the kitchen items in it."""
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         for o in cut:
@@ -671,7 +660,7 @@ class Check:
                         yield unit
 
     def _asked(self, member: int) -> frozenset[int | None]:
-        """Give the nodes that a unit or a step needs, those of the rules with them; an item needs none."""
+        """Return the nodes that a unit or a step needs, those of the rules with them; an item needs none."""
         if member in self.ruled.steps:
             return frozenset(self.ruled.steps[member][0])
         if member >= len(self.network):
@@ -680,15 +669,15 @@ class Check:
         return self.needs(member).union(own) if own else self.needs(member)
 
     def _needs(self, unit: int) -> frozenset[int | None]:
-        """Give the inputs that a unit needs; below level 3 what all need that it stands for."""
+        """Return the inputs that a unit needs; below level 3 what all need that it stands for."""
         return frozenset.intersection(*(needed for needed, _ in self._details(unit)))
 
     def _gives(self, unit: int) -> frozenset[int | None]:
-        """Give the outputs that a unit makes; below level 3 what any makes that it stands for."""
+        """Return the outputs that a unit makes; below level 3 what any makes that it stands for."""
         return frozenset.union(*(made for _, made in self._details(unit)))
 
     def _details(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
-        """Give what each unit needs and makes that a unit stands for, which at level 3 is itself.
+        """Yield what each unit needs and makes that a unit stands for, which at level 3 is itself.
 
         What a unit is let skip it neither needs nor makes.
         """
@@ -700,7 +689,7 @@ class Check:
             yield self._at_level(inputs - skipped), self._at_level(set(whole.outputs[detail]) - skipped)
 
     def _skipped(self, whole: Network, inputs: set[int]) -> set[int]:
-        """Give the inputs of a unit that the rule ``implied`` takes as given.
+        """Return the inputs of a unit that the rule ``implied`` takes as given.
 
         These are utensils with exactly one ingredient that, located in the utensil, is another input.
         """
@@ -717,7 +706,7 @@ class Check:
         }
 
     def _at_level(self, nodes: set[int]) -> frozenset[int | None]:
-        """Give the ids at the network's level of nodes of level 3."""
+        """Return the ids at the network's level of nodes of level 3."""
         network = self.network
         if network.detailed is None:
             return frozenset(nodes)
@@ -725,13 +714,13 @@ class Check:
         return frozenset(map(network.object_id, found))
 
     def _meaning(self, rule: Rule, question: Question) -> Meaning:
-        """Give what a rule says of the network."""
+        """Return what a rule says of the network."""
         self._spend(_STEPS_RULE * (len(self.network) + len(self.network.objects)))
         self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
         return meaning(rule, question)
 
     def _cost(self, member: int) -> Amount:
-        """Give what a unit or an item costs by each objective."""
+        """Return what a unit or an item costs by each objective."""
         cost: Amount = {}
         if member in self.ruled.steps:
             return cost
@@ -742,7 +731,7 @@ class Check:
         return cost
 
     def _cost_by(self, level: int, member: int) -> Fraction | None:
-        """Give what a unit or an item costs by an objective, ``None`` where that counts others.
+        """Return what a unit or an item costs by an objective, ``None`` where that counts others.
 
         By ``success`` it is the exponent of a unit's rate.
         """
@@ -765,8 +754,8 @@ class Check:
             count += sum(len(network.objects[o].ingredients) for o in inputs)
         return Fraction(count)
 
-    def _sign(self, amount: Amount) -> Fraction | int:
-        """Give a number with the sign of an amount; the first objective that is not 0 decides."""
+    def sign(self, amount: Amount) -> Fraction | int:
+        """Return a number with the sign of an amount; the first objective that is not 0 decides."""
         for level, objective in enumerate(self.objectives or (_NOTHING,)):
             if objective == "success":
                 sign = self._minus_log_sign({r: e for (_, r), e in amount.items() if r is not None})
@@ -777,21 +766,41 @@ class Check:
         return 0
 
     def _branch(self, choice: Any) -> int:
-        """Give the member that a branch is about."""
-        network = self.network
-        if set(read_object(choice)) == {"step"}:
-            first = len(network) + len(network.objects)
-            step = choice["step"]
-            require(type(step) is int and first + step in self.ruled.steps, "expected the number of a step")
-            return first + int(step)
-        if set(read_object(choice)) == {"item"}:
+        """Read the member that a branch is about: a unit, an item or a step."""
+        network, kinds = self.network, [*read_object(choice)]
+        kind = kinds[0] if kinds in (["item"], ["step"]) else "unit"
+        number = read_object(choice, (kind,))[kind]
+        if kind == "unit":
+            return read_number(number, range(len(network)), "the id of a unit")
+        if kind == "item":
             require("kitchen" in self.objectives, "a branch on an item where items cost nothing")
-            item = choice["item"]
-            require(type(item) is int and item in self.kitchen, "expected the id of a kitchen item")
-            return len(network) + int(item)
-        unit = read_object(choice, ("unit",))["unit"]
-        require(type(unit) is int and 0 <= unit < len(network), "expected the id of a unit")
-        return int(unit)
+            return len(network) + read_number(number, self.kitchen, "the id of a kitchen item")
+        steps = range(len(self.ruled.steps))
+        first = len(network) + len(network.objects)
+        return first + read_number(number, steps, "the number of a step")
+
+    def read_weights(
+        self, key: str, stated: Any, read: Callable[[Any], Amount], numbers: int = 1
+    ) -> Iterator[tuple[list[int], Amount]]:
+        """Read the weights under a key of a proof; in each list, numbers name what has the weight."""
+        rows = [read_list(row) for row in read_list(stated)]
+        places = [row[:numbers] for row in rows]
+        require(
+            all(len(row) == numbers + 1 for row in rows)
+            and all(type(number) is int for place in places for number in place),
+            f"{key}: expected what has a weight by its number, and the weight",
+        )
+        in_order = places == sorted(map(list, {*map(tuple, places)}))
+        require(in_order, f"{key}: expected weights in order, each once")
+        for place, row in zip(places, rows, strict=True):
+            weight = read(row[numbers])
+            require(self.sign(weight) > 0, f"{key}: a weight is not above zero")
+            yield place, weight
+
+    def limit_at(self, place: int) -> Limit:
+        """Return the limit of a number that has a weight."""
+        require(place in self.ruled.limits, "a rule that limits nothing is given a weight")
+        return self.ruled.limits[place]
 
     def _read(self, stated: Any) -> Amount:
         """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
@@ -810,7 +819,7 @@ class Check:
         return amount
 
     def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> Fraction | int:
-        """Give a number with the sign of the sum of ``e * -log(rate)``: is the product below or above 1?
+        """Return a number with the sign of the sum of ``e * -log(rate)``: is the product below or above 1?
 
         Bounds of the logarithms decide where they can. Otherwise, with the exponents over one denominator,
         the product of ``rate ** e`` is below 1 exactly when its power by that denominator is, and that one is
@@ -839,7 +848,7 @@ class Check:
         return below - above
 
     def _minus_log(self, rate: Fraction) -> tuple[Fraction, Fraction]:
-        """Give bounds of ``-log(rate)`` from below and above.
+        """Return bounds of ``-log(rate)`` from below and above.
 
         Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
         Those of the denominator and of the numerator of a rate next to 1 share their first digits, and more
@@ -861,10 +870,12 @@ class Check:
             total[key] = total[key] + value if key in total else value
             self._spend_on(_bits(total[key]))
 
-    def _times(self, amount: Amount, factor: Fraction) -> Amount:
-        return self._sum([{key: value * factor for key, value in amount.items()}])
+    def times(self, amount: Amount, factor: Fraction) -> Amount:
+        """Return an amount so many times."""
+        return self.sum([{key: value * factor for key, value in amount.items()}])
 
-    def _sum(self, amounts: Iterable[Amount]) -> Amount:
+    def sum(self, amounts: Iterable[Amount]) -> Amount:
+        """Return the sum of amounts."""
         total: Amount = {}
         for amount in amounts:
             self._add(total, amount)
@@ -887,7 +898,7 @@ def _bits(value: Fraction) -> int:
 
 
 def negative(amount: Amount) -> Amount:
-    """Give an amount with the opposite sign."""
+    """Return an amount with the opposite sign."""
     return {key: -value for key, value in amount.items()}
 
 
@@ -938,6 +949,19 @@ def read_list(value: Any) -> list[Any]:
     return found
 
 
+def read_pair(value: Any, what: str) -> tuple[Any, Any]:
+    """Read a list of two, which is ``what``."""
+    require(isinstance(value, list) and len(value) == 2, f"expected {what}")
+    first, second = value
+    return first, second
+
+
+def read_number(value: Any, allowed: Container[int], what: str) -> int:
+    """Read the id or number of ``what``, one of those allowed; JSON's true is no number."""
+    require(type(value) is int and value in allowed, f"expected {what}")
+    return int(value)
+
+
 def _names(value: Any) -> tuple[str, ...]:
     names = read_list(value)
     require(all(isinstance(name, str) for name in names), "expected names")
@@ -953,16 +977,6 @@ def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
     require(len(set(numbers)) == len(numbers), "an id stands twice")
     require(not ascending or (numbers == sorted(numbers) and len(numbers) > 0), "expected ids in order")
     return numbers
-
-
-def _pairs(value: Any) -> list[tuple[Any, Any]]:
-    """Read what maps numbers of cuts to weights: a list of pairs, in order."""
-    pairs = read_list(value)
-    require(all(isinstance(pair, list) and len(pair) == 2 for pair in pairs), "expected a cut and its weight")
-    numbers = [pair[0] for pair in pairs]
-    require(all(type(number) is int for number in numbers), "expected the number of a cut")
-    require(numbers == sorted(set(numbers)), "expected cuts in order, each of them once")
-    return [(number, weight) for number, weight in pairs]
 
 
 def _goal(value: Any, network: Network) -> int:
@@ -1007,14 +1021,13 @@ def _own(rule: Rule, units: int) -> None:
         sha = hashlib.sha256(file["text"].encode()).hexdigest()
         require(file["sha256"] == sha, "a text of rules does not have its digest")
     for claim in read_list(rule["claims"]):
-        require(isinstance(claim, list) and len(claim) == 2, "expected two sets of units in a claim")
-        for side in claim:
+        for side in read_pair(claim, "two sets of units in a claim"):
             read_numbers(side, units, ascending=side != [])
     for limit in read_list(rule["limits"]):
-        require(isinstance(limit, list) and len(limit) == 2, "expected amounts and their limit")
-        require(type(limit[1]) is int, "a limit is no whole number")
+        amounts, most = read_pair(limit, "amounts and their limit")
+        require(type(most) is int, "a limit is no whole number")
         counted: list[int] = []
-        for amount, some in read_object(limit[0]).items():
+        for amount, some in read_object(amounts).items():
             number = _rational(amount)
             whole = number > 0 and number.denominator == 1
             require(whole, "a limit counts what is no whole number above zero")

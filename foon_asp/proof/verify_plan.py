@@ -14,31 +14,32 @@ import math
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
-from functools import cache, cached_property
-from types import MappingProxyType
+from functools import cache, cached_property, partial
+from itertools import chain
 from typing import Any, NamedTuple
 
-from foon_asp.network import Network, UnitPrices
-from foon_asp.proof import verify as lasting
 from foon_asp.proof.constraint import LIBRARY, Rule
 from foon_asp.proof.verify import (
+    KEYS,
     Amount,
     Check,
+    Form,
     Subject,
     UsedUp,
     Verified,
     negative,
+    read_frame,
     read_list,
+    read_number,
     read_numbers,
     read_object,
-    read_rules,
+    read_pair,
     refusing_depth,
     require,
+    verify,
 )
 
-FORMAT = "foon-asp certificate of a plan"
-VERSION = 1
-KEYS = {*lasting.KEYS, "items", "unreached"}
+PLAN = Form("foon-asp certificate of a plan", {1: KEYS | {"items", "unreached"}})
 
 # The rules that plans can be held against: those that remove units or ask for one, and those whose limit
 # counts each execution.
@@ -69,46 +70,25 @@ class Part(NamedTuple):
 
 def is_of_plan(certificate: Any) -> bool:
     """Whether a certificate is of a plan, for which everything is looked at."""
-    return isinstance(certificate, dict) and certificate.get("format") == FORMAT
+    return isinstance(certificate, dict) and certificate.get("format") == PLAN.name
 
 
 def verify_any(certificate: Any, subject: Subject) -> Verified:
     """Check a certificate of a tree or of a plan; raises :class:`RefusedError`."""
-    check = verify_plan if is_of_plan(certificate) else lasting.verify
-    return check(certificate, *subject[:-1])
+    check = verify_plan if is_of_plan(certificate) else verify
+    return check(certificate, subject)
 
 
 @refusing_depth()
-def verify_plan(
-    certificate: dict[str, Any],
-    network: Network,
-    kitchen: Collection[int],
-    rates: Mapping[str, Fraction] | None,
-    utensils: frozenset[str],
-    prices: UnitPrices | None = None,
-    stated: Mapping[str, str] = MappingProxyType({}),
-) -> Verified:
+def verify_plan(certificate: Any, subject: Subject) -> Verified:
     """Check a certificate of a plan against the data it speaks about.
 
     Raises :class:`RefusedError` with the first fault that is found.
     """
-    require(certificate["format"] == FORMAT, f"expected the format {FORMAT!r}")
-    version = certificate.get("version")
-    require(type(version) is int and version == VERSION, f"expected version {VERSION} of the format")
-    require(certificate.keys() == KEYS, f"expected the keys {', '.join(sorted(KEYS))}")
-    require(
-        certificate["seal"] == lasting.seal(certificate), "the seal does not match: something was changed"
-    )
-    level = certificate["level"]
-    require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
-    require(level == 3, "below level 3 nothing says what is used up: contents decide")
-    rules = read_rules(certificate["rules"], len(network))
+    rules = read_frame(certificate, PLAN, subject)
+    require(subject.network.level == 3, "below level 3 nothing says what is used up: contents decide")
     require(RULES.issuperset(rule["rule"] for rule in rules), "a rule that plans are not held against")
-    found = lasting.digests(network, kitchen, rates, utensils, prices, stated, rules)
-    named = read_object(certificate["digests"], tuple(found))
-    for name, digest in found.items():
-        require(named[name] == digest, f"{name}: not the one that the certificate is about")
-    check = PlanCheck(certificate, rules, network, frozenset(kitchen), rates, utensils, prices)
+    check = PlanCheck(certificate, rules, subject)
     return check.claim()._replace(used_up=UsedUp(check.stock, check.told))
 
 
@@ -119,22 +99,13 @@ class PlanCheck(Check):
     not, and of what is in stock so many copies.
     """
 
-    def __init__(
-        self,
-        certificate: dict[str, Any],
-        rules: tuple[Rule, ...],
-        network: Network,
-        kitchen: frozenset[int],
-        rates: Mapping[str, Fraction] | None,
-        utensils: frozenset[str],
-        prices: UnitPrices | None,
-    ) -> None:
+    def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
         items = read_object(certificate["items"], ("stock", "stays"))
-        self.stock = dict(_stock(items["stock"], kitchen))
-        self.told = dict(_told(items["stays"], len(network.objects)))
-        self.endless = kitchen - self.stock.keys()
+        self.stock = _stock(items["stock"], subject.kitchen)
+        self.told = _told(items["stays"], len(subject.network.objects))
+        self.endless = frozenset(subject.kitchen) - self.stock.keys()
         self.flow, self.cap, self.whole = cache(self._flow), cache(self._cap), cache(self._whole)
-        super().__init__(certificate, rules, network, kitchen, rates, utensils, prices)
+        super().__init__(certificate, rules, subject)
 
     # --- what units do
 
@@ -188,7 +159,7 @@ class PlanCheck(Check):
         return o in self.endless or self.stock.get(o, 0) > 0
 
     def _members(self, cut: frozenset[int]) -> Iterator[int]:
-        """Give the units that add a node of the cut and ask for none, and the kitchen items in it."""
+        """Yield the units that add a node of the cut and ask for none, and the kitchen items in it."""
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         found: list[int] = []
@@ -208,11 +179,10 @@ class PlanCheck(Check):
     def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
         """Run the plan copy by copy; give what it costs as an amount and as figures."""
         network = self.network
-        known = all(type(unit) is int and 0 <= unit < len(network) for unit in units)
-        require(known, "expected ids of units in a plan")
         copies, taken = Counter(self.stock), set[int]()
         least: Counter[int] = Counter()  # copies of the stock that the plan cannot do without
-        for place, unit in enumerate(units):
+        for place, stated in enumerate(units):
+            unit = read_number(stated, range(len(network)), "ids of units in a plan")
             asks, uses, adds = self.flow(unit)
             self._spend(1 + len(asks) + len(adds))
             require(
@@ -235,7 +205,7 @@ class PlanCheck(Check):
             *(first + o for o in sorted(taken)),
             *(first + o for o in sorted(least.elements())),
         ]
-        total = self._sum(map(self._cost, members))
+        total = self.sum(map(self._cost, members))
         return total, self._figures(units, total)
 
     def _keep_counts(self, counts: Counter[int]) -> None:
@@ -276,8 +246,8 @@ class PlanCheck(Check):
     def _divided(self, part: Part) -> Iterator[Part]:
         """Divide a part by how often something is executed or taken."""
         proof = read_object(part.proof, ("branch", "most", "up_to", "above"))
-        member, most = self._branch(proof["branch"]), proof["most"]
-        require(type(most) is int and 0 <= most < _MOST, "expected the most executions of a branch")
+        member = self._branch(proof["branch"])
+        most = read_number(proof["most"], range(_MOST), "the most executions of a branch")
         up_to = min(most, part.most.get(member, most))
         yield Part(proof["up_to"], part.least, {**part.most, member: up_to})
         above = max(most + 1, part.least.get(member, 0))
@@ -296,30 +266,30 @@ class PlanCheck(Check):
         self._require_enough(bound, level)
 
     def _cheapest(self, member: int, level: int, part: Part, conditions: "_Conditions") -> Amount | None:
-        """Give the least of what a member costs less what it brings, over the counts that it may have.
+        """Return the least of what a member costs less what it brings, over the counts that it may have.
 
         ``None`` where it may have none. It is linear in the count from 1 on, so only the ends matter.
         """
         low, most = part.least.get(member, 0), self._most(member, level, part)
         if most is not None and most < low:
             return None
-        each = self._sum([self.part(member, level), conditions.executed.get(member, {})])
-        each = self._sum([each, *(self._times(w, self.kept(member, at)) for at, w in conditions.levels)])
+        each = self.sum([self.part(member, level), conditions.executed.get(member, {})])
+        each = self.sum([each, *(self.times(w, self.kept(member, at)) for at, w in conditions.levels)])
         once = conditions.used.get(member, {})
         found: list[Amount] = [{}] if low == 0 else []
         if most is None or most >= 1:
-            found.append(self._sum([self._times(each, Fraction(max(low, 1))), once]))
-            if self._sign(each) < 0:
+            found.append(self.sum([self.times(each, Fraction(max(low, 1))), once]))
+            if self.sign(each) < 0:
                 require(most is not None, f"member {member} brings more than it costs, without end")
-                found.append(self._sum([self._times(each, Fraction(most or 0)), once]))
+                found.append(self.sum([self.times(each, Fraction(most or 0)), once]))
         cheapest = found[0]
         for other in found[1:]:
-            if self._sign(self._sum([other, negative(cheapest)])) < 0:
+            if self.sign(self.sum([other, negative(cheapest)])) < 0:
                 cheapest = other
         return cheapest
 
     def _most(self, member: int, level: int, part: Part) -> int | None:
-        """Give how often a member can be executed or taken; ``None`` where nothing says so."""
+        """Return how often a member can be executed or taken; ``None`` where nothing says so."""
         known = [part.most[member]] if member in part.most else []
         if member >= len(self.network):
             o = member - len(self.network)
@@ -334,14 +304,14 @@ class PlanCheck(Check):
         return min(known, default=None)
 
     def _allowed(self, unit: int) -> Iterator[int]:
-        """Give how often limits allow a unit to be executed, those that nothing gives back to."""
+        """Yield how often limits allow a unit to be executed, those that nothing gives back to."""
         for limit in self.ruled.limits.values():
             amount = limit.amounts.get(unit, 0)
             if amount > 0 and min(limit.amounts.values()) >= 0:
                 yield max(0, math.floor(limit.most / amount))
 
     def _cap(self, unit: int, level: int, less: bool) -> int | None:
-        """Give how often a plan can execute a unit that costs no more by an objective, or less."""
+        """Return how often a plan can execute a unit that costs no more by an objective, or less."""
         each, most = self.kept(unit, level), self.limit(level)
         if each == 0:
             return None
@@ -349,11 +319,11 @@ class PlanCheck(Check):
         return math.ceil(most / each) - 1 if exact else math.floor(most / each)
 
     def part(self, member: int, level: int) -> Amount:
-        """Give what a member costs by one objective."""
+        """Return what a member costs by one objective."""
         return {key: value for key, value in self._cost(member).items() if key[0] == level}
 
     def kept(self, member: int, level: int) -> Fraction:
-        """Give what a member costs by an objective as one number; by success a little less."""
+        """Return what a member costs by an objective as one number; by success a little less."""
         if self.objectives[level] != "success":
             return self.part(member, level).get((level, None), Fraction(0))
         if member >= len(self.network):
@@ -362,7 +332,7 @@ class PlanCheck(Check):
         return Fraction(math.floor(FINE * self.minus_log(self.rate(member))[0]), FINE)
 
     def limit(self, level: int) -> Fraction:
-        """Give what plans may cost by an objective as one number; by success a little more."""
+        """Return what plans may cost by an objective as one number; by success a little more."""
         assert self.least is not None
         stated = {rate: value for (at, rate), value in self.least.items() if at == level}
         if self.objectives[level] != "success":
@@ -371,9 +341,8 @@ class PlanCheck(Check):
         return Fraction(math.ceil(FINE * sum(map(max, bounds), Fraction(0))), FINE)
 
     def cut(self, number: int) -> frozenset[int]:
-        """Give a cut by its number."""
-        require(0 <= number < len(self.cuts), "expected the number of a cut")
-        return self.cuts[number]
+        """Return a cut by its number."""
+        return self.cuts[read_number(number, range(len(self.cuts)), "the number of a cut")]
 
     def holds_goal(self, nodes: frozenset[int]) -> bool:
         """Whether a cut holds a goal that is not there without end, or what a rule asks for."""
@@ -386,29 +355,21 @@ class PlanCheck(Check):
         parts[level] = stated
         return {key: value for key, value in self._read(parts).items() if key[0] == level}
 
-    def is_above(self, amount: Amount) -> bool:
-        """Whether an amount is above zero."""
-        return self._sign(amount) > 0
-
-    def sum_of(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
-        """Add so many times a weight."""
-        return self._sum([amount, self._times(weight, Fraction(factor))])
-
     def _require_enough(self, bound: Amount, level: int) -> None:
         """Require that a bound, rounded up to the next cost that there is, is what is claimed."""
         if self.least is None:
-            enough = self._sign(bound) > 0
+            enough = self.sign(bound) > 0
         else:
             parts = self.whole(level)
             if parts is not None:
                 (at,) = bound or [(level, None)]
                 bound = {at: Fraction(math.ceil(bound.get(at, Fraction(0)) * parts), parts)}
             claimed = {key: value for key, value in self.least.items() if key[0] == level}
-            enough = self._sign(self._sum([bound, negative(claimed)])) >= 0
+            enough = self.sign(self.sum([bound, negative(claimed)])) >= 0
         require(enough, "the weights do not add up to enough")
 
     def _whole(self, level: int) -> int | None:
-        """Give into how many parts 1 is divided by what units cost by an objective; ``None`` if not known."""
+        """Return the common denominator of what units cost by an objective; ``None`` if not known."""
         objective = self.objectives[level]
         if objective == "success" or objective in self.measures:
             return None
@@ -427,98 +388,93 @@ class _Conditions:
     """
 
     def __init__(self, check: PlanCheck, level: int, proof: Mapping[str, Any]) -> None:
-        self.check, self.level = check, level
+        self.check, self.level, self.proof = check, level, proof
         self.constant: Amount = {}
         self.executed: dict[int, Amount] = {}
         self.used: dict[int, Amount] = {}
         self.levels: list[tuple[int, Amount]] = []
-        ruled, units = check.ruled, len(check.network)
-        for (cut,), weight in self._weighed(proof.get("weights", []), 1):
+        units = len(check.network)
+        for (cut,), weight in self._read("weights"):
             self._cross(cut, weight, check.holds_goal(check.cut(cut)))
-        for (cut, unit), weight in self._weighed(proof.get("before", []), 2):
-            require(0 <= unit < units, "expected the id of a unit that a cut is before")
+        for (cut, stated), weight in self._read("before", 2):
+            unit = read_number(stated, range(units), "the id of a unit that a cut is before")
             self._cross(cut, weight, not check.cut(cut).isdisjoint(check.flow(unit).asks))
-            self._come(self.used, unit, weight, 1)
-            self.constant = check.sum_of(self.constant, weight, -1)
-        for (o,), weight in self._weighed(proof.get("balance", []), 1):
+            self._bring(self.used, unit, weight, 1)
+            self._demand(weight, -1)
+        for (o,), weight in self._read("balance"):
             self._balance(o, weight)
-        for (place,), weight in self._weighed(proof.get("limits", []), 1):
-            require(place in ruled.limits, "a rule that limits nothing is given a weight")
-            self.constant = check.sum_of(self.constant, weight, -ruled.limits[place].most)
-            for member, amount in ruled.limits[place].amounts.items():
-                self._come(self.executed, member, weight, amount)
-        for (place,), weight in self._weighed(proof.get("levels", []), 1):
+        for (place,), weight in self._read("limits"):
+            limit = check.limit_at(place)
+            self._demand(weight, -limit.most)
+            for member, amount in limit.amounts.items():
+                self._bring(self.executed, member, weight, amount)
+        for (place,), weight in self._read("levels"):
             require(0 <= place < level, "an objective that is not before this one is given a weight")
-            self.constant = check.sum_of(self.constant, weight, -check.limit(place))
+            self._demand(weight, -check.limit(place))
             self.levels.append((place, weight))
 
-    def _weighed(self, stated: Any, numbers: int) -> Iterator[tuple[list[int], Amount]]:
-        """Read what is given a weight: numbers and the weight in each list, in order, each of them once."""
-        listed = [read_list(each) for each in read_list(stated)]
-        places = [each[:numbers] for each in listed]
-        require(
-            all(len(each) == numbers + 1 for each in listed)
-            and all(type(number) is int for place in places for number in place),
-            "expected what has a weight by its number, and the weight",
-        )
-        require(places == sorted(map(list, {*map(tuple, places)})), "expected weights in order, each once")
-        for place, each in zip(places, listed, strict=True):
-            weight = self.check.weight(each[numbers], self.level)
-            require(self.check.is_above(weight), "a weight is not above zero")
-            yield place, weight
+    def _read(self, key: str, numbers: int = 1) -> Iterator[tuple[list[int], Amount]]:
+        """Read the weights of conditions under a key, each named by so many numbers."""
+        read = partial(self.check.weight, level=self.level)
+        return self.check.read_weights(key, self.proof.get(key, []), read, numbers)
 
     def _cross(self, cut: int, weight: Amount, holds: bool) -> None:
         """A cut is crossed at least once: a member is used, or a copy of an item in it is taken."""
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")
         check.met.add(cut)
-        self.constant = check.sum_of(self.constant, weight, 1)
+        self._demand(weight, 1)
         for member in check.members[cut]:
-            self._come(self.used if member < len(check.network) else self.executed, member, weight, -1)
+            self._bring(self.used if member < len(check.network) else self.executed, member, weight, -1)
 
     def _balance(self, o: int, weight: Amount) -> None:
         """Of a node no more copies are used up than come, and one of a goal is left."""
         check, network = self.check, self.check.network
-        require(0 <= o < len(network.objects), "expected the id of a node in a balance")
+        read_number(o, range(len(network.objects)), "the id of a node in a balance")
         require(o not in check.endless, "what never runs out has no balance")
         there = check.stock.get(o, 0)
         if "kitchen" in check.objectives and there:
-            self._come(self.executed, len(network) + o, weight, -1)
+            self._bring(self.executed, len(network) + o, weight, -1)
             there = 0
-        self.constant = check.sum_of(self.constant, weight, (o in check.goals) - there)
+        self._demand(weight, (o in check.goals) - there)
         for unit in {*network.producers[o], *network.consumers[o]}:
             flow = check.flow(unit)
             if change := (o in flow.adds) - (o in flow.uses):
-                self._come(self.executed, unit, weight, -change)
+                self._bring(self.executed, unit, weight, -change)
 
-    def _come(self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction) -> None:
-        to[member] = self.check.sum_of(to.get(member, {}), weight, factor)
+    def _demand(self, weight: Amount, factor: int | Fraction) -> None:
+        """Add to what all plans have to bring, and members bring some of."""
+        self.constant = self._added(self.constant, weight, factor)
+
+    def _bring(self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction) -> None:
+        to[member] = self._added(to.get(member, {}), weight, factor)
+
+    def _added(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
+        return self.check.sum([amount, self.check.times(weight, Fraction(factor))])
 
 
-def _stock(value: Any, kitchen: frozenset[int]) -> Iterator[tuple[int, int]]:
+def _stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
     """Read how many copies there are of kitchen items, by id."""
-    pairs = [read_list(pair) for pair in read_list(value)]
-    require(
-        all(len(pair) == 2 and all(type(n) is int and 0 <= n < _MOST for n in pair) for pair in pairs),
-        "expected items and their copies in stock",
-    )
-    ids = [pair[0] for pair in pairs]
+    what = "items and their copies in stock"
+    pairs = [read_pair(pair, what) for pair in read_list(value)]
+    for number in chain.from_iterable(pairs):
+        read_number(number, range(_MOST), what)
+    ids = [o for o, _ in pairs]
     require(ids == sorted(set(ids)), "expected items of the stock in order, each of them once")
-    require(kitchen.issuperset(ids), "expected kitchen items in stock")
-    yield from ((o, count) for o, count in pairs)
+    require(all(o in kitchen for o in ids), "expected kitchen items in stock")
+    return dict(pairs)
 
 
-def _told(value: Any, nodes: int) -> Iterator[tuple[str | int, bool]]:
+def _told(value: Any, nodes: int) -> dict[str | int, bool]:
     """Read what is said of labels and of nodes: whether they stay."""
-    pairs = [read_list(pair) for pair in read_list(value)]
-    require(
-        all(len(pair) == 2 and type(pair[1]) is bool and type(pair[0]) in (int, str) for pair in pairs),
-        "expected labels and nodes, and whether they stay",
-    )
-    labels = [pair[0] for pair in pairs if type(pair[0]) is str]
-    ids = [pair[0] for pair in pairs if type(pair[0]) is int]
-    require([*labels, *ids] == [pair[0] for pair in pairs], "expected labels, and then nodes")
+    what = "labels and nodes, and whether they stay"
+    pairs = [read_pair(pair, what) for pair in read_list(value)]
+    known = all(type(name) in (int, str) and type(stays) is bool for name, stays in pairs)
+    require(known, f"expected {what}")
+    labels = [name for name, _ in pairs if type(name) is str]
+    ids = [name for name, _ in pairs if type(name) is int]
+    require([*labels, *ids] == [name for name, _ in pairs], "expected labels, and then nodes")
     require(labels == sorted(set(labels)) and ids == sorted(set(ids)), "expected each of them once, in order")
     require(all(0 <= o < nodes for o in ids), "expected ids of nodes that stay or go")
     require(all(label.isprintable() for label in labels), "a label has letters that cannot be printed")
-    yield from ((name, stays) for name, stays in pairs)
+    return dict(pairs)

@@ -13,12 +13,13 @@ from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, answered_nearby
-from foon_asp.questions.arguments import asked_with, chosen_objectives, limits, read
+from foon_asp.questions.arguments import asked_with, chosen_objectives, read
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import asked_in_python
-from foon_asp.questions.how import How, settings_of
-from foon_asp.questions.result import AboutGoals, Ending
-from foon_asp.report.answer import figure_text
+from foon_asp.questions.how import How, limits_of, settings_of
+from foon_asp.questions.result import Ending, Result
+from foon_asp.results.document import AboutGoals
+from foon_asp.results.figure_text import figure_text
 from foon_asp.results.table import Cell, Part, Table
 from foon_asp.results.values_of import head_of
 from foon_asp.text.json_value import schema_name
@@ -28,7 +29,7 @@ _STYLES = {Status.OPTIMAL: "good", Status.INFEASIBLE: "bad"}
 _LEFT = frozenset({0, 1})
 
 
-class Optima(AboutGoals, frozen=True, kw_only=True, tag=schema_name("optima")):
+class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("optima")):
     """The best trees for each goal by itself.
 
     Attributes:
@@ -137,9 +138,8 @@ def solve_all_goals(
     """
     texts = [objectives] if isinstance(objectives, str) else objectives
     lists = [chosen_objectives(problem, text) for text in texts]
-    each_limits = limits(how.pop("time_limit", None), how.pop("memory_limit", None))
     # limits are for each answer, ctrl-C is for all of them
-    settings, within = settings_of(how), Deadline(within=caller().deadline)
+    settings, each_limits, within = settings_of(how), limits_of(how), Deadline(within=caller().deadline)
     outcomes: list[Outcome] = []
     for goal in _each_goal(problem, settings):
         for chosen in lists:

@@ -23,10 +23,11 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Option, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import ITEMS, TREE
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text
-from foon_asp.report.used_up_note import used_up_note
+from foon_asp.questions.used_up_note import used_up_note
+from foon_asp.results.document import AboutGoals, Known
+from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import CostedTree, Mention, Node, Value, step_lines, steps_not_in
 from foon_asp.results.values_of import costed_tree, head_of, mention_of, node_of
@@ -55,7 +56,7 @@ class Parting(Value, frozen=True):
     ways: tuple[Way, ...]
 
 
-class Alternatives(AboutGoals, frozen=True, kw_only=True, tag=schema_name("alternatives")):
+class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("alternatives")):
     """Other trees, the best first; none contains all units of another.
 
     Attributes:
@@ -85,11 +86,8 @@ class Alternatives(AboutGoals, frozen=True, kw_only=True, tag=schema_name("alter
     partings: tuple[Parting, ...]
     trees: tuple[CostedTree, ...]
 
-    @property
-    def problem(self) -> Problem:
-        """The problem that was asked about."""
-        found: Problem = self.__dict__["problem"]
-        return found
+    problem = Known[Problem]()
+    """The problem that was asked about."""
 
     @property
     def task_trees(self) -> tuple[Tree, ...]:
@@ -112,9 +110,11 @@ class Alternatives(AboutGoals, frozen=True, kw_only=True, tag=schema_name("alter
         """Return how many trees there are, what each costs, and in what it differs from the first."""
         yield from self.goal_lines()
         yield from self._claim()
-        for number, tree in enumerate(self.trees[:_SHOWN], 1):
-            yield f"tree {number}: {costs_text(tree.costs, self.objectives)}"
-            yield from used_up_note(self.problem, self.task_trees[number - 1])
+        for number, (tree, task_tree) in enumerate(
+            zip(self.trees[:_SHOWN], self.task_trees, strict=False), 1
+        ):
+            yield task_tree.claim
+            yield from used_up_note(self.problem, task_tree)
             if number == 1:
                 yield from step_lines(tree.units)
                 continue
@@ -171,23 +171,18 @@ class Alternatives(AboutGoals, frozen=True, kw_only=True, tag=schema_name("alter
                 makers = " and ".join(f"{unit.motion} [{unit.source[0]}]" for unit in way.made_by)
                 yield f"  {_numbered(way.trees)}: {makers}"
 
-    @property
-    def wanted(self) -> int | None:
-        """The number of trees asked for; ``None`` for all optimal ones."""
-        found: int | None = self.__dict__["wanted"]
-        return found
+    wanted = Known[int | None]()
+    """The number of trees asked for; ``None`` for all optimal ones."""
 
-    @property
-    def different(self) -> bool:
-        """Whether the trees are those that differ most."""
-        return bool(self.__dict__["different"])
+    different = Known[bool]()
+    """Whether the trees are those that differ most."""
 
     def drawing(self) -> Drawing | None:
         """Return what the picture of the first tree shows."""
         return self.task_trees[0].drawing() if self.trees else None
 
     def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the text, and the pictures of the first trees."""
+        """Return what a notebook shows by media type: the text, and the pictures of the first trees."""
         return page_bundle(self, (tree.drawing() for tree in self.task_trees[:_PICTURES]))
 
 
@@ -273,8 +268,7 @@ def alternatives(
     else:
         pool = _ranked(problem, chosen, settings, limit, Fraction(0))
     found = _values(problem, chosen, pool)
-    found.__dict__.update(problem=problem, wanted=best or different, different=different is not None)
-    return found
+    return found.knowing(problem=problem, wanted=best or different, different=different is not None)
 
 
 def _values(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) -> Alternatives:

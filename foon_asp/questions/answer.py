@@ -15,31 +15,26 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
-from foon_asp.questions.result import AboutGoals, Ending
-from foon_asp.report.answer import (
-    bound_text,
-    costs_text,
-    figure_text,
-    headline,
-    headlines,
-    outcome_foon,
-    why_infeasible,
-)
+from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.used_up_note import used_up_note
+from foon_asp.questions.why_infeasible import why_infeasible
+from foon_asp.results.document import AboutGoals, Known
+from foon_asp.results.figure_text import bound_text, costs_text, figure_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import Figure, ListedConstraint, Node, Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
 from foon_asp.text.json_value import schema_name
+from foon_asp.text.writer import write_units
 
 if TYPE_CHECKING:  # what a command that prints an answer can do without
     from foon_asp.certificate import Certificate
     from foon_asp.dataset.nearby import Nearby
     from foon_asp.pictures.drawing import Drawing
-    from foon_asp.pictures.page import Page
     from foon_asp.questions.tree import Tree
 
 
 def of_status(status: Status) -> Ending:
-    """Give the ending of a question from the status of its answer."""
+    """Return the ending of a question from the status of its answer."""
     return {
         Status.OPTIMAL: Ending.DONE,
         Status.INFEASIBLE: Ending.NEGATIVE,
@@ -108,7 +103,7 @@ class EngineCheck(Value, frozen=True):
     seconds: float
 
 
-class Answer(AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
+class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
     """The best task tree, and what is proved of it.
 
     Attributes:
@@ -147,8 +142,6 @@ class Answer(AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
         (3, '{', '{', '')
         >>> answer.drawing().caption[0]
         'Task tree for ice; crushed; in [drinking glass]'
-        >>> answer.view().title
-        'ice; crushed; in [drinking glass] - foon-asp'
     """
 
     ROWS = "units"
@@ -198,30 +191,21 @@ class Answer(AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
             seconds={phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
             **more,
         )
-        answer.__dict__["outcome"] = outcome
-        return answer
+        return answer.knowing(outcome=outcome)
 
-    @property
-    def outcome(self) -> Outcome:
-        """The outcome of the solver, with ids."""
-        found: Outcome = self.__dict__["outcome"]
-        return found
+    outcome = Known[Outcome]()
+    """The outcome of the solver, with ids."""
 
     @property
     def problem(self) -> Problem:
         """The problem that was asked about."""
         return self.outcome.problem
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Lines about the proof, which are shown behind the steps."""
-        notes: tuple[str, ...] = self.__dict__.get("notes", ())
-        return notes
+    notes = Known[tuple[str, ...]](())
+    """Lines about the proof, which are shown behind the steps."""
 
-    @property
-    def certificate(self) -> "Certificate | None":
-        """The certificate that proves the answer, where one was asked for and found."""
-        return self.__dict__.get("certificate")
+    certificate = Known["Certificate | None"](None)
+    """The certificate that proves the answer, where one was asked for and found."""
 
     def having(
         self, notes: Iterable[str] = (), certificate: "Certificate | None" = None, **fields: Any
@@ -235,8 +219,8 @@ class Answer(AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
         """
         answer = replace(self, **fields)
         certificate = certificate or self.certificate
-        answer.__dict__.update(self.__dict__, notes=(*self.notes, *notes), certificate=certificate)
-        return answer
+        known = {**self.__dict__, "notes": (*self.notes, *notes), "certificate": certificate}
+        return answer.knowing(**known)
 
     @property
     def ids(self) -> tuple[int, ...] | None:
@@ -246,11 +230,20 @@ class Answer(AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
     @property
     def claim(self) -> str:
         """What is proved of the tree, and what it costs, in one line."""
-        return headline(self.outcome)
+        what = "task tree" if self.items == "lasting" else "plan"
+        rule = self.conditions if self.encodings is None else f"{self.conditions}, as {self.encodings} has it"
+        if self.status is Status.INFEASIBLE:
+            return f"infeasible: proved that no {what} exists ({rule})"
+        if self.costs is None:
+            return f"unknown: stopped at {self.stopped or 'a limit'}, before any {what} was found ({rule})"
+        claim = "optimal" if self.status is Status.OPTIMAL else "feasible, not proved best"
+        best = ", then ".join(self.objectives)
+        return f"{claim} by {best} ({rule}): {costs_text(self.costs, self.objectives)}"
 
     def headlines(self) -> list[str]:
         """Return the claim, and under it a note where the tree would not run with items used up."""
-        return headlines(self.outcome)
+        note = [] if self.ids is None else used_up_note(self.problem, self.problem.tree(self.ids))
+        return [self.claim, *note]
 
     def __bool__(self) -> bool:
         """Whether there is a tree."""
@@ -326,7 +319,10 @@ class Answer(AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
 
     def foon(self) -> str:
         """Return the tree as FOON text with a comment that says what it is; empty where there is none."""
-        return outcome_foon(self.outcome)
+        if self.ids is None:
+            return ""
+        comments = [f"Task tree for: {' + '.join(map(str, self.goals))}", *self.headlines()]
+        return write_units(map(self.problem.network.unit, self.ids), comments)
 
     def steps(self) -> str:
         """Return the plan for a robot's program, as JSON; empty where there is none."""
@@ -349,22 +345,15 @@ class Answer(AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
         """Return what the picture shows."""
         return None if self.tree is None else self.tree.drawing()
 
-    def view(self) -> "Page":
-        """Return the page that shows the tree in any browser; ``write`` writes it."""
-        from foon_asp.pictures.page import Page, view_json  # noqa: PLC0415
-
-        shown = view_json(self.json_dict(), [(self.problem, self.ids or ())])
-        return Page(f"{' + '.join(map(str, self.goals))} - foon-asp", self.text(), shown)
-
     def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the picture with its claim, or the text."""
+        """Return what a notebook shows by media type: the picture with its claim, or the text."""
         from foon_asp.pictures.notebook import picture_bundle  # noqa: PLC0415
 
         drawing = self.drawing()
         return super()._in_notebook() if drawing is None else picture_bundle(self, drawing)
 
 
-class WithAnswer(AboutGoals, frozen=True, kw_only=True):
+class WithAnswer(Result, AboutGoals, frozen=True, kw_only=True):
     """A result that comes with the best tree, which its picture shows.
 
     Attributes:

@@ -4,12 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from os import PathLike
-from pathlib import Path
 
 from foon_asp.asp.settings import Settings
 from foon_asp.dataset.items import require_contents
 from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Deadline, memory_size, seconds
 from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS, Objective, Problem, UsedUp, parse_objectives
 from foon_asp.questions.caller import caller
@@ -17,9 +15,6 @@ from foon_asp.rules.constraint import Constraint, find_constraint, given_constra
 
 Objectives = str | Iterable[str]
 """An objective, a list by commas, or several: the first counts most."""
-
-Constants = Mapping[str, object] | Iterable[str]
-"""Values of ``#const`` by name, or texts ``NAME=VALUE``."""
 
 
 def chosen_objectives(problem: Problem, given: Objectives) -> tuple[Objective, ...]:
@@ -33,7 +28,7 @@ def chosen_objectives(problem: Problem, given: Objectives) -> tuple[Objective, .
 def usual_objectives(
     problem: Problem, given: Objectives, usual: Sequence[str], instead: Sequence[str]
 ) -> Objectives:
-    """Give the objectives that are asked for, or those usual for a question where none are.
+    """Return the objectives that are asked for, or those usual for a question where none are.
 
     Where no success rates are known, it is those ``instead``, and a warning says so.
     """
@@ -46,56 +41,21 @@ def usual_objectives(
     return instead
 
 
-def settings(
-    constraints: Files = (),
-    constants: Constants | None = None,
-    encodings: File | None = None,
-    time_limit: float | None = None,
-    memory_limit: int | str | None = None,
-) -> Settings:
-    """Assemble settings, with limits that begin now."""
-    given = constants or ()
-    if isinstance(given, Mapping):
-        given = [f"{name}={value}" for name, value in given.items()]
-    return Settings(
-        given_constraints(constraints),
-        None if encodings is None else Path(encodings),
-        tuple(given),
-        deadline=begin(time_limit, memory_limit),
-    )
-
-
 def given_constraints(given: Files) -> tuple[Constraint, ...]:
     """Read one constraint or several: paths, rules, and names of ready-made ones."""
     one = isinstance(given, str | PathLike)
     return tuple(map(given_constraint, [given] if one else given))  # type: ignore[arg-type]
 
 
-def limits(time_limit: float | None, memory_limit: int | str | None) -> tuple[float | None, int | None]:
-    """Read limits, in seconds and in bytes or as ``"2G"``."""
-    return (
-        None if time_limit is None else seconds(time_limit),
-        None if memory_limit is None else memory_size(memory_limit),
-    )
-
-
-def begin(time_limit: float | None, memory_limit: int | str | None) -> Deadline:
-    """Let limits begin, within those of the command that asks."""
-    within = caller().deadline
-    if time_limit is None and memory_limit is None and within is not None:
-        return within
-    return Deadline(*limits(time_limit, memory_limit), within=within)
-
-
 def asked_with(problem: Problem, how: Settings) -> Problem:
-    """Give the whole problem if the settings have rules that may be about any unit."""
+    """Return the whole problem if the settings have rules that may be about any unit."""
     from foon_asp.asp.assembly import asks_of_all  # noqa: PLC0415 (where there may be rules)
 
     return whole(problem) if asks_of_all(problem, how) else problem
 
 
 def whole(problem: Problem) -> Problem:
-    """Give a problem over the whole network; a command stops reading it at its limits."""
+    """Return a problem over the whole network; a command stops reading it at its limits."""
     with reading():
         return problem.whole
 

@@ -16,15 +16,16 @@ from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.help_search import helped_trees
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text, success_text
-from foon_asp.report.used_up_note import used_up_note
+from foon_asp.questions.used_up_note import used_up_note
+from foon_asp.results.document import AboutGoals, Known
+from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Part, Table
 from foon_asp.results.values import Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
 from foon_asp.text.json_value import schema_name
-from foon_asp.text.rate_table import read_rates
+from foon_asp.text.tables import RATES
 
 
 class AssistedTree(Value, frozen=True):
@@ -53,7 +54,7 @@ class AssistedTree(Value, frozen=True):
         return None if self.costs is None else self.costs.success
 
 
-class Assistance(AboutGoals, frozen=True, kw_only=True, tag=schema_name("assist")):
+class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("assist")):
     """The best trees if a person does at most 0, 1, 2, ... units, in this order.
 
     Attributes:
@@ -81,11 +82,11 @@ class Assistance(AboutGoals, frozen=True, kw_only=True, tag=schema_name("assist"
     smallest: int | None
     rows: tuple[AssistedTree, ...]
 
-    @property
-    def problem(self) -> Problem:
-        """The problem that was asked about."""
-        found: Problem = self.__dict__["problem"]
-        return found
+    problem = Known[Problem]()
+    """The problem that was asked about."""
+
+    most = Known[int | None]()
+    """The greatest number of units that was asked for."""
 
     @property
     def task_trees(self) -> tuple[Tree | None, ...]:
@@ -129,7 +130,7 @@ class Assistance(AboutGoals, frozen=True, kw_only=True, tag=schema_name("assist"
         yield ""
         yield from self._remarks()
         tree = self._tree(last)
-        shown = self.__dict__["most"] is not None or self.smallest is not None
+        shown = self.most is not None or self.smallest is not None
         if shown and tree is not None and last.costs is not None:
             yield ""
             yield f"with {counted(len(last.by_person), 'unit')} done by the person: {costs_text(last.costs)}"
@@ -243,8 +244,7 @@ def assist(
         smallest=rows[-1].most if wanted is not None and last is not None and last >= wanted else None,
         rows=rows,
     )
-    answer.__dict__.update(problem=problem, most=limit)
-    return answer
+    return answer.knowing(problem=problem, most=limit)
 
 
 def _rates(problem: Problem, person: File | Mapping[str, Number] | None) -> dict[str, Fraction] | None:
@@ -257,7 +257,7 @@ def _rates(problem: Problem, person: File | Mapping[str, Number] | None) -> dict
         return None
     place = ""
     if isinstance(person, str | PathLike):
-        rates, place = read_rates(Path(person)), f"{person}: warning: "
+        rates, place = RATES.read(Path(person)), f"{person}: warning: "
     else:
         rates = {motion: success_rate(rate, f"the rate of {motion!r}") for motion, rate in person.items()}
     for motion in rates:

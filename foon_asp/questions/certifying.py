@@ -21,11 +21,11 @@ from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof.verify import Subject
 from foon_asp.questions.answer import Answer, answered, answered_nearby
 from foon_asp.questions.arguments import reading, whole
+from foon_asp.questions.certificate_text import bound_text, certificate_lines, looked_at
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text
-from foon_asp.report.certified import bound_text, certificate_lines, looked_at
-from foon_asp.report.whole_file import write_whole
+from foon_asp.results.figure_text import costs_text
+from foon_asp.whole_file import write_whole
 
 
 def certified(

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated, Any, Self, Unpack
 
-from msgspec import UNSET, UnsetType
+from msgspec import UNSET, UnsetType, structs
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
@@ -17,10 +17,11 @@ from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
 from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
-from foon_asp.questions.posing_plan import a_tree
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.posing_plan import a_plan
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree, posed_tree
-from foon_asp.report.verdict import Listed, Stop, verdict_text, verdict_values
+from foon_asp.questions.verdict import Stop, found_of, verdict_lines
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values import ListedConstraint, UsedUpRun
 from foon_asp.results.values_of import head_of
@@ -29,10 +30,10 @@ from foon_asp.text.json_value import schema_name
 if TYPE_CHECKING:  # clingo and linear programs, which only rules and certificates need
     from foon_asp.asp import Settings
     from foon_asp.asp.breaking import Breaking
-    from foon_asp.certificate import Certificate
+    from foon_asp.certificate import Certificate  # noqa: F401 (named in a text)
 
 
-class Checked(AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
+class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
     """Whether a given tree executes, or a plan, in which items are used up and order and repeats count.
 
     Attributes:
@@ -73,19 +74,15 @@ class Checked(AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
         foreign = tuple(n for n, unit in enumerate(map(problem.network.unit_id, tree), 1) if unit is None)
         found = cls(
             **head_of(problem, objectives),
-            **verdict_values(problem, _listed(tree), simulation),
+            **found_of(tree, simulation),
             costs=None if foreign else problem.costs(tree.ids),
             not_in_network=foreign,
             **more,
         )
-        found.__dict__.update(tree=tree, simulation=simulation)
-        return found
+        return found.knowing(tree=tree, simulation=simulation)
 
-    @property
-    def tree(self) -> Tree:
-        """The tree as it was given."""
-        tree: Tree = self.__dict__["tree"]
-        return tree
+    tree = Known[Tree]()
+    """The tree as it was given."""
 
     @property
     def problem(self) -> Problem:
@@ -102,14 +99,10 @@ class Checked(AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
         """The tree in an order that executes, ``None`` where no order does."""
         if not self.executes:
             return None
-        order = [position - 1 for position in self.order]
-        units, places = self.tree.units, self.tree.places
-        return Tree(tuple(units[n] for n in order), self.problem, tuple(places[n] for n in order))
+        return self.tree.in_order(position - 1 for position in self.order)
 
-    @property
-    def certificate(self) -> "Certificate | None":
-        """The certificate that proves the tree the best, where one was asked for and found."""
-        return self.__dict__.get("certificate")
+    certificate = Known["Certificate | None"](None)
+    """The certificate that proves the tree the best, where one was asked for and found."""
 
     @property
     def ending(self) -> Ending:
@@ -118,12 +111,11 @@ class Checked(AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
         Where a certificate is asked for, the tree is also to be proved the best.
         """
         sound = self.executes and not self.not_in_network and not self.breaks
-        proved: Ending = self.__dict__.get("proved", Ending.DONE)
-        return proved if sound else Ending.NEGATIVE
+        return self.proof_ending if sound else Ending.NEGATIVE
 
     def show(self) -> Iterator[Shown]:
         """Return whether the tree executes, in which order, what stops it, and which rules it breaks."""
-        yield verdict_text(self.problem, _listed(self.tree), self.__dict__["simulation"]).rstrip("\n")
+        yield from verdict_lines(self.tree, self.simulation)
         yield from (*self._about_rules(), *self.notes)
 
     def _about_rules(self) -> Iterator[str]:
@@ -139,11 +131,14 @@ class Checked(AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
             for rule in self.breaks:
                 yield from rule.lines()
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a certificate proves of the tree, where one was asked for."""
-        notes: tuple[str, ...] = self.__dict__.get("notes", ())
-        return notes
+    notes = Known[tuple[str, ...]](())
+    """What a certificate proves of the tree, where one was asked for."""
+
+    proof_ending = Known[Ending](Ending.DONE)
+    """How the proof ended, where one was asked for."""
+
+    simulation = Known[Simulation]()
+    """What the simulation of the tree found."""
 
     def remark(self, format_: str) -> str:
         """Return what a certificate proves."""
@@ -156,10 +151,6 @@ class Checked(AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
     def __repr__(self) -> str:
         shown = super().__repr__()
         return f"{shown[:-1]}, but breaks {counted(len(self.breaks), 'rule')}>" if self.breaks else shown
-
-
-def _listed(tree: Tree) -> Listed:
-    return list(zip(tree.units, tree.places, strict=True))
 
 
 def _simulated(tree: Tree) -> Simulation:
@@ -185,7 +176,7 @@ def _simulated(tree: Tree) -> Simulation:
     GOAL_OF_PLAN,
     CONTAINERS,
     *ITEMS,
-    pose=a_tree,
+    pose=a_plan,
     help_="""
     \b
     foon-asp check tree.txt --goal macaroni
@@ -259,14 +250,14 @@ def check(
     if breaking is not None:
         broken = None
         if checked.executes and not checked.not_in_network:
-            broken = [rule.listed for rule in breaking.broken(given.problem, given.ids)]
-        checked = Checked.of(given, chosen, breaks=None if broken is None else tuple(broken))
+            broken = tuple(rule.listed for rule in breaking.broken(given.problem, given.ids))
+        checked = structs.replace(checked, breaks=broken).knowing(**checked.__dict__)
     in_order = checked.in_order
     if certificate is not None and in_order is not None and checked.ending is Ending.DONE:
         from foon_asp.questions.certifying import certify_tree  # noqa: PLC0415
 
-        proof, proved, note = certify_tree(in_order, chosen, rules, certificate)
-        checked.__dict__.update(certificate=proof, proved=proved, notes=(note,))
+        proof, ended, note = certify_tree(in_order, chosen, rules, certificate)
+        checked.knowing(certificate=proof, proof_ending=ended, notes=(note,))
     return checked
 
 

@@ -21,17 +21,18 @@ from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.pictures.comparison_chart import write_comparison_chart
 from foon_asp.problem import Problem
-from foon_asp.questions.arguments import asked_with, at_least, limits
+from foon_asp.questions.arguments import asked_with, at_least
 from foon_asp.questions.caller import caller
 from foon_asp.questions.compared import comparison_table, published_table, summary_tables, tidy_rows
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import How, settings_of
-from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
-from foon_asp.questions.posing import Command, each_goal
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.how import How, limits_of, settings_of
+from foon_asp.questions.options import CHART, CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
+from foon_asp.questions.posing import Command, one_problem
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved
 from foon_asp.questions.searching import COUNT, DEPTH, TIES, known_searches, search_settings, searched
 from foon_asp.resources import published_table as published_file
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values_of import head_of
 from foon_asp.searches import Search, SearchSettings, search_names
@@ -40,7 +41,7 @@ from foon_asp.text.json_value import Json, schema_name
 _ONE_TREE = "FOON text holds one tree: name one search (--search) and one goal (--goal)"
 
 
-class Compared(AboutGoals, frozen=True, kw_only=True, tag=schema_name("compare")):
+class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("compare")):
     """The searches and the optimum, compared for each goal of a problem.
 
     Attributes:
@@ -59,11 +60,11 @@ class Compared(AboutGoals, frozen=True, kw_only=True, tag=schema_name("compare")
     comparisons: tuple[Comparison, ...]
     published: PublishedTable | UnsetType = UNSET
 
-    @property
-    def retrieved(self) -> tuple[Retrieved, ...]:
-        """What each search returned for each goal, where trees are asked for, or there is but one."""
-        retrieved: tuple[Retrieved, ...] = self.__dict__["retrieved"]
-        return retrieved
+    retrieved = Known[tuple[Retrieved, ...]]()
+    """What each search returned for each goal, where trees are asked for, or there is but one."""
+
+    summed_up = Known[bool]()
+    """Whether a summary alone is shown."""
 
     @property
     def proved(self) -> bool:
@@ -80,8 +81,8 @@ class Compared(AboutGoals, frozen=True, kw_only=True, tag=schema_name("compare")
         if isinstance(self.published, PublishedTable):
             yield from published_table(self.published, self.comparisons)
             return
-        if not self.__dict__["summed_up"]:
-            yield f"Searches and the optimum ({self.__dict__['conditions']})"
+        if not self.summed_up:
+            yield f"Searches and the optimum ({self.conditions})"
             yield ""
             yield from comparison_table(self.comparisons, self.items == "lasting")
             if self.comparisons[0].searches[0].tree is not UNSET:
@@ -115,7 +116,7 @@ class Compared(AboutGoals, frozen=True, kw_only=True, tag=schema_name("compare")
         Raises:
             UserError: for another file name, or if the packages of ``foon-asp[pictures]`` are missing.
         """
-        write_comparison_chart(self.comparisons, self.__dict__["conditions"], Path(file))
+        write_comparison_chart(self.comparisons, self.conditions, Path(file))
 
     def __repr__(self) -> str:
         return f"<Compared: {', '.join(map(str, self.goals))}>"
@@ -145,7 +146,7 @@ def _posed(
     if all_makeable:
         how = items_of(command.dataset, items, stock, stays)
         return (command.dataset.problem((0,), containers, everything=True, items=how),)
-    return each_goal(command, goals_named, containers, items, stock, stays)
+    return one_problem(command, goals_named, containers, items, stock, stays, all_goals=True)
 
 
 @question(
@@ -153,14 +154,7 @@ def _posed(
     CONTAINERS,
     *ITEMS,
     *EACH_LIMITS,
-    Option(
-        "charts",
-        "A file for a chart of units over the optimum (.svg or .png).",
-        Kind.WRITTEN,
-        Part.CHART,
-        flags=("--chart",),
-        many=True,
-    ),
+    CHART._replace(help="A file for a chart of units over the optimum (.svg or .png)."),
     help_="""
     \b
     foon-asp compare                                   every goal of the goals file
@@ -227,7 +221,7 @@ def compare(
     if problem.rates is None and not searches:
         chosen = known_searches(rated=False)
         caller().reporter.warning("greedy-success is left out, and so is success: no success rates are known")
-    each_limit = limits(how.get("time_limit"), how.get("memory_limit"))
+    each_limit = limits_of(how)
     asked = search_settings(ties, count, depth_limit, published, *each_limit)
     at_least(jobs, 1, "jobs")
     rules = settings_of(how)._replace(deadline=None)
@@ -265,15 +259,11 @@ def compare(
             )
             for row in comparisons
         ]
-    compared = Compared(
+    return Compared(
         **head_of(problem, dict.fromkeys(each for row in comparisons for each in row.optimum)),
         comparisons=tuple(comparisons),
         published=table or UNSET,
-    )
-    compared.__dict__.update(
-        retrieved=tuple(retrieved), conditions=problem.conditions, summed_up=all_makeable
-    )
-    return compared
+    ).knowing(retrieved=tuple(retrieved), summed_up=all_makeable)
 
 
 def _compared_goals(

@@ -2,7 +2,7 @@
 
 import functools
 import inspect
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from enum import Flag, StrEnum, auto
 from pathlib import Path
 from typing import NamedTuple, ParamSpec, TypeVar, get_args
@@ -50,8 +50,6 @@ class Part(Flag):
     """A parameter that holds for a whole command: limits and rules."""
     MORE = auto()
     """What else can be said for another parameter, and is among its values there: rules, for constraints."""
-    TEXT = auto()
-    """How what was found is said: a parameter of its text."""
     CHART = auto()
     """Files for a picture of what was found."""
 
@@ -108,7 +106,7 @@ class Question:
         self.command = command
 
     def format_of(self, file: Path) -> str:
-        """Give the format that the name of a file says; raises :class:`UserError` where it says none."""
+        """Return the format that the name of a file says; raises :class:`UserError` where it says none."""
         form = self.suffixes.get(file.suffix.lower())
         if form is None:
             ends = " ".join(self.suffixes)
@@ -132,41 +130,30 @@ def question(
     """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
-        signature = expanded_signature(ask)
         own = {option.name for option in options}
         every = (*options, *(each for each in _options_of(ask) if each.name not in own))
-        names = {option.name for option in every}
-        if not used_up and "items" not in names:
+        if not used_up and "items" not in {option.name for option in every}:
             ask = _for_lasting_items(ask)
         typed_in = command or ask  # a command line has read its values already, rules among them
-        signature = _without_metadata(signature)
-        ask = in_hand("time_limit" in names, signature)(ask)
-        ask.__dict__["question"] = Question(every, help_, formats, suffixes or {}, pose, typed_in)
-        texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in every}
-        ask.__doc__ = complete_docstring(ask, signature, texts)
-        return ask
+        asked = asked_in_python(ask, every)
+        asked.__dict__["question"] = Question(every, help_, formats, suffixes or {}, pose, typed_in)
+        return asked
 
     return decorate
 
 
-def asked_in_python(ask: Callable[P, R]) -> Callable[P, R]:
-    """Make a function take what every question takes in Python; its command is that of another question."""
+def asked_in_python(ask: Callable[P, T], options: Sequence[Option] | None = None) -> Callable[P, T]:
+    """Make a function take what every question takes in Python, and complete its docstring.
+
+    ``options`` describe parameters; without them, it is those in the annotations. The command of a function
+    without :func:`question` is that of another question.
+    """
     signature = _without_metadata(expanded_signature(ask))
-    texts = {option.name: f"{option.help} {option.python}".rstrip() for option in _options_of(ask)}
-    ask = in_hand(True, signature)(ask)
-    ask.__doc__ = complete_docstring(ask, signature, HELP | texts)
-    return ask
-
-
-def described(*options: Option) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Make a decorator that completes the docstring of a function by the help of options."""
-
-    def decorate(ask: Callable[P, T]) -> Callable[P, T]:
-        texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in options}
-        ask.__doc__ = complete_docstring(ask, inspect.signature(ask), texts)
-        return ask
-
-    return decorate
+    given = _options_of(ask) if options is None else options
+    texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in given}
+    asked = in_hand(ask, signature)
+    asked.__doc__ = complete_docstring(ask, signature, texts)
+    return asked
 
 
 def expanded_signature(ask: Callable[..., object]) -> inspect.Signature:
@@ -237,11 +224,11 @@ def _for_lasting_items(ask: Callable[P, R]) -> Callable[P, R]:
 
 
 def not_built(name: str) -> UserError:
-    """Say that a question, by the name of its verb or its module, is not built for items that are used up."""
+    """Return the error of a question, by its verb or module, that is not built for items that are used up."""
     return UserError(f"{name.replace('_', '-')} is not built for items that are used up (--items used-up)")
 
 
 def question_of(ask: Callable[..., object]) -> Question:
-    """Give the description of a question for a command line."""
+    """Return the description of a question for a command line."""
     found: Question = ask.__dict__["question"]
     return found

@@ -10,7 +10,7 @@ from foon_asp.engines import cross_check as ask_engines
 from foon_asp.errors import BugError
 from foon_asp.questions.answer import Answer, EngineCheck
 from foon_asp.questions.caller import is_python
-from foon_asp.report.disagreement import write_disagreement
+from foon_asp.questions.disagreement import write_disagreement
 from foon_asp.rules.constraint import Constraint
 
 

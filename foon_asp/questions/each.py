@@ -1,74 +1,81 @@
 """One question asked of several goals, one after the other."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+from msgspec import Meta
 
 from foon_asp.dataset.paths import File
-from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
-from foon_asp.questions.result import Document, Ending, NothingToDrawError, Result
-from foon_asp.results.table import Part, rendered
+from foon_asp.questions.result import Ending, NothingToDrawError, Result
+from foon_asp.results.table import Part
+from foon_asp.text.json_value import Json, schema_name
+
+_ANY_DOCUMENT = Meta(
+    extra_json_schema={
+        "type": "object",
+        "properties": {"schema": {"type": "string"}},
+        "required": ["schema"],
+    }
+)
 
 
-@dataclass(frozen=True, repr=False)
-class Each(Result):
-    """The ``results`` of a question that was asked of each goal by itself, in the order of the goals."""
+class Each(Result, frozen=True, kw_only=True, tag=schema_name("each")):
+    """A question asked of several goals, each by itself.
 
-    results: Sequence[Result]
+    Attributes:
+        answers: The documents of the question, one for each goal in order; their own schema says what they
+            are.
+    """
+
+    answers: Annotated[tuple[Annotated[Any, _ANY_DOCUMENT], ...], Meta(min_length=2)]
 
     @property
     def ending(self) -> Ending:
         """Stopped at a limit if one was, and negative if one is."""
-        endings = {result.ending for result in self.results}
+        endings = {result.ending for result in self.answers}
         return next(each for each in (Ending.LIMIT, Ending.NEGATIVE, Ending.DONE) if each in endings)
 
-    def text(self, **how: object) -> str:
-        """Return one text after the other; goals that are made by the same tree have one."""
-        return rendered(self.show(**how))
-
-    def show(self, **how: object) -> Iterator[Part]:
-        """Return the same as lines and tables."""
+    def show(self) -> Iterator[Part]:
+        """Return one after the other; goals that are made by the same tree have it once."""
         from foon_asp.questions.answer import Answer  # noqa: PLC0415 (takes the solver along)
 
-        for number, group in enumerate(self._same_trees()):
+        for number, (first, *others) in enumerate(self._same_trees()):
             if number:
                 yield ""
-            first = group[0]
             if isinstance(first, Answer):
-                yield from (
-                    line for answer in group if isinstance(answer, Answer) for line in answer.goal_lines()
-                )
+                yield from (line for answer in (first, *others) for line in answer.goal_lines())
                 yield from first.findings()
-            elif isinstance(first, Document):
-                yield from first.show(**how)
             else:
-                yield first.text(**how).rstrip("\n")
+                yield from first.show()
 
-    def _same_trees(self) -> list[list[Result]]:
-        """Return the results in groups: answers with one tree, and others alone."""
+    def _same_trees(self) -> list[list[Any]]:
+        """Return the answers in groups: those with one tree, and others alone."""
         from foon_asp.questions.answer import Answer  # noqa: PLC0415
 
-        groups: dict[object, list[Result]] = {}
-        for number, result in enumerate(self.results):
-            ids = result.ids if isinstance(result, Answer) else None
-            groups.setdefault(frozenset(ids) if ids else number, []).append(result)
+        groups: dict[object, list[Any]] = {}
+        for number, answer in enumerate(self.answers):
+            ids = answer.ids if isinstance(answer, Answer) else None
+            groups.setdefault(frozenset(ids) if ids else number, []).append(answer)
         return list(groups.values())
 
-    def json_dict(self) -> object:
-        """Give all documents in one."""
-        return document("each", answers=[result.json_dict() for result in self.results])
+    def table_rows(self) -> Iterator[Json]:
+        """Return the rows of all answers, each behind its goals."""
+        for answer in self.answers:
+            goals = " + ".join(map(str, answer.goals))
+            yield from ({"goals": goals, **row} for row in answer.table_rows())
 
     def foon(self) -> str:
-        """Give one tree after the other."""
-        return "".join(result.foon() for result in self.results)
+        """Return one tree after the other."""
+        return "".join(answer.foon() for answer in self.answers)
 
     def steps(self) -> str:
         """Refuse: a program has to know which goal it works for."""
         raise UserError("these are steps for several goals: name one with --goal")
 
     def remark(self, format_: str) -> str:
-        """Give what a format cannot tell, goal by goal."""
-        return "\n".join(filter(None, (result.remark(format_) for result in self.results)))
+        """Return what a format cannot tell, goal by goal."""
+        return "\n".join(filter(None, (answer.remark(format_) for answer in self.answers)))
 
     def write_chart(self, file: File) -> None:
         """Refuse: a chart is of one goal."""

@@ -7,26 +7,24 @@ from typing import Annotated, Any, Unpack
 from msgspec import field
 
 from foon_asp.dataset.paths import File
-from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.network import counted
-from foon_asp.planning.name_map import map_json
+from foon_asp.planning.name_map import MapFile
 from foon_asp.planning.pddl_writer import domain_text, items_words, problem_text, scale_words
 from foon_asp.planning.planning_task import PlanningTask, planning_task
 from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
-from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.arguments import Objectives, chosen_objectives, reading, whole
-from foon_asp.questions.contract import Kind, Option, Part, described, question
-from foon_asp.questions.how import Patience
-from foon_asp.questions.in_hand import in_hand
+from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.contract import Kind, Option, Part, asked_in_python, question
+from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
-from foon_asp.questions.result import AboutGoals
-from foon_asp.report.whole_file import write_whole
+from foon_asp.questions.result import Result
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values_of import head_of
-from foon_asp.text.json_value import Json, json_text, schema_name
+from foon_asp.text.json_value import schema_name
+from foon_asp.whole_file import write_whole
 
 FILES = ("domain.pddl", "problem.pddl", "map.json")
 """What is written into a folder."""
@@ -35,7 +33,7 @@ _MERGED = "set"
 _HOW = ("lasting", _MERGED, "used-up")
 
 
-class Exported(AboutGoals, frozen=True, kw_only=True, tag=schema_name("export")):
+class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("export")):
     """A planning task in PDDL, and what its names stand for.
 
     Attributes:
@@ -51,22 +49,21 @@ class Exported(AboutGoals, frozen=True, kw_only=True, tag=schema_name("export"))
 
     domain_file: str = field(name="domain")
     problem_file: str = field(name="problem")
-    name_map: Json = field(name="map")
+    name_map: MapFile = field(name="map")
 
-    @property
-    def task(self) -> PlanningTask:
-        """The same as values."""
-        found: PlanningTask = self.__dict__["task"]
-        return found
+    task = Known[PlanningTask]()
+    """The same as values."""
+
+    written = Known[Path | None](None)
+    """The folder that the files were written into, if they were."""
 
     def show(self) -> Iterator[Shown]:
         """Return the problem; or what was written, where the files were."""
-        written: Path | None = self.__dict__.get("written")
-        if written is None:
+        if self.written is None:
             yield from self.problem_file.splitlines()
             return
         task = self.task
-        yield f"{written}: {', '.join(FILES)} ({task.problem.conditions})"
+        yield f"{self.written}: {', '.join(FILES)} ({task.problem.conditions})"
         yield f"{counted(len(task.actions), 'action')}, {counted(len(task.names), 'object node')}"
         if task.problem.items is not None:
             yield items_words(task)
@@ -95,7 +92,7 @@ class Exported(AboutGoals, frozen=True, kw_only=True, tag=schema_name("export"))
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise UserError(f"{folder}: cannot be created as a folder: {error.strerror or error}") from None
-        contents = (self.domain_file, self.problem_file, json_text(self.name_map))
+        contents = (self.domain_file, self.problem_file, self.name_map.json_text())
         for name, content in zip(FILES, contents, strict=True):
             write_whole(folder / name, content.encode(errors="backslashreplace"))
 
@@ -110,7 +107,7 @@ def _export_and_write(
     found = export(problem, *about, **asked)
     if folder_written is not None:
         found.write(folder_written)
-        found.__dict__["written"] = folder_written
+        found.knowing(written=folder_written)
     return found
 
 
@@ -185,7 +182,7 @@ def export(
     target: Annotated[str, Option(flags=("--to",), choices=_FORMATS)] = "pddl",
     every_unit: Annotated[bool, Option(flags=("--whole",))] = False,
     items: str | None = None,
-    **how: Unpack[Patience],
+    **how: Unpack[Posed],
 ) -> Exported:
     """Write the goals of a problem as a planning task for other planners.
 
@@ -210,36 +207,31 @@ def export(
     chosen = chosen_objectives(problem, objectives)
     if every_unit:
         problem = whole(problem)
-    with reading():
+    with begin(how).watched("writing"):
         task = planning_task(problem, chosen, every_unit, _merged(problem, items))
         exported = Exported(
             **head_of(task.problem, task.objectives),
             domain_file=domain_text(task),
             problem_file=problem_text(task),
-            name_map=map_json(task),
+            name_map=MapFile.of(task),
         )
-    exported.__dict__["task"] = task
-    return exported
+    return exported.knowing(task=task)
 
 
-@described()
-@in_hand(takes_time=False)
+@asked_in_python
 def to_unified_planning(
     problem: Problem,
     objectives: Objectives = "units",
     *,
     every_unit: bool = False,
     items: str | None = None,
-    time_limit: float | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    **how: Unpack[Posed],
 ) -> Any:
-    """Give the goals of a problem as a problem of unified-planning, with the names that PDDL has.
+    """Return the goals of a problem as a problem of unified-planning, with the names that PDDL has.
 
     :func:`foon_asp.read_plan` reads its plans back. The package comes with ``foon-asp[planning]``.
 
     Parameters:
-        problem: The problem.
         objectives: What actions cost: a name, names separated by commas, or several names.
         every_unit: Whether to give the whole network, instead of the units that the goals can need.
         items: How items are meant: ``lasting``, ``used-up`` with copies as numbers, or ``set``, in which all
@@ -262,4 +254,5 @@ def to_unified_planning(
     """
     chosen = chosen_objectives(problem, objectives)
     problem = whole(problem) if every_unit else problem
-    return unified_problem(problem, chosen, every_unit, _merged(problem, items))
+    with begin(how).watched("writing"):
+        return unified_problem(problem, chosen, every_unit, _merged(problem, items))

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 from foon_asp.asp.reporter import Reporter
-from foon_asp.deadline import Deadline, seconds, stoppable
+from foon_asp.deadline import Deadline, stoppable
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 from foon_asp.problem import Costs, Objective, Problem
@@ -27,7 +27,6 @@ HELP = {
     "goal": "A goal or several, by name or as :class:`ObjectNode`, where ``problem`` is a path or data; "
     "without it, the goal of the files.",
     "containers": "The container rule, ``strict`` or ``implied``, where ``problem`` is a path or data.",
-    "time_limit": "Stop after this many seconds, with what was found by then.",
     "on_progress": "Is called with a :class:`Progress` whenever something is found.",
     "cancel": "A token that ends the question from another thread, with what was found by then.",
 }
@@ -61,44 +60,33 @@ class _Listener(Reporter):
         self._tell(progress)
 
 
-def in_hand(
-    takes_time: bool, signature: inspect.Signature | None = None
-) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Make a decorator that handles ``cancel`` and ``on_progress`` of a function.
+def in_hand(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
+    """Make a function take a path or data for a problem, ``cancel`` and ``on_progress``.
 
-    It handles ``time_limit`` too, unless the function ``takes_time`` limits itself. Arguments are checked by
-    the ``signature``, by default that of the function.
+    Arguments are checked by the ``signature``.
     """
+    name, check = ask.__name__, checker(ask, signature)
 
-    def decorate(ask: Callable[P, T]) -> Callable[P, T]:
-        name, check = ask.__name__, checker(ask, signature)
-        parameters = (signature or inspect.signature(ask)).parameters
-
-        @functools.wraps(ask)
-        def asked(*about: P.args, **named: P.kwargs) -> T:
-            if is_python():  # commands hand over what they have read
-                about = posed_in_python(name, parameters, about, named)
-                check(about, named)
-            token: Any = named.pop("cancel", None)
-            tell: Any = named.pop("on_progress", None)
-            limit = None if takes_time else named.pop("time_limit", None)
-            if token is None and tell is None and limit is None:
-                with stoppable(None, None, f"asking {name}") if is_python() else nullcontext():
-                    return ask(*about, **named)
-            within = None if limit is None else seconds(limit)  # type: ignore[arg-type]
-            who = caller()
-            reporter = who.reporter if tell is None else _Listener(tell, who.reporter)
-            with (
-                stoppable(within, token, f"asking {name}") as deadline,
-                asked_by(who._replace(reporter=reporter, deadline=who.deadline or Deadline(within=deadline))),
-            ):
+    @functools.wraps(ask)
+    def asked(*about: P.args, **named: P.kwargs) -> T:
+        if is_python():  # commands hand over what they have read
+            about = posed_in_python(name, signature.parameters, about, named)
+            check(about, named)
+        token: Any = named.pop("cancel", None)
+        tell: Any = named.pop("on_progress", None)
+        if token is None and tell is None:
+            with stoppable(None, None, f"asking {name}") if is_python() else nullcontext():
                 return ask(*about, **named)
+        who = caller()
+        reporter = who.reporter if tell is None else _Listener(tell, who.reporter)
+        with (
+            stoppable(None, token, f"asking {name}") as deadline,
+            asked_by(who._replace(reporter=reporter, deadline=who.deadline or Deadline(within=deadline))),
+        ):
+            return ask(*about, **named)
 
-        if signature is not None:
-            asked.__dict__["__signature__"] = signature
-        return asked
-
-    return decorate
+    asked.__dict__["__signature__"] = signature
+    return asked
 
 
 def posed_in_python(
@@ -113,12 +101,14 @@ def posed_in_python(
 
     if "objective" in named and "objectives" in parameters:
         named["objectives"] = named.pop("objective")
-    if "problem" not in parameters:
+    subject = next(iter(parameters))
+    if subject not in {"problem", "about"}:
         return about
-    first = about[0] if about else named.pop("problem", None)
+    first = about[0] if about else named.pop(subject, None)
     if first is None:
         raise UserError(f"{name} of what? {name}('eggs.txt'), or {name}(foon_asp.load(), goal='macaroni')")
-    names = [each for each in _POSING if each in named and each in parameters]
+    is_whole = subject == "about" and "goal" not in named  # what is asked about is the data
+    names = [each for each in _POSING if each in named and each in parameters and not is_whole]
     posing = {each: named.pop(each) for each in names}
     if isinstance(first, Problem) and posing:
         raise UserError(f"{name}: a problem has its own {' and '.join(posing)}; Foon.problem takes them")
@@ -128,6 +118,8 @@ def posed_in_python(
         hint = f"a goal of the bundled kitchen: {name}(foon_asp.load(), goal={first!r})"
         raise UserError(f"no such file or folder: {first} ({hint})")
     foon = first if isinstance(first, Foon) else load(first)
+    if is_whole:
+        return (foon, *about[1:])
     goals = posing.pop("goal", ())
     one = isinstance(goals, str | ObjectNode)
     return (foon.problem(*([goals] if one else goals), **posing), *about[1:])

@@ -1,41 +1,45 @@
 """What is wrong in FOON files, or doubtful."""
 
 import dataclasses
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
+from typing import NamedTuple
+
+from msgspec import structs
 
 from foon_asp.dataset.paths import File, as_path
 from foon_asp.errors import UserError
 from foon_asp.linting import linter
 from foon_asp.linting.baseline import read_baseline
 from foon_asp.linting.catalog import CATALOG, unknown_code
+from foon_asp.linting.finding import Finding
 from foon_asp.linting.linted_files import with_tables
 from foon_asp.linting.settings import find_settings
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.lint_findings import (
-    lint_annotations,
-    lint_json,
-    lint_statistics,
-    lint_summary,
-    lint_text,
-)
-from foon_asp.report.lint_sarif import lint_sarif
-from foon_asp.results.table import rendered
+from foon_asp.report.lint_findings import annotations, finding_lines, sarif, statistics, summary
+from foon_asp.results.plain import flat_row, plain
+from foon_asp.results.table import Part, rendered
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
-from foon_asp.text.json_value import json_text
+from foon_asp.text.json_value import Json, json_text, schema_name
 from foon_asp.typed import typed
 
+_MAX_TEXT = 1000  # letters of a line: thousands of findings on one would repeat it thousands of times
 
-@dataclass(frozen=True, repr=False)
-class Linted(Result):
-    r"""The ``findings`` in ``files``, by file and line.
 
-    Each finding has a ``severity``, ``code``, ``message`` and ``source``, and where the line can be repaired,
-    ``fix``. Of a baseline, ``known`` counts the findings that it left out, and ``gone`` those of its own that
-    were not found any more. ``mended`` counts findings that were repaired before.
+class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
+    r"""What is wrong in FOON files.
+
+    Attributes:
+        files: How many files were linted.
+        counts: How many findings there are of each severity.
+        codes: How many findings there are of each code.
+        mended: How many findings --fix mended before.
+        known: How many findings a baseline left out.
+        gone: How many findings of a baseline were not found any more.
+        findings: The findings, by file and line.
 
     Example:
         >>> found = foon_asp.lint(contents={"egg.txt": b"//\nO\tegg\nM\tfry\nO\tegg\nS\tfried\n//\n"})
@@ -43,21 +47,26 @@ class Linted(Result):
         '1 file: nothing found\n'
     """
 
-    findings: tuple[Diagnostic, ...]
-    files: tuple[Path, ...]
-    known: int = 0
-    gone: int = 0
-    mended: int = 0
+    ROWS = "findings"
+
+    files: int
+    counts: dict[str, int]
+    codes: dict[str, int]
+    mended: int
+    known: int
+    gone: int
+    findings: tuple[Finding, ...]
 
     @property
     def ending(self) -> Ending:
         """How it ended: negative where there are errors or warnings, for which notes do not count."""
-        bad = any(finding.severity is not Severity.NOTE for finding in self.findings)
+        bad = self.counts[Severity.ERROR] + self.counts[Severity.WARNING]
         return Ending.NEGATIVE if bad else Ending.DONE
 
-    def text(self) -> str:
+    def show(self) -> Iterator[Part]:
         """Return the findings with their lines, those of one kind in a file folded, and a line of counts."""
-        return lint_text(self.findings, len(self.files), self.mended)
+        yield from finding_lines(self.findings)
+        yield self._summary()
 
     def statistics(self, width: int | None = None) -> str:
         """Return a table that counts the findings of each code, and a line of counts.
@@ -65,22 +74,59 @@ class Linted(Result):
         Parameters:
             width: The columns of a terminal; without it, lines are as long as they are.
         """
-        summary = lint_summary(self.findings, len(self.files), self.mended)
-        return rendered([lint_statistics(self.findings), summary], width)
+        return rendered([statistics(self.findings), self._summary()], width)
 
-    def json_dict(self) -> object:
-        """Return every finding, and the counts, as plain values."""
-        return lint_json(self.findings, len(self.files), self.mended)
+    def _summary(self) -> str:
+        return summary(self.findings, self.files, self.mended)
+
+    def json_dict(self) -> Json:
+        """Return every finding, and the counts, as plain values; long lines are left out."""
+        short = [
+            structs.replace(each, text=_short(each.text), fix=_short(each.fix)) for each in self.findings
+        ]
+        found: Json = plain(structs.replace(self, findings=tuple(short)))
+        return found
+
+    def table_rows(self) -> Iterator[Json]:
+        """Return a row for each finding."""
+        return map(flat_row, self.json_dict()["findings"])
 
     def github(self) -> str:
         """Return a workflow command of GitHub for each finding, which shows it beside its line."""
-        return lint_annotations(self.findings)
+        return annotations(self.findings)
 
     def sarif(self) -> str:
         """Return the findings as SARIF 2.1.0, which code hosts and editors read."""
         from importlib.metadata import version  # noqa: PLC0415 (seldom asked for)
 
-        return json_text(lint_sarif(self.findings, version("foon-asp")))
+        return json_text(sarif(self.findings, version("foon-asp")))
+
+
+def _short(line: str | None) -> str | None:
+    return line if line is not None and len(line) <= _MAX_TEXT else None
+
+
+class Found(NamedTuple):
+    """What was found in files, with the fixes; of a baseline, how many it left out, and how many are gone."""
+
+    files: Sequence[Path]
+    findings: list[Diagnostic]
+    known: int = 0
+    gone: int = 0
+
+    def linted(self, mended: int = 0) -> Linted:
+        """Return the result; ``mended`` is the number of findings that were repaired before."""
+        severities = Counter(finding.severity for finding in self.findings)
+        codes = Counter(finding.code for finding in self.findings)
+        return Linted(
+            files=len(self.files),
+            counts={str(severity): severities[severity] for severity in Severity},
+            codes=dict(sorted(codes.items())),
+            mended=mended,
+            known=self.known,
+            gone=self.gone,
+            findings=tuple(map(Finding.of, self.findings)),
+        )
 
 
 @typed
@@ -114,28 +160,45 @@ def lint(
     Example:
         >>> recipe = b"//\nO\tegg\nM\tfry\nO\tegg \nS\tfried\n//\n"
         >>> found = foon_asp.lint(contents={"egg.txt": recipe})
-        >>> [(finding.source.line, finding.code) for finding in found.findings]
+        >>> [(finding.line, finding.code) for finding in found.findings]
         [(4, 'outer-space')]
     """
-    selected, ignored = tuple(select), tuple(ignore)
-    for code in (*selected, *ignored):
+    texts = {as_path(file): content for file, content in contents.items()}
+    return find(
+        map(as_path, paths),
+        texts,
+        tuple(select),
+        tuple(ignore),
+        None if baseline is None else as_path(baseline),
+        None if vocabulary is None else as_path(vocabulary),
+    ).linted()
+
+
+def find(
+    paths: Iterable[Path],
+    contents: Mapping[Path, bytes],
+    select: Sequence[str],
+    ignore: Sequence[str],
+    baseline: Path | None,
+    vocabulary: Path | None,
+) -> Found:
+    """Return what :func:`lint` finds, with the fixes."""
+    for code in (*select, *ignore):
         if code not in CATALOG:
             raise UserError(unknown_code(code))
-    texts = {as_path(file): content for file, content in contents.items()}
-    files = linted_files(map(as_path, paths), texts)
+    files = linted_files(paths, contents)
     if not files:
         raise UserError("name the files to lint")
     settings = find_settings(files)
-    if selected:
-        settings = dataclasses.replace(settings, select=selected, ignore=())
-    settings = dataclasses.replace(settings, ignore=(*settings.ignore, *ignored))
-    known = None if baseline is None else read_baseline(as_path(baseline))
-    names = None if vocabulary is None else as_path(vocabulary)
-    found = settings.applied(linter.lint(files, texts, names))
-    if known is None:
-        return Linted(tuple(found), tuple(files))
-    new = tuple(known.new(found))
-    return Linted(new, tuple(files), len(found) - len(new), known.gone(found))
+    if select:
+        settings = dataclasses.replace(settings, select=tuple(select), ignore=())
+    settings = dataclasses.replace(settings, ignore=(*settings.ignore, *ignore))
+    known = None if baseline is None else read_baseline(baseline)
+    found = settings.applied(linter.lint(files, contents, vocabulary))
+    if baseline is None or known is None:
+        return Found(files, found)
+    new, gone = known.compared(baseline, found)
+    return Found(files, new, len(found) - len(new), gone)
 
 
 def linted_files(paths: Iterable[Path], contents: Iterable[Path] = ()) -> Sequence[Path]:

@@ -1,48 +1,61 @@
 """Many FOONs in one, every functional unit once and with its origins."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
 
 from foon_asp.dataset.paths import File, Files, as_path, files
-from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder, counted
+from foon_asp.network.near_units import units_kept_apart
 from foon_asp.questions.result import Result
-from foon_asp.report.whole_file import utf_8, write_whole
+from foon_asp.results.document import Known
+from foon_asp.results.table import Part
+from foon_asp.results.values_of import differences_of, listed_unit
 from foon_asp.text.data_folder import DataFiles, find_data
 from foon_asp.text.diagnostics import summarize
+from foon_asp.text.json_value import schema_name
 from foon_asp.text.merged_network import merged_text
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.unit_price_list import read_unit_prices
 from foon_asp.typed import typed
+from foon_asp.whole_file import utf_8, write_whole
 
 
-@dataclass(frozen=True, repr=False)
-class Merged(Result):
-    """A universal FOON: the ``network``, or the ``store`` that it was written into.
+class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
+    """A universal FOON, and what it was merged from.
 
-    ``files`` are those that were read, with ``copies`` of units, of which ``units`` are distinct, and
-    ``objects`` object nodes. ``prices`` counts the units whose price FOON text has no place for, ``left_out``
-    the lines that were skipped; ``warnings`` say what was assumed.
+    Attributes:
+        files: The files that were read.
+        copies: How many functional units were read.
+        units: How many of them are distinct.
+        objects: How many object nodes there are.
+        prices: How many units have a price, for which FOON text has no place.
+        left_out: How many lines were skipped.
 
     Example:
         >>> merged = foon_asp.merge("data/kitchen/FOON.txt")
-        >>> merged.units, merged.objects
-        (220, 418)
+        >>> merged.units, merged.objects, merged.store
+        (220, 418, None)
     """
 
     files: tuple[Path, ...]
     copies: int
     units: int
     objects: int
-    left_out: int
-    warnings: tuple[str, ...]
     prices: int = 0
-    network: Network | None = None
-    store: Path | None = None
+    left_out: int
 
-    def text(self) -> str:
+    network = Known[Network | None](None)
+    """The network; ``None`` where it was written into a store."""
+
+    store = Known[Path | None](None)
+    """The store that it was written into, if it was."""
+
+    warnings = Known[tuple[str, ...]]()
+    """What was assumed."""
+
+    def show(self) -> Iterator[Part]:
         """Return the counts in one line."""
         read = str(self.store or counted(len(self.files), "file", ","))
         parts = [f"{read}: {counted(self.units, 'unit', ',')} of {self.copies:,} read"]
@@ -51,13 +64,7 @@ class Merged(Result):
             parts.append(f"{counted(self.prices, 'price', ',')} of units not in the result")
         if self.left_out:
             parts.append(f"{counted(self.left_out, 'line', ',')} left out")
-        return f"{', '.join(parts)}\n"
-
-    def json_dict(self) -> object:
-        """Return the counts as plain values."""
-        names = ("copies", "units", "objects", "prices", "left_out")
-        counts = {name: getattr(self, name) for name in names}
-        return document("merge", files=list(map(str, self.files)), **counts)
+        yield ", ".join(parts)
 
     def foon(self) -> str:
         """Return the network as FOON text, with the file, line and videos of every copy above each unit.
@@ -70,6 +77,21 @@ class Merged(Result):
         of = counted(len(self.files), "file", ",")
         comment = f"Universal FOON: {counted(self.units, 'functional unit', ',')} from {of}"
         return "".join(merged_text(self.network, comment))
+
+    def kept_apart(self) -> Iterator[Part]:
+        """Return the pairs of units that differ in one thing alone, each with its places."""
+        if self.network is None:
+            return
+        pairs = units_kept_apart(self.network)
+        yield f"nearly the same, and kept apart: {counted(len(pairs), 'pair', ',')}"
+        for pair in pairs:
+            yield ""
+            for letter, unit in (("A", pair.left), ("B", pair.right)):
+                place = self.network.sources[self.network.unit_id(unit) or 0][0]
+                first, *others = listed_unit(self.network, unit, place).lines()
+                yield from (f"{letter}{first[1:]}", *others)
+            yield from (f"    {difference}" for difference in differences_of(pair))
+        yield ""
 
     def write(self, file: File, format_: str | None = None) -> None:
         """Write the network into a file, as FOON text.
@@ -126,8 +148,14 @@ def merge_files(found: DataFiles, store: Path | None, lenient: bool) -> Merged:
 
         imported = import_files(found._replace(network=network_files), store, lenient)
         warnings = *summarize(imported.warnings), *imported.remarks
-        counts = imported.copies, imported.units, imported.objects, imported.left_out
-        return Merged(network_files, *counts, warnings, store=store)
+        merged = Merged(
+            files=network_files,
+            copies=imported.copies,
+            units=imported.units,
+            objects=imported.objects,
+            left_out=imported.left_out,
+        )
+        return merged.knowing(warnings=warnings, store=store)
     reader = FoonReader(lenient)
     builder = NetworkBuilder()
     copies = 0
@@ -141,5 +169,12 @@ def merge_files(found: DataFiles, store: Path | None, lenient: bool) -> Merged:
     network = builder.build()
     if not len(network):
         raise UserError("there is no functional unit in these files")
-    counts = copies, len(network), len(network.objects), reader.left_out
-    return Merged(network_files, *counts, warnings, len(reader.prices), network)
+    merged = Merged(
+        files=network_files,
+        copies=copies,
+        units=len(network),
+        objects=len(network.objects),
+        prices=len(reader.prices),
+        left_out=reader.left_out,
+    )
+    return merged.knowing(warnings=warnings, network=network)

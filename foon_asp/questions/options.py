@@ -130,8 +130,14 @@ LIMITS = (
         python="A number counts bytes.",
     ),
 )
-HOW = (*RULES, *LIMITS)
-"""What it is asked for under."""
 EACH_LIMITS = tuple(limit._replace(part=Part.QUESTION) for limit in LIMITS)
 """The limits of each of many answers, none of which holds for the whole command."""
+CHART = Option(
+    "charts",
+    "A file for a chart (.svg or .png).",
+    Kind.WRITTEN,
+    Part.CHART,
+    flags=("--chart",),
+    many=True,
+)
 JOBS = Option("jobs", "How many processes to use.", Kind.WHOLE, default=1, least=1)

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple, Unpack
+from typing import Annotated, NamedTuple, Unpack
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import better_than
@@ -17,13 +17,14 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, usual_objectives
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
+from foon_asp.questions.contract import TABLES, Option, question
 from foon_asp.questions.how import How, settings_of
-from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
-from foon_asp.questions.result import AboutGoals, Ending, NothingToDrawError
+from foon_asp.questions.options import CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
+from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text, figure_text, success_texts
-from foon_asp.report.used_up_note import used_up_note
+from foon_asp.questions.used_up_note import used_up_note
+from foon_asp.results.document import AboutGoals, Known
+from foon_asp.results.figure_text import costs_text, figure_text, success_texts
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.table import Table
 from foon_asp.results.values import (
@@ -70,7 +71,7 @@ class Point(Value, frozen=True):
         return tuple(step.id for step in self.units if step.id is not None)
 
 
-class Front(AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
+class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
     """The Pareto front: trees of which none is as good as another by every objective and better by one.
 
     Attributes:
@@ -94,11 +95,11 @@ class Front(AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
     points: tuple[Point, ...]
     seconds: float
 
-    @property
-    def problem(self) -> Problem:
-        """The problem that was asked about."""
-        found: Problem = self.__dict__["problem"]
-        return found
+    problem = Known[Problem]()
+    """The problem that was asked about."""
+
+    lists_trees = Known[bool]()
+    """Whether the units of the trees are listed."""
 
     @property
     def values(self) -> tuple[tuple[int | Fraction, ...], ...]:
@@ -119,19 +120,17 @@ class Front(AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
             return Ending.LIMIT
         return Ending.DONE if self.points else Ending.NEGATIVE
 
-    def show(self, trees: bool = False) -> Iterator[Shown]:
+    def show(self) -> Iterator[Shown]:
         """Return the points as a table, each with what its tree does differently from the one above.
 
-        Parameters:
-            trees: Whether to list the units, too: those of the first tree, and those that go and come with
-                each other one.
+        Where trees were asked for, the units of the first follow, and those that go and come with the others.
         """
         yield from self.goal_lines()
         yield self._claim()
         if self.points:
             yield ""
             yield self._table()
-        if not trees:
+        if not self.lists_trees:
             yield from self._used_up_lines()
             return
         for number, (point, tree) in enumerate(zip(self.points, self.task_trees, strict=True)):
@@ -222,15 +221,7 @@ class _Point(NamedTuple):
     ),
     CONTAINERS,
     *ITEMS,
-    Option("trees", "Also list the units of the trees.", Kind.FLAG, Part.TEXT),
-    Option(
-        "charts",
-        "A file for a chart of the front (.svg or .png).",
-        Kind.WRITTEN,
-        Part.CHART,
-        flags=("--chart",),
-        many=True,
-    ),
+    CHART._replace(help="A file for a chart of the front (.svg or .png)."),
     formats=TABLES,
     help_="""
     \b
@@ -245,7 +236,13 @@ class _Point(NamedTuple):
     found by then are on the front, too.
     """,
 )
-def pareto(problem: Problem, objectives: Objectives = (), **how: Unpack[How]) -> Front:
+def pareto(
+    problem: Problem,
+    objectives: Objectives = (),
+    *,
+    trees: Annotated[bool, Option()] = False,
+    **how: Unpack[How],
+) -> Front:
     """Find all trade-offs between two or three objectives (the Pareto front), with a tree for each.
 
     The limits are for the whole question.
@@ -253,6 +250,7 @@ def pareto(problem: Problem, objectives: Objectives = (), **how: Unpack[How]) ->
     Parameters:
         objectives: Two or three names, or a list separated by commas. Without any: units and success, or
             units and inputs where no rates are known.
+        trees: Also list the units of the trees.
 
     Returns:
         The ``points`` of the front; ``complete`` tells whether they are proved to be all.
@@ -307,8 +305,7 @@ def pareto(problem: Problem, objectives: Objectives = (), **how: Unpack[How]) ->
         points=tuple(_points(problem, chosen, found)),
         seconds=seconds,
     )
-    front.__dict__["problem"] = problem
-    return front
+    return front.knowing(problem=problem, lists_trees=trees)
 
 
 def _points(problem: Problem, objectives: Sequence[Objective], found: Sequence[_Point]) -> Iterator[Point]:

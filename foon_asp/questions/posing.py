@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.items import items_of
@@ -59,38 +59,20 @@ def one_problem(
     items: str = "lasting",
     stock: File | None = None,
     stays: File | None = None,
+    all_goals: bool = False,
 ) -> tuple[Problem]:
     """Pose one problem, whose tree makes all goals that are named.
 
-    What the goals can need of a large store is read when it is looked at.
+    With ``all_goals``, its goals are a question of their own each: those that are named, or all of the goals
+    file. What the goals can need of a large store is read when it is looked at.
     """
     dataset = command.dataset
     with command.reading():
-        how = items_of(dataset, items, stock, stays)
-        return (dataset.nearby(dataset.goals(goals_named), containers, how),)
-
-
-def each_goal(
-    command: Command,
-    goals_named: Sequence[str],
-    containers: str,
-    items: str = "lasting",
-    stock: File | None = None,
-    stays: File | None = None,
-) -> tuple[Problem]:
-    """Pose goals that are a question of their own each: those that are named, or all of the goals file."""
-    dataset = command.dataset
-    with command.reading():
-        goals = dict.fromkeys(dataset.each_goal(goals_named))
-        if not goals:
+        named = dataset.each_goal(goals_named) if all_goals else dataset.goals(goals_named)
+        if not named:
             raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
         how = items_of(dataset, items, stock, stays)
-        return (dataset.nearby(tuple(goals), containers, how),)
-
-
-def one_problem_or_each(command: Command, all_goals: bool, **how: Any) -> tuple[Problem]:
-    """Pose one problem, or with ``all_goals`` each goal by itself."""
-    return (each_goal if all_goals else one_problem)(command, **how)
+        return (dataset.nearby(tuple(dict.fromkeys(named)), containers, how),)
 
 
 def the_data(command: Command) -> "tuple[Foon]":

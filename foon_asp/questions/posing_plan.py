@@ -17,14 +17,18 @@ from foon_asp.text.answer_file import ListedTree
 
 def a_plan(
     command: Command,
-    plan: Path,
     goals_named: Sequence[str],
     containers: str,
     items: str,
     stock: File | None,
     stays: File | None,
+    **named: Path,
 ) -> tuple[Problem, Tree]:
-    """Pose what a plan is for, as an answer says it where the command does not, and read the plan."""
+    """Pose what a plan is for, as an answer says it where the command does not, and read the plan.
+
+    ``named`` is its file, by whatever name the question has for it.
+    """
+    (plan,) = named.values()
     answer = read_answer(plan)
     settle_data(command, {plan: answer})
     if not command.given("containers"):
@@ -66,11 +70,6 @@ def listed_tree(
         shown = " + ".join(map(str, problem.goal_nodes))
         caller().reporter.warning(f"No --goal: using what the last step makes: {shown}")
     return Tree.given(problem, [unit for unit, _ in listed], [place for _, place in listed])
-
-
-def a_tree(command: Command, tree: Path, **how: object) -> tuple[Problem, Tree]:
-    """Pose the same of what is called a tree."""
-    return a_plan(command, tree, **how)  # type: ignore[arg-type]
 
 
 def settle_data(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:

@@ -3,21 +3,21 @@
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
+from typing import Unpack
 
 from foon_asp.dataset.items import items_of
 from foon_asp.dataset.paths import File
-from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.planning.name_map import map_of, read_name_map
 from foon_asp.planning.plan_file import PlanStep, read_plan_text
 from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import ITEMS, Problem
-from foon_asp.problem.progress import OnProgress
 from foon_asp.proof.simulation import Verdict
-from foon_asp.questions.arguments import reading, whole
+from foon_asp.questions.arguments import whole
 from foon_asp.questions.check import Checked
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.contract import Part as Belongs
+from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import units_in
 from foon_asp.questions.result import Ending
@@ -115,9 +115,7 @@ def read_plan(
     plan: str | PathLike[str] | object,
     *,
     names: File | None = None,
-    time_limit: float | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    **how: Unpack[Posed],
 ) -> PlanRead:
     r"""Read the plan of another planner back into a task tree, and execute it.
 
@@ -145,7 +143,7 @@ def read_plan(
         named = map_of(planning_task(problem, whole=True))
     else:
         named = read_name_map(Path(names))
-    with reading():
+    with begin(how).watched("reading"):
         if isinstance(plan, str | PathLike):
             steps = read_plan_text(read_plain_text(Path(plan)), str(plan), named)
         else:  # as unified-planning writes it

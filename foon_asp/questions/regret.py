@@ -24,7 +24,7 @@ from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import ITEMS, TREE
 from foon_asp.questions.result import Ending
-from foon_asp.report.answer import costs_text, success_text
+from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values import Measures, Mention, Node, Value
 from foon_asp.results.values_of import head_of, mention_of, node_of

@@ -16,17 +16,17 @@ from foon_asp.planning.strips_task import DERIVED, StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.questions.answer import Answer, answered, of_status
-from foon_asp.questions.arguments import begin
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.how import Limits
+from foon_asp.questions.how import Limits, begin
 from foon_asp.questions.posing import no_data
-from foon_asp.questions.result import Document, Ending
-from foon_asp.report.whole_file import write_whole
+from foon_asp.questions.result import Ending, Result
+from foon_asp.results.document import Known
 from foon_asp.results.plain import fraction_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import Value
 from foon_asp.text.json_value import schema_name
+from foon_asp.whole_file import write_whole
 
 if TYPE_CHECKING:
     from foon_asp.certificate import Certificate
@@ -42,7 +42,7 @@ class PlannedAction(Value, frozen=True):
         return self.action
 
 
-class Relaxed(Document, frozen=True, kw_only=True, tag=schema_name("relax")):
+class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
     """The cheapest plan of a planning task without its deletes.
 
     Attributes:
@@ -93,7 +93,7 @@ class Relaxed(Document, frozen=True, kw_only=True, tag=schema_name("relax")):
         bound = answer.outcome.bounds.get(objective)
         proved = answer.status in {Status.OPTIMAL, Status.INFEASIBLE} or None is not cost == bound
         names = ((problem.network.motions[unit], unit) for unit in answer.ids or ())
-        relaxed = cls(
+        return cls(
             task=task.name,
             facts=len(task.facts),
             actions=task.action_count,
@@ -110,21 +110,13 @@ class Relaxed(Document, frozen=True, kw_only=True, tag=schema_name("relax")):
             if answer
             else None,
             seconds=answer.seconds,
-        )
-        relaxed.__dict__.update(answer=answer, strips=task)
-        return relaxed
+        ).knowing(answer=answer, strips=task)
 
-    @property
-    def answer(self) -> Answer:
-        """The answer, in which facts are object nodes and actions are units."""
-        found: Answer = self.__dict__["answer"]
-        return found
+    answer = Known[Answer]()
+    """The answer, in which facts are object nodes and actions are units."""
 
-    @property
-    def strips(self) -> StripsTask:
-        """The task that was read."""
-        found: StripsTask = self.__dict__["strips"]
-        return found
+    strips = Known[StripsTask]()
+    """The task that was read."""
 
     @property
     def problem(self) -> Problem:
@@ -226,7 +218,7 @@ def relax(
         >>> str(relaxed.cost), str(relaxed.status)
         ('9', 'optimal')
     """
-    deadline = begin(how.get("time_limit"), how.get("memory_limit"))
+    deadline = begin(how)
     found = solved(read_task(files(task), deadline), deadline)
     if certificate_file is None:
         return found
@@ -235,9 +227,7 @@ def relax(
         caller().reporter.warning("no certificate was found, and nothing is written")
         return found
     write_whole(Path(certificate_file), certificate.text().encode())
-    written = structs.replace(found, certificate=str(certificate_file))
-    written.__dict__.update(found.__dict__)
-    return written
+    return structs.replace(found, certificate=str(certificate_file)).knowing(**found.__dict__)
 
 
 def solved(task: StripsTask, deadline: Deadline) -> Relaxed:

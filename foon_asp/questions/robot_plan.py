@@ -9,7 +9,7 @@ from msgspec import field
 from foon_asp.network import ObjectNode
 from foon_asp.problem import Objective, Problem
 from foon_asp.proof.replay import replay_for, replayable, waits
-from foon_asp.questions.result import AboutGoals
+from foon_asp.results.document import AboutGoals
 from foon_asp.results.values import Node, NumberedStep, UsedUpRun
 from foon_asp.results.values_of import head_of, mention_of, named_node, used_up_of
 from foon_asp.text.json_value import schema_name

@@ -11,6 +11,7 @@ from msgspec import field
 from foon_asp.asp import Status
 from foon_asp.dataset.paths import File
 from foon_asp.errors import BugError, UserError
+from foon_asp.escapes import escaped
 from foon_asp.network import FunctionalUnit, counted
 from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
@@ -22,26 +23,32 @@ from foon_asp.proof.timetable import Means, ToolName, timetable_fault
 from foon_asp.proof.timetable import TimedStep as Timed
 from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.questions.answer import of_status
-from foon_asp.questions.arguments import at_least, begin, read_as
+from foon_asp.questions.arguments import at_least, read_as
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import Limits
-from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
+from foon_asp.questions.how import Posed, begin
+from foon_asp.questions.options import CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
-from foon_asp.questions.result import AboutGoals, Ending, NothingToDrawError, NoTreeError, Result
+from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
-from foon_asp.report.whole_file import utf_8, write_whole
+from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.table import Table
 from foon_asp.results.timed_step import TimedStep, Tool
 from foon_asp.results.values import Value
 from foon_asp.results.values_of import head_of, lack_of
 from foon_asp.text.clip_times import median_clips
-from foon_asp.text.duration_list import Duration, read_default, read_durations, template_text
-from foon_asp.text.item_list import stated_name
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.line import LineError
-from foon_asp.text.tool_list import read_tools
+from foon_asp.text.tables import (
+    DURATIONS,
+    TOOLS,
+    Duration,
+    read_default_duration,
+    stated_name,
+    template_text,
+)
+from foon_asp.whole_file import utf_8, write_whole
 
 Durations = str | PathLike[str] | Mapping[str, Number | Duration]
 Tools = str | PathLike[str] | Mapping[ToolName, int | None]
@@ -73,7 +80,7 @@ class LackingTool(Value, frozen=True):
     needed: int
 
 
-class Schedule(AboutGoals, frozen=True, kw_only=True, tag=schema_name("schedule")):
+class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("schedule")):
     """When the steps of a plan are done, and by whom.
 
     Attributes:
@@ -161,24 +168,20 @@ class Schedule(AboutGoals, frozen=True, kw_only=True, tag=schema_name("schedule"
         write_gantt(self.gantt, Path(file))
 
 
-class WrittenDurations(Result):
-    """A file of durations that was written to be filled in; ``unknown`` is how many are to be said."""
+class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durations")):
+    """A file of durations that was written to be filled in.
 
-    def __init__(self, file: Path, unknown: int) -> None:
-        self.file, self.unknown = file, unknown
+    Attributes:
+        unknown: How many durations are to be said.
+    """
 
-    def text(self) -> str:
+    file: Path
+    unknown: int
+
+    def show(self) -> Iterator[Shown]:
         """Return what to do with it."""
         todo = f"say {counted(self.unknown, 'duration')} in place of SECONDS" if self.unknown else "change it"
-        return f"wrote {self.file}: {todo}, and give it as --durations\n"
-
-    def json_dict(self) -> object:
-        """Refuse: the file is what was asked for.
-
-        Raises:
-            UserError: always.
-        """
-        raise UserError("--durations-template writes a file, and has no other format")
+        yield f"wrote {self.file}: {todo}, and give it as --durations"
 
 
 def _schedule_or_template(
@@ -192,7 +195,8 @@ def _schedule_or_template(
     known = _known_durations(plan, asked["durations"], asked["from_video"], asked["default_duration"])
     template = {unit.motion: known.get(unit.motion) for unit in plan.units}
     write_whole(durations_template, utf_8(template_text(template)))
-    return WrittenDurations(durations_template, sum(each is None for each in template.values()))
+    unknown = sum(each is None for each in template.values())
+    return WrittenDurations(file=durations_template, unknown=unknown)
 
 
 @question(
@@ -213,14 +217,7 @@ def _schedule_or_template(
     GOAL_OF_PLAN,
     CONTAINERS,
     *PLAN_ITEMS,
-    Option(
-        "charts",
-        "A file for a Gantt chart (.svg or .png).",
-        Kind.WRITTEN,
-        Part.CHART,
-        flags=("--chart",),
-        many=True,
-    ),
+    CHART._replace(help="A file for a Gantt chart (.svg or .png)."),
     pose=a_plan,
     command=_schedule_or_template,
     formats=TABLES,
@@ -274,7 +271,7 @@ def schedule(
         ),
     ] = None,
     items: str = "used-up",
-    **how: Unpack[Limits],
+    **how: Unpack[Posed],
 ) -> Schedule:
     """Find the shortest schedule of a plan: when each step starts, who does it, and with which tools.
 
@@ -306,7 +303,7 @@ def schedule(
         >>> str(found.status), str(found.makespan)
         ('optimal', '40')
     """
-    deadline = begin(how.get("time_limit"), how.get("memory_limit"))
+    deadline = begin(how)
     at_least(agents, 1, "agents")
     problem = read_as(problem, items)
     tree = _in_order(posed_tree(problem, plan))
@@ -400,7 +397,7 @@ def _durations(
             "--default-duration 60 counts each as 60 seconds",
             "--durations-template FILE writes these lines into a file",
         ]
-        lines = "".join(f"\n  {motion}\tSECONDS" for motion in missing)
+        lines = "".join(f"\n  {escaped(motion)}\tSECONDS" for motion in missing)
         raise UserError(
             f"no duration is known of {counted(len(missing), 'motion')} of the plan: say how long they take, "
             f"{place}, a tab before the seconds{lines}\n" + "\n".join(ways)
@@ -413,7 +410,7 @@ def _known_durations(
 ) -> dict[str, Duration]:
     """Return the durations that are known: stated, of clips, or the default; a warning tells the last two."""
     if isinstance(given, str | PathLike):
-        known = dict(read_durations(Path(given)))
+        known = dict(DURATIONS.read(Path(given)))
     else:
         known = {motion: _duration(each, motion) for motion, each in (given or {}).items()}
     motions = dict.fromkeys(unit.motion for unit in tree.units)
@@ -423,17 +420,22 @@ def _known_durations(
         clips = median_clips((file for file in files if file.is_file()), caller().lenient)
         timed = [motion for motion in motions if motion in clips and motion not in known]
         if timed:
-            shown = ", ".join(f"{motion} {time_text(Fraction(clips[motion]))}" for motion in timed)
+            shown = ", ".join(f"{escaped(motion)} {time_text(Fraction(clips[motion]))}" for motion in timed)
             caller().reporter.warning(
                 f"warning: these durations are medians of clips, and not of what happens in them: {shown}"
             )
         known |= {motion: Duration(clips[motion]) for motion in timed}
     if default is not None:
-        each = Duration(read_default(default)) if isinstance(default, str) else _duration(default, "default")
+        each = (
+            Duration(read_default_duration(default))
+            if isinstance(default, str)
+            else _duration(default, "default")
+        )
         others = [motion for motion in motions if motion not in known]
         if others:
             time = time_text(Fraction(each.seconds))
-            caller().reporter.warning(f"warning: these motions count as {time} each: {', '.join(others)}")
+            motions_named = ", ".join(map(escaped, others))
+            caller().reporter.warning(f"warning: these motions count as {time} each: {motions_named}")
         known |= dict.fromkeys(others, each)
     return known
 
@@ -450,7 +452,7 @@ def _tools(given: Tools | None) -> dict[ToolName, int | None]:
     if given is None:
         return {}
     if isinstance(given, str | PathLike):
-        return read_tools(Path(given))
+        return TOOLS.read(Path(given))
     found: dict[ToolName, int | None] = {}
     for name, count in given.items():
         if count is not None and (isinstance(count, bool) or not isinstance(count, int) or count < 1):

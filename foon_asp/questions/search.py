@@ -2,23 +2,23 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Annotated, Self, Unpack
+from typing import Annotated, Any, Self, Unpack
 
 from msgspec import field
 
 from foon_asp.comparison.comparison import simulated
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Problem
-from foon_asp.proof.simulation import Verdict
-from foon_asp.questions.arguments import begin
+from foon_asp.proof.simulation import Simulation, Verdict
 from foon_asp.questions.contract import question
-from foon_asp.questions.how import Limits
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.how import Posed, begin
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import COUNT, DEPTH, TIES, search_settings, searched
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text
-from foon_asp.report.used_up_note import used_up_note
-from foon_asp.report.verdict import Stop, verdict_text, verdict_values
+from foon_asp.questions.used_up_note import used_up_note
+from foon_asp.questions.verdict import Stop, found_of, verdict_lines
+from foon_asp.results.document import AboutGoals, Known
+from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import Node, Step, UsedUpRun
 from foon_asp.results.values_of import head_of, node_of, steps_of
@@ -27,8 +27,10 @@ from foon_asp.searches import Search
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.writer import write_units
 
+_NO_TREE: Any = dict.fromkeys(("verdict", "as_listed", "in_any_order", "order", "used_up"))
 
-class Retrieved(AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")):
+
+class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")):
     """What a search returned for a problem.
 
     Attributes:
@@ -79,39 +81,36 @@ class Retrieved(AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")
             ids: The units of its tree, by id in the network of the problem.
             stuck_at: The object in the way, if one was.
         """
-        network, found = problem.network, ended is Searched.TREE
-        simulation = simulated(problem, ids, problem.tree(ids)) if found else None
-        listed = [(network.unit(unit), network.sources[unit][0]) for unit in ids]
+        tree = Tree.of(problem, ids) if ended is Searched.TREE else None
+        simulation = None if tree is None else simulated(problem, ids, tree)
         retrieved = cls(
             **head_of(problem),
             search=search.name,
             package=search.package,
             ended=ended,
             stuck_at=stuck_at,
-            **verdict_values(problem, listed, simulation),
-            costs=problem.costs(ids) if found else None,
-            units=steps_of(problem, ids) if found else None,
+            **(_NO_TREE if tree is None or simulation is None else found_of(tree, simulation)),
+            costs=None if tree is None else problem.costs(ids),
+            units=None if tree is None else steps_of(problem, ids),
         )
-        text = "" if simulation is None else verdict_text(problem, listed, simulation)
-        retrieved.__dict__.update(problem=problem, ids=ids, promise=search.promise, said=text)
-        return retrieved
+        return retrieved.knowing(
+            problem=problem, ids=ids, promise=search.promise, tree=tree, simulation=simulation
+        )
 
-    @property
-    def problem(self) -> Problem:
-        """The problem that was asked about."""
-        problem: Problem = self.__dict__["problem"]
-        return problem
+    problem = Known[Problem]()
+    """The problem that was asked about."""
 
-    @property
-    def ids(self) -> tuple[int, ...]:
-        """The units of the tree by id in the network of the problem, as listed; none without a tree."""
-        ids: tuple[int, ...] = self.__dict__["ids"]
-        return ids
+    ids = Known[tuple[int, ...]]()
+    """The units of the tree by id in the network of the problem, as listed; none without a tree."""
 
-    @property
-    def tree(self) -> Tree | None:
-        """The tree in the order listed; ``None`` without a tree."""
-        return None if self.units is None else Tree.of(self.problem, self.ids)
+    promise = Known[str]()
+    """What the search promises of its trees."""
+
+    tree = Known[Tree | None]()
+    """The tree in the order listed; ``None`` without a tree."""
+
+    simulation = Known[Simulation | None]()
+    """What the simulation of the tree found; ``None`` without a tree."""
 
     @property
     def executes(self) -> bool:
@@ -127,11 +126,11 @@ class Retrieved(AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")
 
     def show(self) -> Iterator[Part]:
         """Return what the search promises, whether its tree executes, and the steps as they were listed."""
-        yield from (*self.goal_lines(), f"{self.search} promises {self.__dict__['promise']}")
-        if self.units is None:
+        yield from (*self.goal_lines(), f"{self.search} promises {self.promise}")
+        if self.tree is None or self.simulation is None or self.units is None:
             yield self._without()
             return
-        yield from (self.__dict__["said"].rstrip("\n"), "")
+        yield from (*verdict_lines(self.tree, self.simulation), "")
         yield from (line for step in self.units for line in step.lines())
 
     def foon(self) -> str:
@@ -172,7 +171,7 @@ def search(
     count: Annotated[str, COUNT] = "ingredients",
     depth_limit: Annotated[int | None, DEPTH] = None,
     published: bool = False,
-    **how: Unpack[Limits],
+    **how: Unpack[Posed],
 ) -> Retrieved:
     """Retrieve a task tree with a published search, and find out whether it executes.
 
@@ -196,7 +195,7 @@ def search(
         <Retrieved: bfs, executes in another order>
     """
     (wanted,) = searched([search])
-    deadline = begin(how.get("time_limit"), how.get("memory_limit"))
+    deadline = begin(how)
     settings = search_settings(ties, count, depth_limit, published, deadline.left, deadline.memory)
     found = wanted.run(replace(problem, items=None), settings)
     stuck_at = None if found.stuck_at is None else node_of(problem.network, found.stuck_at)

@@ -18,10 +18,10 @@ from foon_asp.questions.flip import Flip, decimal_text
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.result import Ending
-from foon_asp.report.answer import changes_text, success_text
+from foon_asp.results.figure_text import success_text
 from foon_asp.results.plain import fraction_text
 from foon_asp.results.table import Part, Table
-from foon_asp.results.values import CostedTree, Value, steps_not_in
+from foon_asp.results.values import CostedTree, Value, changed_motions, steps_not_in
 from foon_asp.results.values_of import costed_tree, head_of
 from foon_asp.text.json_value import schema_name
 
@@ -163,12 +163,13 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
             yield from self._advice()
 
     def _cells(self, interval: RateInterval) -> tuple[str, ...]:
-        network, ends, beyond = self.answer.problem.network, [], []
+        best, ends, beyond = self.answer.units or (), [], []
         for end, limit in ((interval.below, "0"), (interval.above, "1")):
             ends.append((decimal_text(end.at.inwards) if end.at else limit) + "?" * (not end.proved))
             if end.at and end.beyond:
-                gone, new = map(network.units_of_numbers, (end.beyond.gone, end.beyond.new))
-                beyond.append(f"{end.at.change}: {changes_text(network, gone, new)}")
+                there = end.beyond.units
+                changes = changed_motions(steps_not_in(best, there), steps_not_in(there, best))
+                beyond.append(f"{end.at.change}: {changes}")
         return success_text(interval.rate), *ends, str(interval), "; ".join(beyond)
 
     def _advice(self) -> Iterator[str]:

@@ -17,7 +17,7 @@ from foon_asp.dataset.paths import File
 from foon_asp.encoding.facts import write_for_sale, write_list
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
-from foon_asp.network import Source, counted
+from foon_asp.network import ObjectNode, Source, counted
 from foon_asp.problem import Costs, Number, Objective, Problem, exact, levels
 from foon_asp.problem.dead_ends import dead_ends
 from foon_asp.problem.shop import Offer, Shop
@@ -28,13 +28,15 @@ from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import TREE
 from foon_asp.questions.result import Ending
-from foon_asp.report.answer import costs_text
+from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import Node, Value
 from foon_asp.results.values_of import head_of, node_as
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.line import LineError
-from foon_asp.text.price_list import Price, priced_name, read_prices
+from foon_asp.text.line_parser import parse_name
+from foon_asp.text.table import Row
+from foon_asp.text.tables import PRICES
 
 _COMPARED = 30  # lists of one price whose trees are compared, at most
 
@@ -294,26 +296,26 @@ def _refuse_far_rules(program: Program) -> None:
             )
 
 
-def _listed(prices: File | Mapping[str, Number]) -> list[Price]:
+def _listed(prices: File | Mapping[str, Number]) -> list[Row[str | ObjectNode, Fraction]]:
     """Read prices from a file, or as the lines of one are."""
     if isinstance(prices, str | PathLike):
-        return read_prices(Path(prices))
+        return PRICES.rows(Path(prices))
     found = []
     for number, (name, given) in enumerate(prices.items(), 1):
         price = exact(given, f"the price of {name!r}")
         if price < 0:
             raise UserError(f"found the price {given} of {name!r}, expected one from 0")
         try:
-            key = priced_name(name)
+            named = parse_name(name)
         except LineError as error:
             raise UserError(
                 f"the name {name!r} of a price cannot be read: at column {error.column}, {error}"
             ) from None
-        found.append(Price(*key, price, Source("prices", number)))
+        found.append(Row(named, price, Source("prices", number)))
     return found
 
 
-def _priced(problem: Problem, listed: Sequence[Price]) -> dict[int, Fraction]:
+def _priced(problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]]) -> dict[int, Fraction]:
     """Return the prices of the object nodes that a price list is about, but for those in the kitchen.
 
     An entry that matches no node is warned of. A label alone stands for all of its nodes that would be for
@@ -321,16 +323,20 @@ def _priced(problem: Problem, listed: Sequence[Price]) -> dict[int, Fraction]:
     """
     network, shop = problem.network, Shop(problem)
     prices: dict[int, Fraction] = {}
-    for entry in sorted(listed, key=lambda entry: not entry.label_alone):  # whole nodes have the last word
-        if entry.label_alone:
-            found = [o for o in network.by_label.get(entry.node.label, ()) if shop.sells(o)]
+    for entry in sorted(
+        listed, key=lambda entry: not isinstance(entry.name, str)
+    ):  # whole nodes have the last word
+        if isinstance(entry.name, str):
+            what = "no node for sale has this label"
+            found = [o for o in network.by_label.get(entry.name, ()) if shop.sells(o)]
         else:
-            known = network.object_id(entry.node)
+            what = "no such object node"
+            known = network.object_id(entry.name)
             found = [] if known is None else [known]
-        prices.update(dict.fromkeys(found, entry.price))
+        prices.update(dict.fromkeys(found, entry.value))
         if not found:
-            what = "no node for sale has this label" if entry.label_alone else "no such object node"
-            caller().reporter.warning(f"{entry.source}:{entry.source.column}: warning: {what}: {entry.node}")
+            node = ObjectNode(entry.name) if isinstance(entry.name, str) else entry.name
+            caller().reporter.warning(f"{entry.source}:{entry.source.column}: warning: {what}: {node}")
     return {o: price for o, price in prices.items() if o not in problem.kitchen}
 
 

@@ -13,7 +13,6 @@ from foon_asp.questions.arguments import Objectives, chosen_objectives, constrai
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, not_built, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import ITEMS, SOFT, TREE
-from foon_asp.questions.posing import one_problem_or_each
 from foon_asp.questions.result import Result
 from foon_asp.reduce import Reduction, parse_reductions
 
@@ -63,7 +62,6 @@ def solve_or_each(
         default=False,
     ),
     formats=(*TABLES, "foon", "steps"),
-    pose=one_problem_or_each,
     command=solve_or_each,
     help_="""
     \b

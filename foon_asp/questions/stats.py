@@ -1,111 +1,244 @@
 """What is in a network: counts at each level of detail, or its functional units one by one."""
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Literal, Unpack
 
+from msgspec import UNSET, UnsetType
+
+from foon_asp.dataset import Dataset
 from foon_asp.dataset.items import Stays, items_of
 from foon_asp.dataset.paths import File
 from foon_asp.dataset.statistics import count_levels
-from foon_asp.deadline import Cancel
-from foon_asp.document.json_document import document, unit_json
+from foon_asp.escapes import escaped
 from foon_asp.foon import Foon, load
-from foon_asp.network import Network, ObjectNode
-from foon_asp.network.statistics import Statistics
+from foon_asp.network import Network, counted, starting_kitchen
+from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
 from foon_asp.problem import ContainerRule, UsedUp, container_rule, needed_inputs
-from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
+from foon_asp.questions.how import Limits, begin
 from foon_asp.questions.options import CONTAINERS, ITEMS
 from foon_asp.questions.posing import the_data
 from foon_asp.questions.result import Result
-from foon_asp.report.answer import unit_lines
-from foon_asp.report.statistics_table import statistics_json, statistics_parts
 from foon_asp.results.table import Part as Shown
-from foon_asp.results.table import rendered
+from foon_asp.results.table import Table
+from foon_asp.results.values import Node, Unit, Value, step_lines
+from foon_asp.results.values_of import node_as, node_of, nodes_of, unit_of
 from foon_asp.text.data_folder import Data
+from foon_asp.text.json_value import schema_name
+
+_SHOWN = 10
+
+# Heading, row name, and the figure of one level.
+_ROWS: tuple[tuple[str, str, Callable[[Statistics], object]], ...] = (
+    ("", "functional units", lambda s: s.units),
+    ("", "object nodes", lambda s: s.objects),
+    ("", "labels", lambda s: s.labels),
+    ("", "motions", lambda s: s.motions),
+    ("", "states", lambda s: s.states),
+    ("", "relations, as in [bowl]", lambda s: s.relations),
+    ("", "contents, as contains {salt}", lambda s: s.contents),
+    ("units", "inputs, mean", lambda s: f"{s.mean_inputs:.2f}"),
+    ("units", "inputs, most", lambda s: s.most_inputs),
+    ("units", "outputs, mean", lambda s: f"{s.mean_outputs:.2f}"),
+    ("units", "outputs, most", lambda s: s.most_outputs),
+    ("units", "whose outputs are their inputs", lambda s: s.unchanged),
+    ("object nodes", "that no unit makes", lambda s: s.producers[0]),
+    *(
+        ("object nodes", f"made by {n} unit{'s' * (n > 1)}", lambda s, n=n: s.producers[n])
+        for n in range(1, MANY)
+    ),
+    ("object nodes", f"made by {MANY} or more", lambda s: s.producers[MANY]),
+    ("object nodes", "most producers of one", lambda s: s.most_producers),
+    ("object nodes", "that no unit needs", lambda s: s.unused),
+    ("graph", "cycles (sets of nodes that need each other)", lambda s: s.cycles),
+    ("graph", "nodes in cycles", lambda s: s.in_cycles),
+    ("graph", "nodes in the largest", lambda s: s.largest_cycle),
+    ("graph", "parts that share no node", lambda s: s.parts),
+    ("graph", "units in the largest", lambda s: s.largest_part),
+    ("reach", "nodes at hand", lambda s: s.at_hand),
+    ("reach", "depth, most", lambda s: s.depth),
+    ("reach", "depth, median over units", lambda s: f"{s.median_depth:g}"),
+    ("reach", "nodes out of reach", lambda s: s.unreached_objects),
+    ("reach", "units out of reach", lambda s: s.unreached_units),
+)
 
 
-@dataclass(frozen=True, repr=False)
-class Stats(Result):
-    """Counts of what is in a network, or the functional ``units`` that were asked for, by id.
+class FileUnits(Value, frozen=True):
+    """How many units were read from a file, copies included."""
 
-    ``data`` has the network and the kitchen. Where it is to be explained what is used up, ``items`` says what
-    stays, under the rule ``containers``, for which ``utensils`` count.
+    file: str
+    units: int
+
+
+class StartingNodes(Value, frozen=True):
+    """What is taken to be available where no kitchen is given, at level 3.
+
+    Attributes:
+        files: How many files of recipes there are.
+        not_made: What no unit makes out of others.
+        made_too: What a unit makes too, but the units of some file need to run.
+    """
+
+    files: int
+    not_made: tuple[Node, ...]
+    made_too: tuple[Node, ...]
+
+
+class LabelUnits(Value, frozen=True):
+    """How many units have a label among their inputs or outputs."""
+
+    label: str
+    units: int
+
+
+class ObjectUnits(Value, frozen=True):
+    """How many units need an object node, and how many make it."""
+
+    object: Node
+    needed_by: int
+    made_by: int
+
+
+class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
+    """What is in a network.
+
+    Attributes:
+        units_read: How many units were read, copies included.
+        copies: How many of them are the same as one before.
+        files: The files that they were read from.
+        videos: The addresses that annotators worked from.
+        reached_from: What depth and reach are counted from.
+        starting_kitchen: null where a kitchen was given.
+        levels: The counts at the levels of detail 1 to 3; of data below level 3, at their own. ``producers``
+            are how many nodes 0, 1, 2, 3 and 4 or more units make.
+        most_connected_labels: The labels that most units have.
+        most_connected_objects: The object nodes that most units touch.
 
     Example:
         >>> foon_asp.stats(foon_asp.load()).levels[2].objects
         418
-        >>> foon_asp.stats(foon_asp.load(), unit=[0], explain_items=True).stays(0)
-        {'faucet; off': False}
     """
 
-    data: Data
-    units: tuple[int, ...] | None = None
-    containers: ContainerRule = ContainerRule.STRICT
-    utensils: frozenset[str] = frozenset()
-    items: UsedUp | None = None
+    ROWS = "levels"
 
-    @property
-    def network(self) -> Network:
-        """The network."""
-        return self.data.network
+    units_read: int
+    copies: int
+    files: tuple[FileUnits, ...]
+    videos: tuple[str, ...]
+    reached_from: Literal["kitchen", "starting kitchen"]
+    starting_kitchen: StartingNodes | None
+    levels: tuple[Statistics, ...]
+    most_connected_labels: tuple[LabelUnits, ...]
+    most_connected_objects: tuple[ObjectUnits, ...]
 
-    @cached_property
-    def levels(self) -> Sequence[Statistics]:
-        """The counts at the levels of detail 1 to 3; of data below level 3, at their own."""
-        return count_levels(self.data)
-
-    def stays(self, unit: int) -> dict[str, bool]:
-        """Return for each input of a unit whether it is still there when the unit has run.
+    @classmethod
+    def of(cls, data: Data) -> "Stats":
+        """Count what is in data.
 
         Parameters:
-            unit: The id of the unit here.
+            data: A network, and the kitchen beside it if one was given.
         """
-        items = self.items or UsedUp()
-        value = self.network.unit(unit)
-        return {str(node): items.fate(value, node, self.utensils).stays for node in value.inputs}
-
-    def text(self) -> str:
-        """Return the same as text."""
-        return rendered(self.show())
+        network = data.network
+        sources = [source for copies in network.sources for source in copies]
+        labels, objects = most_connected_labels(network, _SHOWN), most_connected_objects(network, _SHOWN)
+        return cls(
+            units_read=len(sources),
+            copies=len(sources) - len(network),
+            files=tuple(FileUnits(*each) for each in Counter(source.file for source in sources).items()),
+            videos=tuple(dict.fromkeys(video for source in sources for video in source.videos)),
+            reached_from="starting kitchen" if data.starting else "kitchen",
+            starting_kitchen=_starting_nodes(network) if data.starting else None,
+            levels=tuple(count_levels(data)),
+            most_connected_labels=tuple(LabelUnits(*each) for each in labels),
+            most_connected_objects=tuple(
+                ObjectUnits(node_of(network, o), *numbers) for o, *numbers in objects
+            ),
+        )
 
     def show(self) -> Iterator[Shown]:
-        """Return a table with a column for each level; or the units, with what becomes of their inputs."""
-        if self.units is None:
-            yield from statistics_parts(self.network, self.levels, not self.data.starting)
-        for unit in self.units or ():
-            yield from self._lines(unit)
+        """Return a table with a column for each level, and what is most connected at level 3."""
+        places = f"{counted(len(self.files), 'file', ',')}, {counted(len(self.videos), 'source video', ',')}"
+        yield f"{counted(self.units_read, 'unit', ',')} read from {places}"
+        are = "is a copy of another" if self.copies == 1 else "are copies of others"
+        yield f"{self.copies:,} of them {are}"
+        yield from ("", self._table())
+        if self.starting_kitchen is not None:
+            files, made = counted(self.starting_kitchen.files, "file", ","), self.starting_kitchen.made_too
+            yield "the starting kitchen, as no kitchen is given:"
+            yield f"  what no unit makes: {counted(len(self.starting_kitchen.not_made), 'node', ',')}"
+            yield f"  what units of the {files} also need: {counted(len(made), 'node', ',')}"
+        yield from ("", "most connected labels: units with the label among their inputs or outputs")
+        yield from (f"  {each.units:>7,}  {each.label}" for each in self.most_connected_labels)
+        yield from ("", "most connected object nodes: units that need it, units that make it")
+        for node in self.most_connected_objects:
+            yield f"  {node.needed_by:>7,} {node.made_by:>7,}  {node.object}"
+        if len(self.files) > 1:
+            most = sorted(self.files, key=lambda file: -file.units)[:_SHOWN]
+            yield from ("", "most units: files")
+            yield from (f"  {each.units:>7,}  {escaped(each.file)}" for each in most)
+        if len(self.files) > _SHOWN:
+            yield f"  ... and {counted(len(self.files) - _SHOWN, 'file', ',')} more; --format json lists all"
 
-    def json_dict(self) -> object:
-        """Return the same as plain values."""
-        if self.units is None:
-            return statistics_json(self.network, self.levels, not self.data.starting)
-        shown = []
+    def _table(self) -> Table:
+        rows: list[Sequence[str] | str] = []
+        heading = ""
+        for group, name, figure in _ROWS:
+            if group != heading:
+                rows.append(f"reach from the {self.reached_from}" if group == "reach" else group)
+                heading = group
+            figures = [figure(statistics) for statistics in self.levels]
+            shown = [f"{value:,}" if isinstance(value, int) else str(value) for value in figures]
+            rows.append([f"  {name}" if group else name, *shown])
+        return Table(["at level", *(str(each.level) for each in self.levels)], rows, frozenset({0}))
+
+
+class ExplainedInput(Node, frozen=True, kw_only=True):
+    """An input of a unit.
+
+    Attributes:
+        stays: Whether it is still there when the unit has run.
+        why: Why it stays, or is used up.
+    """
+
+    stays: bool | UnsetType = UNSET
+    why: str | UnsetType = UNSET
+
+
+class ExplainedUnit(Unit, frozen=True):
+    """A unit, with what becomes of its inputs where that is asked."""
+
+    inputs: tuple[ExplainedInput, ...]
+
+
+class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
+    """The functional units of a network.
+
+    Attributes:
+        containers: The container rule under which inputs are used up.
+        level: The level at which object nodes are compared.
+        units: Those that were asked for, or all.
+
+    Example:
+        >>> listed = foon_asp.stats(foon_asp.load(), unit=[0], explain_items=True)
+        >>> [(str(node), node.stays) for node in listed.units[0].inputs]
+        [('faucet; off', False)]
+    """
+
+    ROWS = "units"
+
+    containers: ContainerRule
+    level: int
+    units: tuple[ExplainedUnit, ...]
+
+    def show(self) -> Iterator[Shown]:
+        """Return the units, with what becomes of their inputs."""
         for unit in self.units:
-            each = unit_json(self.network, unit)
-            for node, (_, stays, why) in zip(each["inputs"], self._fates(unit), strict=False):
-                node |= {"stays": stays, "why": why}
-            shown.append(each)
-        return document("units", containers=str(self.containers), level=self.network.level, units=shown)
-
-    def _lines(self, unit: int) -> Iterator[str]:
-        yield from unit_lines(self.network, (unit,))
-        yield from (f"       {node}  ({why})" for node, _, why in self._fates(unit))
-        if self.items is not None:
-            yield from (f"     → {self.network.objects[o]}" for o in self.network.outputs[unit])
-
-    def _fates(self, unit: int) -> Iterator[tuple[ObjectNode, bool, str]]:
-        """Yield each input of a unit, whether it stays, and why; nothing where that is not asked."""
-        if self.items is None:
-            return
-        value = self.network.unit(unit)
-        needed = set(needed_inputs(value, self.containers, self.utensils, self.network))
-        for node in value.inputs:
-            fate = self.items.fate(value, node, self.utensils)
-            if node in needed:
-                yield node, fate.stays, str(fate)
-            else:
-                yield node, True, "implied, so neither asked for nor used up"
+            yield from step_lines([unit])
+            explained = [node for node in unit.inputs if node.why is not UNSET]
+            yield from (f"       {node}  ({node.why})" for node in explained)
+            if explained:
+                yield from (f"     → {node}" for node in unit.outputs)
 
 
 @question(
@@ -142,10 +275,8 @@ def stats(
     explain_items: bool = False,
     containers: str = "strict",
     stays: Stays | None = None,
-    time_limit: float | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
-) -> Stats:
+    **how: Unpack[Limits],
+) -> Stats | ListedUnits:
     """Count what is in a network at each level of detail, or list its functional units.
 
     Parameters:
@@ -168,14 +299,48 @@ def stats(
         >>> listed.text().splitlines()[1:]
         ['       faucet; off  (used up)', '     → faucet; on']
     """
-    dataset = (foon if isinstance(foon, Foon) else load(foon)).dataset
     explains = explain_items or stays is not None
-    numbers = tuple(dict.fromkeys(unit))
-    if not (units or numbers or explains):
-        return Stats(dataset.data)
+    with begin(how).watched("counting"):
+        dataset = (foon if isinstance(foon, Foon) else load(foon)).dataset
+        if units or unit or explains:
+            return _listed(dataset, tuple(dict.fromkeys(unit)), container_rule(containers), explains, stays)
+        return Stats.of(dataset.data)
+
+
+def _listed(
+    dataset: Dataset, numbers: Sequence[int], rule: ContainerRule, explains: bool, stays: Stays | None
+) -> ListedUnits:
+    """Return the units that have some ids, or all; and what becomes of their inputs where that is asked."""
     items = items_of(dataset, "used-up", None, stays) if explains else None
-    data = dataset.part((), numbers)[0] if numbers else dataset.data
-    network = data.network
-    listed = [network.unit_of_number(number) for number in numbers]
-    ids = tuple(u for u in listed if u is not None) if numbers else tuple(range(len(network)))
-    return Stats(data, ids, container_rule(containers), dataset.utensils, items)
+    network = (dataset.part((), numbers)[0] if numbers else dataset.data).network
+    found = [network.unit_of_number(number) for number in numbers]
+    ids = [u for u in found if u is not None] if numbers else range(len(network))
+    listed = tuple(_explained(network, u, rule, dataset.utensils, items) for u in ids)
+    return ListedUnits(containers=rule, level=network.level, units=listed)
+
+
+def _explained(
+    network: Network, unit: int, rule: ContainerRule, utensils: frozenset[str], items: UsedUp | None
+) -> ExplainedUnit:
+    """Return a unit; where items are said to be used up, with whether each input stays, and why."""
+    plain, value = unit_of(network, unit), network.unit(unit)
+    needed = set() if items is None else set(needed_inputs(value, rule, utensils, network))
+    inputs = []
+    for o, node in zip(network.inputs[unit], value.inputs, strict=True):
+        stays: bool | UnsetType = UNSET
+        why: str | UnsetType = UNSET
+        if items is not None and node in needed:
+            fate = items.fate(value, node, utensils)
+            stays, why = fate.stays, str(fate)
+        elif items is not None:
+            stays, why = True, "implied, so neither asked for nor used up"
+        inputs.append(node_as(ExplainedInput, network, o, stays=stays, why=why))
+    return ExplainedUnit(plain.id, plain.motion, tuple(inputs), plain.outputs, plain.source, plain.stands_for)
+
+
+def _starting_nodes(network: Network) -> StartingNodes:
+    kitchen = starting_kitchen(network)
+    not_made, made_too = (
+        nodes_of(network, sorted(nodes)) for nodes in (kitchen.nodes - kitchen.made_too, kitchen.made_too)
+    )
+    return StartingNodes(kitchen.file_count, not_made, made_too)

@@ -9,25 +9,26 @@ from typing import Annotated, Any, Unpack
 
 from msgspec import field
 
+from foon_asp.asp import Settings
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem, UsedUp
 from foon_asp.proof.replay import Replay, replay_for, replayable
 from foon_asp.questions.answer import Answer, answered
-from foon_asp.questions.arguments import Objectives, chosen_objectives, read_as, settings
+from foon_asp.questions.arguments import Objectives, chosen_objectives, read_as
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import Limits
+from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
-from foon_asp.report.answer import changes_text
-from foon_asp.report.whole_file import utf_8, write_whole
+from foon_asp.results.document import AboutGoals, Known
 from foon_asp.results.table import Part as Shown
-from foon_asp.results.values import Copies, Copy, Unit, Value
+from foon_asp.results.values import Copies, Copy, Unit, Value, changed_motions
 from foon_asp.results.values_of import copies_of, copy_of, head_of, lack_of
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.writer import write_node
+from foon_asp.whole_file import utf_8, write_whole
 
 States = tuple[dict[ObjectNode, int], ...]
 """How many copies there are of what can run out: in the beginning, and after each step."""
@@ -52,7 +53,7 @@ class TracedStep(Value, frozen=True):
     there: tuple[Copies, ...]
 
 
-class Traced(AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
+class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
     """What came and what went at each step of a plan, and how to go on from a step that failed.
 
     Attributes:
@@ -79,11 +80,11 @@ class Traced(AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
     failed: int | None
     answer: Answer | None
 
-    @property
-    def plan(self) -> Tree:
-        """The plan that was traced."""
-        found: Tree = self.__dict__["plan"]
-        return found
+    plan = Known[Tree]()
+    """The plan that was traced."""
+
+    states = Known[States]()
+    """How many copies there are of what can run out: in the beginning, and after each step."""
 
     @property
     def ending(self) -> Ending:
@@ -101,13 +102,12 @@ class Traced(AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
         Raises:
             UserError: if the plan does not run so far.
         """
-        states: States = self.__dict__["states"]
-        if not 0 <= after < len(states):
-            last = len(states) - 1
+        if not 0 <= after < len(self.states):
+            last = len(self.states) - 1
             raise UserError(
                 f"found the step {after}, expected one that runs, or 0 for the start: 0 to {last}"
             )
-        return states[after]
+        return self.states[after]
 
     def kitchen_text(self, after: int) -> str:
         """Return the kitchen after a step as FOON text: each object node that is there, once.
@@ -149,16 +149,13 @@ class Traced(AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
     def _change(self, answer: Answer) -> str:
         """Return in words how the new plan differs from what was left of the old one."""
         assert self.failed is not None
-        if answer.ids is None:
+        if answer.tree is None:
             return "no plan was found"
-        network = answer.problem.network
-        left = Counter(network.unit_id(unit) for unit in self.plan.units[self.failed - 1 :])
-        new = Counter[int | None](answer.ids)
-        gone = [unit for unit in (left - new).elements() if unit is not None]
-        come = [unit for unit in (new - left).elements() if unit is not None]
-        if not gone and not come:
+        left, new = Counter(self.plan.units[self.failed - 1 :]), Counter(answer.tree.units)
+        changes = changed_motions((left - new).elements(), (new - left).elements())
+        if not changes:
             return "what was left of the plan is still the best"
-        return f"compared with what was left of the plan: {changes_text(network, gone, come)}"
+        return f"compared with what was left of the plan: {changes}"
 
 
 def _stock(problem: Problem) -> dict[ObjectNode, int]:
@@ -251,7 +248,7 @@ def trace(
     *,
     failed: Annotated[int | None, Option(metavar="N", least=1)] = None,
     items: str = "used-up",
-    **how: Unpack[Limits],
+    **how: Unpack[Posed],
 ) -> Traced:
     """Say what is in the kitchen after each step of a plan, and plan anew if a step fails.
 
@@ -286,7 +283,7 @@ def trace(
         if not 1 <= failed <= len(replay.steps):
             last = len(replay.steps)
             raise UserError(f"found the step {failed}, expected one up to which the plan runs: 1 to {last}")
-        limits = settings(time_limit=how.get("time_limit"), memory_limit=how.get("memory_limit"))
+        limits = Settings(deadline=begin(how))
         answer = answered(_from_here(problem, states[failed - 1]), chosen, limits)
     executed = []
     for number, step in enumerate(replay.steps, 1):
@@ -302,8 +299,7 @@ def trace(
         failed=failed,
         answer=answer,
     )
-    traced.__dict__.update(plan=tree, states=states)
-    return traced
+    return traced.knowing(plan=tree, states=states)
 
 
 def _from_here(problem: Problem, copies: dict[ObjectNode, int]) -> Problem:

@@ -145,9 +145,9 @@ class Tree(TaskTree):
         return f"{self.units[position - 1].motion}    [{self.places[position - 1].short}]"
 
     def drawing(self) -> "Drawing":
-        """Give what the picture shows; units of a tree without a claim are numbered as they execute."""
+        """Return what the picture shows; units of a tree without a claim are numbered as they execute."""
         from foon_asp.pictures.tree_drawing import plan_drawing, tree_drawing  # noqa: PLC0415
-        from foon_asp.report.used_up_note import used_up_note  # noqa: PLC0415
+        from foon_asp.questions.used_up_note import used_up_note  # noqa: PLC0415
 
         if self.problem.items is not None:
             return plan_drawing(self.problem, self.units, caption=self.claim)
@@ -160,7 +160,7 @@ class Tree(TaskTree):
         return tree_drawing(self, kitchen, goals, rule, utensils, network, claim)
 
     def svg(self) -> str:
-        """Give the picture as SVG.
+        """Return the picture as SVG.
 
         Raises :class:`UserError` without the packages of ``foon-asp[pictures]``, and for a tree too large
         for a picture.
@@ -175,7 +175,7 @@ class Tree(TaskTree):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Give what a notebook shows: the picture."""
+        """Return what a notebook shows: the picture."""
         from foon_asp.pictures.notebook import picture_bundle  # noqa: PLC0415
 
         return picture_bundle(self, self.drawing())

@@ -6,23 +6,23 @@ from contextlib import suppress
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self, Unpack
 
-from foon_asp.deadline import Cancel, Deadline, LimitError
+from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 from foon_asp.foon import Foon
 from foon_asp.network import Network, counted
 from foon_asp.problem import ContainerRule, Problem, kitchen_needed, parse_objectives
-from foon_asp.problem.progress import OnProgress
 from foon_asp.proof import verify as proof
 from foon_asp.proof.constraint import OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
-from foon_asp.questions.arguments import begin
+from foon_asp.questions.certificate_text import bound_text, looked_at, trusted_text
 from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.how import Limits, begin
 from foon_asp.questions.posing import DATA, Command, the_data
-from foon_asp.questions.result import AboutGoals, Document, Ending
-from foon_asp.report.certified import bound_text, looked_at, trusted_text
+from foon_asp.questions.result import Ending, Result
+from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Part as Shown
 from foon_asp.results.values import Measures
 from foon_asp.results.values_of import goals_of, nodes_of
@@ -52,7 +52,7 @@ class OtherDataError(proof.RefusedError):
         self.part = part
 
 
-class VerifiedCertificate(AboutGoals, frozen=True, kw_only=True, tag=schema_name("verify")):
+class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("verify")):
     """What a certificate proves about the data that it was checked with.
 
     Attributes:
@@ -166,7 +166,7 @@ class VerifiedCertificate(AboutGoals, frozen=True, kw_only=True, tag=schema_name
         yield f"proof: {self.proved_by}, checked without a solver"
 
 
-class Refused(Document, frozen=True, kw_only=True, tag=schema_name("refused")):
+class Refused(Result, frozen=True, kw_only=True, tag=schema_name("refused")):
     """The first fault of a certificate that is wrong, as ``foon-asp verify`` shows it.
 
     Attributes:
@@ -219,7 +219,7 @@ def _posed(command: Command, more: Sequence[Path]) -> tuple[Foon | Problem]:
     from foon_asp.planning.task_files import read_task  # noqa: PLC0415 (it loads clingo)
 
     with command.reading():
-        return (read_task(more, begin(None, None)).problem(),)
+        return (read_task(more, begin({})).problem(),)
 
 
 def _is_task(file: Path) -> bool:
@@ -236,7 +236,12 @@ def _are_facts(names: Iterable[str]) -> bool:
 
 
 def verify_or_refuse(
-    data: Foon | Problem, certificate: Path, *, with_clingo: bool = False, full: bool = False
+    data: Foon | Problem,
+    certificate: Path,
+    *,
+    with_clingo: bool = False,
+    full: bool = False,
+    **limits: Unpack[Limits],
 ) -> VerifiedCertificate | Refused:
     """Check a certificate as ``foon-asp verify`` does.
 
@@ -244,7 +249,7 @@ def verify_or_refuse(
         UserError: for one of other data, with what to name.
     """
     try:
-        return verify(data, certificate, with_clingo=with_clingo, full=full)
+        return verify(data, certificate, with_clingo=with_clingo, full=full, **limits)
     except OtherDataError as other:
         raise UserError(f"{certificate} is about other data ({other}): add {_NAMED_BY[other.part]}") from None
     except proof.RefusedError as refused:
@@ -288,9 +293,7 @@ def verify(
     *,
     with_clingo: Annotated[bool, Option()] = False,
     full: Annotated[bool, Option()] = False,
-    time_limit: float | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    **how: Unpack[Limits],
 ) -> VerifiedCertificate:
     """Check a certificate against the data it is about, without any solver.
 
@@ -331,7 +334,13 @@ def verify(
         raise UserError(
             f"found a certificate of type {type(certificate).__name__}, expected a path or that of an answer"
         )
-    dataset = (data if isinstance(data, Foon) else Foon.of(data)).dataset
+    with begin(how).watched("checking the certificate"):
+        return _verified(data if isinstance(data, Foon) else Foon.of(data), content, with_clingo, full)
+
+
+def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool) -> VerifiedCertificate:
+    """Return what the content of a certificate proves about data."""
+    dataset = foon.dataset
     subject = dataset.subject(full or _looks_at_all(content), _goal_ids(content))
     try:
         verified = verify_any(content, subject)

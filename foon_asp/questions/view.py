@@ -1,17 +1,19 @@
 """A tree, some units or a whole network to look at: a page for any browser, or a picture."""
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
+from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
+
+from msgspec import structs
 
 from foon_asp.asp import Settings
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.nearby import shown
-from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Cancel
+from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import FunctionalUnit, TaskTree, counted, unit_at_level
@@ -20,18 +22,20 @@ from foon_asp.pictures.drawing import Drawing
 from foon_asp.pictures.graphml import graphml_text
 from foon_asp.pictures.mermaid import mermaid_markdown, mermaid_text
 from foon_asp.pictures.notebook import picture_bundle
-from foon_asp.pictures.page import Page, network_json, view_json
+from foon_asp.pictures.page import Page
 from foon_asp.pictures.painting import painted
 from foon_asp.pictures.tree_drawing import network_drawing, tree_drawing
+from foon_asp.pictures.whole_network import WholeNetwork
 from foon_asp.problem import ContainerRule, Objective, Problem, container_rule, levels
-from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answered, answered_under
-from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
+from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certifying import certified
-from foon_asp.questions.contract import Kind, Option, Part, question, question_of
-from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
+from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.how import How, Limits, begin, settings_of
+from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
+from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
 from foon_asp.questions.posing import Command, is_for_goals, one_problem, the_data
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
@@ -40,15 +44,19 @@ from foon_asp.questions.searching import known_searches
 from foon_asp.questions.shopping_list import Shopping, shopping_list
 from foon_asp.questions.tree import posed_tree, read_listed
 from foon_asp.questions.why_not import Explanation, why_not
-from foon_asp.report.whole_file import utf_8, write_whole
-from foon_asp.results.plain import plain
 from foon_asp.results.proof_cases import ProofCases
 from foon_asp.text.json_value import Json
+from foon_asp.whole_file import utf_8, write_whole
 
 _BEST = 5  # trees, the best and those after it
 _MERMAID_PAGE = ".md"
+_SHOWN = (
+    *("answer", "searches", "lasting", "without_rules"),
+    *("alternatives", "front", "why_not", "shopping_list"),
+)
 _PAGES = ("html", "json")
 _PICTURES = ("svg", "png", "pdf", "dot", "mermaid", "graphml")
+_RULES = ("constraints", "constants", "encodings")
 _FOR_THE_BEST = {
     "objectives": "--objective",
     "beside": "--beside",
@@ -69,18 +77,31 @@ class Beside(StrEnum):
     NETWORK = "network"
 
 
-@dataclass(frozen=True, repr=False)
-class View(Result):
+_SUFFIXES = {
+    ".html": "html",
+    ".htm": "html",
+    ".json": "json",
+    ".svg": "svg",
+    ".png": "png",
+    ".pdf": "pdf",
+    ".dot": "dot",
+    ".mmd": "mermaid",
+    _MERMAID_PAGE: "mermaid",
+    ".graphml": "graphml",
+}
+
+
+class View(Result, frozen=True):
     """A page about an ``answer``, and the picture of its tree; :meth:`write` writes either into a file.
 
     Beside the answer the page shows what is not empty here: the trees of ``searches``, the certificate that
     is ``certified``, the answer ``without_rules``, ``alternatives``, the ``front``; where there is no tree,
-    ``why_not`` and the ``shopping`` that would help; and the whole ``network`` of a problem. Beside a plan it
-    shows the answer where items are ``lasting``, which no plan is better than, and the certificate is about
-    that one. A page about a network alone has no ``answer``. Of a given tree and of some units there is only
-    a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large, or if the
-    packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError` if there is
-    no tree.
+    ``why_not`` and the ``shopping_list`` that would help; and the whole ``network`` of a problem. Beside a
+    plan it shows the answer where items are ``lasting``, which no plan is better than, and the certificate is
+    about that one. A page about a network alone has no ``answer``. Of a given tree and of some units there
+    is only a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large, or
+    if the packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError` if
+    there is no tree.
 
     Example:
         >>> page = foon_asp.view(foon_asp.load().problem("ice"))
@@ -90,6 +111,8 @@ class View(Result):
         'digraph foon {'
     """
 
+    SUFFIXES = _SUFFIXES
+
     answer: Answer | None
     searches: tuple[Retrieved, ...] = ()
     certified: Answer | None = None
@@ -98,7 +121,7 @@ class View(Result):
     alternatives: Alternatives | None = None
     front: Front | None = None
     why_not: Explanation | None = None
-    shopping: Shopping | None = None
+    shopping_list: Shopping | None = None
     network: Problem | None = None
     picture: Drawing | None = None
 
@@ -108,11 +131,12 @@ class View(Result):
         return Ending.DONE if self.answer is None else self.answer.ending
 
     def text(self) -> str:
-        """Give the answer in words, or what the picture is about."""
+        """Return the answer in words, or what the picture is about."""
         return self._drawn().caption[0] + "\n" if self.answer is None else self.answer.text()
 
-    def json_dict(self) -> Json:
-        """Give what is in the page: the documents of the answers as they are.
+    @property
+    def data(self) -> PageData:
+        """What is in the page: the documents of the answers as they are.
 
         Raises:
             UserError: for a given tree or some units, which have no page.
@@ -122,26 +146,26 @@ class View(Result):
         certificate = None if self.certified is None else self.certified.certificate
         proof = None
         if self.certified is not None and certificate is not None:
-            proof = plain(ProofCases.of(self.certified.problem, certificate.content))
-        others: dict[str, Result | None] = {
-            "lasting": self.lasting,
-            "without_rules": self.without_rules,
-            "alternatives": self.alternatives,
-            "front": self.front,
-            "why_not": self.why_not,
-            "shopping_list": self.shopping,
+            proof = ProofCases.of(self.certified.problem, certificate.content)
+        rates = {
+            problem.network.unit_number(unit): Fraction(problem.rate(unit))
+            for problem, units in self._trees()
+            for unit in units
+            if problem.rates is not None
         }
-        return view_json(
-            None if self.answer is None else self.answer.json_dict(),
-            self._trees(),
-            searches=[found.json_dict() for found in self.searches],
+        return PageData(
+            rates=tuple(UnitRate(unit, rates[unit]) for unit in sorted(rates)) or None,
             proof=proof,
-            network=None if self.network is None else network_json(self.network),
-            **{name: None if found is None else found.json_dict() for name, found in others.items()},
+            network=None if self.network is None else WholeNetwork.of(self.network),
+            **{name: getattr(self, name) for name in _SHOWN},
         )
 
+    def json_dict(self) -> Json:
+        """Return :attr:`data` as plain values."""
+        return self.data.json_dict()
+
     def _trees(self) -> Iterator[tuple[Problem, Iterable[int]]]:
-        bought = None if self.shopping is None else self.shopping.answer
+        bought = None if self.shopping_list is None else self.shopping_list.answer
         for answer in (self.answer, self.lasting, self.without_rules, bought):
             if answer is not None:
                 yield answer.problem, answer.ids or ()
@@ -155,7 +179,7 @@ class View(Result):
             yield from ((front, front.network.units_of_numbers(point.ids)) for point in self.front.points)
 
     def html(self) -> str:
-        """Give the page, a document by itself."""
+        """Return the page, a document by itself."""
         return self._page().html()
 
     def _page(self) -> Page:
@@ -163,27 +187,27 @@ class View(Result):
         return Page(f"{about.strip()} - foon-asp", self.text(), self.json_dict())
 
     def dot(self) -> str:
-        """Give the picture in DOT, Graphviz' language."""
+        """Return the picture in DOT, Graphviz' language."""
         return dot_text(self._drawn())
 
     def png(self) -> bytes:
-        """Give the picture as PNG."""
+        """Return the picture as PNG."""
         return painted(self._drawn(), "png")
 
     def pdf(self) -> bytes:
-        """Give the picture as PDF."""
+        """Return the picture as PDF."""
         return painted(self._drawn(), "pdf")
 
     def mermaid(self) -> str:
-        """Give the picture as a Mermaid flowchart."""
+        """Return the picture as a Mermaid flowchart."""
         return mermaid_text(self._drawn())
 
     def graphml(self) -> str:
-        """Give the nodes and arrows of the picture as GraphML, for Gephi, networkx and the like."""
+        """Return the nodes and arrows of the picture as GraphML, for Gephi, networkx and the like."""
         return graphml_text(self._drawn())
 
     def drawing(self) -> Drawing | None:
-        """Give what the picture shows."""
+        """Return what the picture shows."""
         if self.answer is not None:
             return self.answer.drawing()
         if self.network is None:
@@ -201,37 +225,21 @@ class View(Result):
         return drawing
 
     def remark(self, format_: str) -> str:
-        """Say what is claimed, where that is not the best tree."""
+        """Return what is claimed, where that is not the best tree."""
         return "" if self.answer is None else self.answer.remark(format_)
 
     def write(self, file: File, format_: str | None = None) -> None:
-        """Write the page or the picture; a file that ends in ``.md`` is a page with a Mermaid flowchart.
-
-        Parameters:
-            file: The path of the file.
-            format_: ``html``, ``json`` for what is in the page, ``svg``, ``png``, ``pdf``, ``dot``,
-                ``mermaid`` or ``graphml``; without it, the end of the file name chooses one.
-
-        Raises:
-            NothingToDrawError: for a picture, if there is no tree.
-            UserError: for another format, a picture that cannot be made, or a file that cannot be written.
-        """
-        file = Path(file)
-        how = question_of(view)
-        form = format_ or how.format_of(file)
-        if form not in how.formats:
-            raise UserError(f"found the format {form!r}, expected one of {', '.join(how.formats)}")
-        if form == "mermaid" and file.suffix.lower() == _MERMAID_PAGE:
-            content: str | bytes = mermaid_markdown(self._drawn())
+        """Write the page or the picture as :meth:`Result.write` does; ``.md`` is a page with a flowchart."""
+        if format_ in {None, "mermaid"} and Path(file).suffix.lower() == _MERMAID_PAGE:
+            write_whole(Path(file), utf_8(mermaid_markdown(self._drawn())))
         else:
-            content = self.json_text() if form == "json" else getattr(self, form)()
-        write_whole(file, utf_8(content) if isinstance(content, str) else content)
+            super().write(file, format_)
 
     def __repr__(self) -> str:
         return f"<View of {self.text().strip() if self.answer is None else repr(self.answer)}>"
 
     def _in_notebook(self) -> dict[str, str]:
-        """Give what a notebook shows by media type: the page, in a frame of its own, or the picture."""
+        """Return what a notebook shows by media type: the page, in a frame of its own, or the picture."""
         if self.picture is not None:
             return picture_bundle(self, self.picture)
         return {"text/plain": repr(self), "text/html": self._page().frame()}
@@ -282,7 +290,6 @@ def _posed(
         many=True,
         choices=tuple(map(str, Beside)),
     ),
-    *HOW,
     help_="""
     \b
     foon-asp view --goal macaroni -o macaroni.html      a page
@@ -303,35 +310,17 @@ def _posed(
     Exits with 0 when the tree is proved optimal, and otherwise as `solve` does.
     """,
     formats=(*_PAGES, *_PICTURES),
-    suffixes={
-        ".html": "html",
-        ".htm": "html",
-        ".json": "json",
-        ".svg": "svg",
-        ".png": "png",
-        ".pdf": "pdf",
-        ".dot": "dot",
-        ".mmd": "mermaid",
-        _MERMAID_PAGE: "mermaid",
-        ".graphml": "graphml",
-    },
+    suffixes=View.SUFFIXES,
     pose=_posed,
 )
 def view(
-    about: Problem | Foon,
+    about: Problem | Foon | Answer,
     objectives: Objectives = "units",
     *,
     tree: str | PathLike[str] | Iterable[FunctionalUnit] | None = None,
     units: Iterable[int] = (),
     beside: Iterable[str] = (Beside.SEARCHES, Beside.PROOF),
-    constraints: Files = (),
-    constants: Constants | None = None,
-    encodings: File | None = None,
-    containers: str = "strict",
-    time_limit: float | None = None,
-    memory_limit: int | str | None = None,
-    on_progress: OnProgress | None = None,
-    cancel: Cancel | None = None,
+    **how: Unpack[How],
 ) -> View:
     """Solve a problem, and show what was found on a page or as a picture; or show what is given.
 
@@ -339,11 +328,11 @@ def view(
     rules and limits for them. The limits are for all of it.
 
     Parameters:
-        about: A problem, whose goals are marked; or data that were loaded, whose whole network is shown.
+        about: A problem, whose goals are marked; data that were loaded, whose whole network is shown; or an
+            answer, which is shown as it is.
         tree: A tree to draw: the path of a file (FOON text, or an answer in JSON), or functional units.
         units: Ids of units to draw, as in ``json()``.
         beside: Without any, there is only the tree, which is enough for a picture.
-        containers: The container rule for data: ``strict`` or ``implied``. A problem has its own.
 
     Returns:
         The page and the picture: ``html()``, ``svg()``, ``png()``, ``pdf()``, ``dot()``, ``mermaid()`` and
@@ -356,26 +345,30 @@ def view(
     Example:
         >>> foon_asp.view(foon_asp.load().problem("ice"))
         <View of <Answer: optimal by units (strict containers): 2 units, 6 inputs, success 0.644>>
+        >>> foon_asp.view(foon_asp.solve(foon_asp.load().problem("ice"))).html().splitlines()[0]
+        '<!DOCTYPE html>'
         >>> foon_asp.view(foon_asp.load())
         <View of A network of 220 units, 418 object nodes>
         >>> foon_asp.view(foon_asp.load(), units=[12]).dot().splitlines()[0]
         'digraph foon {'
     """
+    if isinstance(about, Answer):
+        return View(about)
     listed = tuple(dict.fromkeys(units))
+    rules = {name: how[name] for name in _RULES if name in how}  # type: ignore[literal-required]
+    rule = how.get("containers", "strict")
     if tree is not None and listed:
         raise UserError("a tree and units are two different drawings: give one of them")
     if tree is None and not listed and isinstance(about, Problem):
         wanted = {str(each) for each in ([beside] if isinstance(beside, str) else beside)}
         for name in sorted(wanted - {*Beside}):
             raise UserError(f"found beside={name!r}, expected one of {', '.join(Beside)}")
-        chosen = chosen_objectives(about, objectives)
-        how = settings(constraints, constants, encodings, time_limit, memory_limit)
+        chosen, asked = chosen_objectives(about, objectives), settings_of(how)
         if not wanted or caller().form in _PICTURES:
-            return View(answered_under(about, chosen, how))
-        rules = {"constraints": constraints, "constants": constants, "encodings": encodings}
-        *_, grown = pages(about, chosen, how, wanted, rules)
+            return View(answered_under(about, chosen, asked))
+        *_, grown = pages(about, chosen, asked, wanted, rules)
         return grown
-    if constraints or constants or encodings is not None:
+    if any(rules.values()):
         raise UserError("rules are for the best tree of a problem; nothing is solved here")
     if listed:
         return View(None, picture=_units_drawing(about, listed))
@@ -383,7 +376,7 @@ def view(
         drawing = (
             posed_tree(about, tree).drawing()
             if isinstance(about, Problem)
-            else _drawing_without_goals(about, container_rule(containers), tree)
+            else _drawing_without_goals(about, container_rule(rule), tree)
         )
         if not drawing.units:
             raise UserError("the tree has no functional unit to draw")
@@ -391,7 +384,7 @@ def view(
     assert isinstance(about, Foon)
     if not len(about.dataset.data.network):
         raise UserError("the network has no units to show")
-    return View(None, network=about.dataset.problem((0,), containers, everything=True))
+    return View(None, network=about.dataset.problem((0,), rule, everything=True))
 
 
 def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
@@ -430,7 +423,7 @@ def pages(
     wanted: Container[str],
     rules: Mapping[str, Any],
 ) -> Iterator[View]:
-    """Give a page about a tree as it grows: first with its answer, then with one thing more beside it each.
+    """Yield a page about a tree as it grows: first with its answer, then with one thing more beside it each.
 
     ``rules`` are those of the settings, as questions take them. A plan, in which items are used up, costs no
     less than the best tree, in which they are not; so the proof is about that tree. But not by ``kitchen``,
@@ -445,7 +438,7 @@ def pages(
     page = View(answer, certified=proof, network=whole(problem) if Beside.NETWORK in wanted else None)
     yield page
 
-    def left() -> dict[str, Any]:
+    def left() -> Limits:
         return {"time_limit": deadline.left, "memory_limit": deadline.memory}
 
     if plans and not ruled:
@@ -458,32 +451,36 @@ def pages(
             )
         if lasting and not answer:
             proof = None  # of a tree, and there is no plan to hold against it
-        page = replace(page, certified=proof, lasting=lasting)
+        page = structs.replace(page, certified=proof, lasting=lasting)
         yield page
     if ruled:
-        page = replace(page, without_rules=answered(problem, chosen, settings(**left())))
+        page = structs.replace(
+            page, without_rules=answered(problem, chosen, Settings(deadline=begin(left())))
+        )
         yield page
     if answer.ending is Ending.NEGATIVE:
         explained = why_not(endless, **rules, **left())
         if plans and explained.tree_exists:
             return  # it is what runs out
         helped = None if explained.tree_exists else shopping_list(endless, chosen, **rules, **left())
-        yield replace(page, why_not=explained, shopping=helped)
+        yield structs.replace(page, why_not=explained, shopping_list=helped)
         return
     if Beside.SEARCHES in wanted:
         known = known_searches(problem.rates is not None)
-        page = replace(page, searches=tuple(search(problem, each.name, **left()) for each in known))
+        page = structs.replace(page, searches=tuple(search(problem, each.name, **left()) for each in known))
         yield page
     if Beside.ALTERNATIVES in wanted:
-        page = replace(page, alternatives=alternatives(problem, chosen, best=_BEST, **rules, **left()))
+        page = structs.replace(
+            page, alternatives=alternatives(problem, chosen, best=_BEST, **rules, **left())
+        )
         yield page
     if Beside.FRONT in wanted:
         several = chosen if len(chosen) > 1 else _against(chosen, problem.rates is not None)
-        yield replace(page, front=pareto(problem, several, **rules, **left()))
+        yield structs.replace(page, front=pareto(problem, several, **rules, **left()))
 
 
 def _against(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
-    """Give two objectives of a front, where one was asked for.
+    """Return two objectives of a front, where one was asked for.
 
     Against it the number of units; against that success, or inputs where no rates are known.
     """

@@ -18,7 +18,8 @@ from foon_asp.questions.arguments import constraint_weights, whole
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
-from foon_asp.questions.result import AboutGoals, Ending
+from foon_asp.questions.result import Ending, Result
+from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Part
 from foon_asp.results.values import Mention, Node, Unit, Value
 from foon_asp.results.values_of import head_of, mention_of, node_as, node_of, nodes_of, unit_as
@@ -178,7 +179,7 @@ class DeadEnd(Value, frozen=True):
     makers: tuple[BlockedUnit, ...]
 
 
-class Explanation(AboutGoals, frozen=True, kw_only=True, tag=schema_name("why-not")):
+class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("why-not")):
     """Why some goals cannot be made, or that all can.
 
     Attributes:

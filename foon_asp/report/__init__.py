@@ -1,1 +1,1 @@
-"""Tables, texts and JSON for what was found."""
+"""Findings of linting, and files compared line by line."""

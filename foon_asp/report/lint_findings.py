@@ -1,56 +1,53 @@
-"""Findings of linting for people, for programs, and as annotations that GitHub shows beside a change."""
+"""Findings of linting for people, as annotations that GitHub shows beside a change, and as SARIF."""
 
+import urllib.parse
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 
-from foon_asp.document.json_document import document
 from foon_asp.escapes import UNSAFE, escaped
 from foon_asp.linting.catalog import CATALOG
-from foon_asp.linting.mending import is_mendable
+from foon_asp.linting.example import Example
+from foon_asp.linting.finding import Finding
+from foon_asp.linting.rule import Rule
 from foon_asp.network import counted
-from foon_asp.results.table import Table
-from foon_asp.text.diagnostics import Diagnostic, Severity
+from foon_asp.results.table import Part, Table
+from foon_asp.text.diagnostics import Severity
 from foon_asp.text.json_value import Json
 
-_IN_FULL = 3  # findings of a kind in a file; the lines of the others are named
-_LINES = 12
-_LONGEST = 1000  # letters: thousands of findings on one line would repeat it thousands of times
+_MAX_IN_FULL = 3  # findings of a kind in a file; the lines of the others are named
+_MAX_LINES = 12
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "notice"}
+_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
-def lint_text(findings: Sequence[Diagnostic], files: int, mended: int) -> str:
-    """Show sorted findings with their lines, fold what there are many of, and end with a line of counts.
-
-    ``files`` counts the files that were linted, ``mended`` what was mended in them.
-    """
-    kinds: dict[tuple[str, str], list[Diagnostic]] = {}
+def finding_lines(findings: Sequence[Finding]) -> Iterator[Part]:
+    """Yield sorted findings with their lines, and fold those of a kind in a file where there are many."""
+    kinds: dict[tuple[str, str], list[Finding]] = {}
     for finding in findings:
-        kinds.setdefault((finding.source.file, finding.code), []).append(finding)
-    shown: Counter[tuple[str, str]] = Counter()
-    lines = []
+        kinds.setdefault((finding.file, finding.code), []).append(finding)
+    told = Counter[tuple[str, str]]()
     for finding in findings:
-        kind = finding.source.file, finding.code
-        shown[kind] += 1
-        if shown[kind] > _IN_FULL:
-            continue
-        head, *excerpt = str(finding).split("\n")
-        lines += [f"{head} [{finding.code}]", *excerpt]
-        if shown[kind] == _IN_FULL and (others := kinds[kind][_IN_FULL:]):
-            lines.append(_folded(others))
-    lines.append(lint_summary(findings, files, mended))
-    return "\n".join(lines) + "\n"
+        kind = finding.file, finding.code
+        told[kind] += 1
+        if told[kind] <= _MAX_IN_FULL:
+            yield from str(finding).split("\n")
+        if told[kind] == _MAX_IN_FULL and (others := kinds[kind][_MAX_IN_FULL:]):
+            numbers = list(dict.fromkeys(str(each.line) for each in others))
+            lines = ", ".join(numbers[:_MAX_LINES]) + (", ..." if len(numbers) > _MAX_LINES else "")
+            on = "on line" if len(numbers) == 1 else "on lines"
+            yield f"    ... and {len(others)} more of this kind in this file, {on} {lines} [{finding.code}]"
 
 
-def lint_summary(findings: Sequence[Diagnostic], files: int, mended: int) -> str:
-    """Give the counts in one line."""
+def summary(findings: Sequence[Finding], files: int, mended: int) -> str:
+    """Return the numbers of files and findings in one line, and of what --fix mended or would mend."""
     counts = Counter(finding.severity for finding in findings)
     parts = [counted(counts[severity], str(severity)) for severity in Severity if counts[severity]]
     text = f"{counted(files, 'file')}: {', '.join(parts) or 'nothing found'}"
     if mended:
-        text += f"; {mended} mended"
-        return text
-    safe = sum(is_mendable(finding) for finding in findings)
-    unsafe = sum(is_mendable(finding, unsafe=True) for finding in findings) - safe
+        return f"{text}; {mended} mended"
+    safe = sum(finding.mendable for finding in findings)
+    unsafe = sum(finding.unsafe for finding in findings)
     if safe:
         text += f"; --fix would mend {safe}"
     if unsafe:
@@ -58,71 +55,27 @@ def lint_summary(findings: Sequence[Diagnostic], files: int, mended: int) -> str
     return text
 
 
-def lint_statistics(findings: Sequence[Diagnostic]) -> Table:
+def statistics(findings: Sequence[Finding]) -> Table:
     """Return the number of findings of each code, most of them first, and of those that can be mended."""
     rows = []
     for code, count in Counter(finding.code for finding in findings).most_common():
-        of_code = [finding for finding in findings if finding.code == code]
-        safe = sum(is_mendable(finding) for finding in of_code)
-        unsafe = sum(is_mendable(finding, unsafe=True) for finding in of_code) - safe
+        alike = [finding for finding in findings if finding.code == code]
+        safe, unsafe = sum(each.mendable for each in alike), sum(each.unsafe for each in alike)
         mends = [f"{safe} safely"] * bool(safe) + [f"{unsafe} unsafely"] * bool(unsafe)
-        rows.append((str(count), str(of_code[0].severity), code, ", ".join(mends), CATALOG[code].meaning))
+        rows.append((str(count), str(alike[0].severity), code, ", ".join(mends), CATALOG[code].meaning))
     headings = "count", "severity", "code", "mends", "meaning"
     return Table(headings, rows, left=frozenset({1, 2, 3, 4}), headed=bool(rows))
 
 
-def _folded(others: Sequence[Diagnostic]) -> str:
-    numbers = list(dict.fromkeys(str(finding.source.line) for finding in others))
-    places = ", ".join(numbers[:_LINES]) + (", ..." if len(numbers) > _LINES else "")
-    on = "line" if len(numbers) == 1 else "lines"
-    return f"    ... and {len(others)} more of this kind in this file, on {on} {places} [{others[0].code}]"
-
-
-def lint_json(findings: Sequence[Diagnostic], files: int, mended: int) -> Json:
-    """Give every finding, and the counts.
-
-    ``text`` is the line and ``fix`` the line as it should be, where it can be mended. Both are ``null`` where
-    the line is longer than a thousand letters; ``mendable`` says in any case whether --fix mends the
-    finding, and ``unsafe`` whether only --unsafe-fixes does.
-    """
-    severities = Counter(finding.severity for finding in findings)
-    return document(
-        "lint",
-        files=files,
-        counts={str(severity): severities[severity] for severity in Severity},
-        codes=dict(sorted(Counter(finding.code for finding in findings).items())),
-        mended=mended,
-        findings=[
-            {
-                "file": finding.source.file,
-                "line": finding.source.line,
-                "column": finding.source.column,
-                "severity": str(finding.severity),
-                "code": finding.code,
-                "message": finding.message,
-                "text": _short(finding.excerpt),
-                "fix": _short(finding.fix),
-                "mendable": is_mendable(finding),
-                "unsafe": is_mendable(finding, unsafe=True) and not is_mendable(finding),
-            }
-            for finding in findings
-        ],
-    )
-
-
-def _short(line: str | None) -> str | None:
-    return line if line is not None and len(line) <= _LONGEST else None
-
-
-def lint_annotations(findings: Sequence[Diagnostic]) -> str:
-    """Give a workflow command for each finding: ``::warning file=...,line=...,col=...,title=...::...``.
+def annotations(findings: Sequence[Finding]) -> str:
+    """Return a workflow command for each finding: ``::warning file=...,line=...,col=...,title=...::...``.
 
     The characters that would end a command or a property are escaped as GitHub's own toolkit does.
     """
     lines = []
-    for severity, code, message, source, *_ in findings:
-        place = f"file={_property(source.file)},line={source.line},col={source.column}"
-        lines.append(f"::{_COMMANDS[severity]} {place},title={_property(code)}::{_data(message)}\n")
+    for each in findings:
+        place = f"file={_property(each.file)},line={each.line},col={each.column},title={_property(each.code)}"
+        lines.append(f"::{_COMMANDS[each.severity]} {place}::{_data(each.message)}\n")
     return "".join(lines)
 
 
@@ -133,3 +86,61 @@ def _data(text: str) -> str:
 
 def _property(text: str) -> str:
     return _data(text).replace(":", "%3A").replace(",", "%2C")
+
+
+def sarif(findings: Sequence[Finding], version: str) -> Json:
+    """Return SARIF 2.1.0: one run with every finding, and with the rules that they name.
+
+    Code hosts and editors show it beside the files. Columns count code points.
+    """
+    codes = [code for code in CATALOG if any(finding.code == code for finding in findings)]
+    rules = [
+        {
+            "id": code,
+            "shortDescription": {"text": CATALOG[code].meaning},
+            "defaultConfiguration": {"level": str(CATALOG[code].severity)},
+        }
+        for code in codes
+    ]
+    driver = {"name": "foon-asp", "version": version, "rules": rules}
+    results = [_sarif_result(finding, codes.index(finding.code)) for finding in findings]
+    run = {"tool": {"driver": driver}, "columnKind": "unicodeCodePoints", "results": results}
+    return {"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _sarif_result(finding: Finding, rule: int) -> Json:
+    region: Json = {"startLine": max(1, finding.line), "startColumn": max(1, finding.column)}
+    if finding.text:
+        region["snippet"] = {"text": finding.text}
+    path = Path(finding.file)
+    uri = path.as_uri() if path.is_absolute() else urllib.parse.quote(path.as_posix())
+    place = {"artifactLocation": {"uri": uri}, "region": region}
+    result: Json = {
+        "ruleId": finding.code,
+        "ruleIndex": rule,
+        "level": str(finding.severity),
+        "message": {"text": finding.message},
+        "locations": [{"physicalLocation": place}],
+    }
+    if finding.mendable and finding.text:
+        whole = {"startLine": finding.line, "startColumn": 1, "endColumn": len(finding.text) + 1}
+        replacement = {"deletedRegion": whole, "insertedContent": {"text": finding.fix}}
+        change = {"artifactLocation": place["artifactLocation"], "replacements": [replacement]}
+        result["fixes"] = [{"artifactChanges": [change]}]
+    return result
+
+
+def explained(rule: Rule, example: Example) -> Iterator[Part]:
+    """Yield what a rule means, its example with tabs drawn as ``→``, and what it finds there."""
+    yield f"{rule.code}: {rule.severity}: {rule.meaning}"
+    for paragraph in rule.explanation.split("\n\n"):
+        yield from ("", paragraph.replace("\n", " "))
+    for name, text in example_texts(example):
+        yield from ("", f"{name}:", *(f"    {line}" for line in text.splitlines()))
+    yield from ("", *(line for finding in example.findings for line in str(finding).split("\n")))
+
+
+def example_texts(example: Example) -> Iterator[tuple[str, str]]:
+    """Yield the name and the text of each file of an example, with tabs drawn as ``→``."""
+    for file, content in example.files.items():
+        yield str(file), content.decode(errors="replace").replace("\t", "→")

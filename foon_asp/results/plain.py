@@ -3,11 +3,11 @@
 import csv
 import io
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import PurePath
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -15,6 +15,8 @@ from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 from foon_asp.problem import Costs, Objective
 from foon_asp.text.json_value import Json
+
+T = TypeVar("T")
 
 _EXACT = "_exact"
 _NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)
@@ -41,15 +43,43 @@ def _plain(value: object) -> object:
 
 def costs_plain(costs: Costs) -> Json:
     """Return what a tree costs by every objective, ``None`` where nothing is known, and its ingredients."""
+    found: Json = plain(costs_by_name(costs))
+    return found
+
+
+def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
+    """Return the same with exact numbers."""
     measures = {**dict.fromkeys(Objective), **costs.measures}
-    figures = {str(objective): _measure(objective, measure) for objective, measure in measures.items()}
-    return figures | {"ingredients": costs.ingredients}
+    return {**exact_measures(measures), "ingredients": costs.ingredients}
 
 
-def _measure(objective: Objective, measure: int | Fraction | None) -> object:
-    if measure is None or objective.row.whole:
-        return None if measure is None else int(measure)
-    return _plain(Fraction(measure))
+def exact_measures(
+    measures: Mapping[Objective, int | Fraction | None],
+) -> dict[str, int | Fraction | None]:
+    """Return what objectives measure, by name: whole numbers, or fractions where not all values are whole."""
+    return {
+        str(objective): None
+        if measure is None
+        else int(measure)
+        if objective.row.whole
+        else Fraction(measure)
+        for objective, measure in measures.items()
+    }
+
+
+def read_plain(kind: type[T], value: Json) -> T:
+    """Return the value of a kind that :func:`plain` made plain values of.
+
+    Keys of dictionaries stay texts. Raises :class:`msgspec.ValidationError`, which is a :class:`ValueError`,
+    or :class:`KeyError`, :class:`TypeError`, :class:`AttributeError` or :class:`ArithmeticError` for others.
+    """
+    return msgspec.convert(value, kind, dec_hook=_exact)
+
+
+def _exact(_: type, value: Any) -> Objective | Fraction | int:
+    if isinstance(value, Objective) or type(value) is int:
+        return value
+    return Fraction(*map(int, value["exact"].split("/")))  # without exponents: those stand for many digits
 
 
 def fraction_text(value: Fraction) -> str:
@@ -106,17 +136,18 @@ def _word(value: Any) -> Any:
     return value
 
 
-def table(rows: Iterable[Json]) -> tuple[list[str], list[list[Any]]]:
+def table(
+    rows: Iterable[Json], columns: Sequence[str] | None = None
+) -> tuple[Sequence[str], list[list[Any]]]:
     """Return flat rows as columns by name and a list for each row, ``None`` where a row has no value.
 
     A whole number of a column that has fractions too is exact by itself.
     """
     rows = list(rows)
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    inner = {name.rpartition(".")[0] for name in names}
-    columns = [
-        name for name in names if name not in inner
-    ]  # else null in some rows, and in others with parts
+    if columns is None:
+        names = list(dict.fromkeys(name for row in rows for name in row))
+        inner = {name.rpartition(".")[0] for name in names}  # null in some rows, and in others with parts
+        columns = [name for name in names if name not in inner]
     return columns, [[_cell(row, name) for name in columns] for row in rows]
 
 
@@ -127,9 +158,12 @@ def _cell(row: Json, name: str) -> Any:
     return row.get(name)
 
 
-def csv_text(rows: Iterable[Json]) -> str:
-    """Return flat rows as CSV, with a line of headings, and true and false as pandas reads them."""
-    columns, cells = table(rows)
+def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
+    """Return flat rows as CSV, with a line of headings, and true and false as pandas reads them.
+
+    ``names`` are the columns; without them, those that the rows have.
+    """
+    columns, cells = table(rows, names)
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerows(

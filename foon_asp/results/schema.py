@@ -2,16 +2,17 @@
 
 import inspect
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import PurePath
 from typing import Any
 
 import msgspec
+from msgspec import Struct, structs
 
 from foon_asp.problem import Costs, Objective
 from foon_asp.results.values import Figure
-from foon_asp.text.json_value import Json, json_line
+from foon_asp.text.json_value import Json, json_line, schema_name
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _ATTRIBUTE = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
@@ -49,22 +50,43 @@ _OWN: dict[Any, tuple[str, Json]] = {
 }
 
 
-def schema_of(result: type[msgspec.Struct]) -> Json:
-    """Return the JSON Schema of a result, draft 2020-12, complete in itself."""
-    (top,), parts = msgspec.json.schema_components([result], schema_hook=_hook, ref_template=_REFERENCE)
-    for part in parts.values():
-        _describe(part)
+def schema_of(document: type[Struct]) -> Json:
+    """Return the JSON Schema of a document, draft 2020-12, complete in itself."""
+    (top,), parts = msgspec.json.schema_components([document], schema_hook=_hook, ref_template=_REFERENCE)
+    bases = {each.__name__: inspect.getmro(each) for each in _structs(document)}
+    for name, part in parts.items():
+        _describe(part, bases.get(name, ()))
     for name, part in reversed(_OWN.values()):  # each may refer to one before it
         if _REFERENCE.format(name=name) in repr(parts):
             parts[name] = part
     whole = parts.pop(top["$ref"].rpartition("/")[2])
-    keys = {field.name: field.encode_name for field in msgspec.structs.fields(result)}
-    for base in inspect.getmro(result):
-        _describe_fields(whole, base.__doc__ or "", keys)
-    schema = {"$schema": _DRAFT, **whole, "$defs": dict(sorted(parts.items()))}
+    title = whole["description"].rstrip(".")
+    schema = {"$schema": _DRAFT, **whole, "$defs": dict(sorted(parts.items())), "title": title}
     _put_null_last(schema)
     _name_keys(schema)
     return schema
+
+
+def schema_of_rows(kind: str, row: type[Struct]) -> Json:
+    """Return the schema of a line of a file of rows: the question that all answer, or a row."""
+    found = schema_of(row)
+    name = {"schema": {"const": schema_name(kind)}}
+    first = {
+        "title": "The first line: what is asked of all",
+        "type": "object",
+        "properties": {**name, "question": {"type": "object"}},
+        "required": ["schema", "question"],
+        "additionalProperties": False,
+    }
+    line = {
+        "title": found["title"],
+        "type": "object",
+        "properties": {**name, **found["properties"]},
+        "required": ["schema", *found["properties"]],
+        "additionalProperties": False,
+    }
+    title = f"A line of the results of {kind.removesuffix('-row')}"
+    return {"$schema": _DRAFT, "title": title, "oneOf": [first, line], "$defs": found["$defs"]}
 
 
 def _name_keys(part: Any) -> None:
@@ -92,14 +114,32 @@ def _hook(kind: type) -> Json:
     raise NotImplementedError(kind)
 
 
-def _describe(part: Json) -> None:
-    """Say of each field what the docstring says of it, which is the description, and allow no other keys."""
+def _structs(document: type[Struct]) -> set[type[Struct]]:
+    """Return the structs that the fields of a document are made of, and those of their fields."""
+    found, waiting = set[type[Struct]](), [msgspec.inspect.type_info(document)]
+    for info in waiting:  # grows on the way
+        if isinstance(info, msgspec.inspect.StructType) and info.cls not in found:
+            found.add(info.cls)
+            waiting += (field.type for field in info.fields)
+        for name in ("item_type", "item_types", "types", "key_type", "value_type", "type"):
+            inner = getattr(info, name, ())
+            waiting += inner if isinstance(inner, tuple) else (inner,)
+    return found
+
+
+def _describe(part: Json, bases: Sequence[type]) -> None:
+    """Say of each field what docstrings say of it, and allow no other keys.
+
+    ``bases`` are the class of the part and those that it stands on.
+    """
     docstring = part.pop("description", "")
     part["description"] = docstring.partition("\n")[0]
     if "properties" in part:
         _require_written(part)
         part["additionalProperties"] = False
-        _describe_fields(part, docstring, {})
+        keys = {field.name: field.encode_name for field in structs.fields(bases[0])} if bases else {}
+        for text in (base.__doc__ or "" for base in bases) if bases else (docstring,):
+            _describe_fields(part, text, keys)
 
 
 def _require_written(part: Json) -> None:

@@ -44,7 +44,7 @@ def rendered(parts: Iterable[Part], width: int | None = None, coloured: bool = F
     """Return lines and tables as text.
 
     Parameters:
-        parts: The lines, without a line end, and tables, from top to bottom.
+        parts: The lines, each one line whatever is named in it, and tables, from top to bottom.
         width: The columns of the terminal; lines that are longer are folded between words, and tables are
             stacked below :data:`NARROW`. Without it, lines are as long as they are.
         coloured: Whether cells are coloured.
@@ -58,8 +58,8 @@ def rendered(parts: Iterable[Part], width: int | None = None, coloured: bool = F
                 else _aligned(part, width, coloured)
             )
         else:
-            text = escaped_lines(part) if coloured else part
-            lines += (line for each in text.split("\n") for line in _folded(each, width))
+            line = part.replace("\n", "\\u000a")  # of a name in it
+            lines += _folded(escaped_lines(line) if coloured else line, width)
     return "".join(f"{line.rstrip()}\n" for line in lines)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from msgspec import UNSET, Struct, UnsetType, field
 
-from foon_asp.network import Source
+from foon_asp.network import FunctionalUnit, Source
 from foon_asp.problem import Costs, Objective
 
 if TYPE_CHECKING:
@@ -331,14 +331,16 @@ def steps_not_in(steps: Sequence[Step], others: Iterable[Step]) -> list[Step]:
     return found
 
 
-def step_lines(steps: Iterable[Step], sign: str = " ") -> Iterator[str]:
+def step_lines(steps: Iterable[Step | Unit], sign: str = " ") -> Iterator[str]:
     """Return a line for each step, behind a sign: the id of its unit, the motion and the place."""
     for step in steps:
         yield f"  {sign} {step.id}  {step.motion}    [{step.source[0]}]"
 
 
-def changed_motions(gone: Iterable[Step], new: Iterable[Step], named: int = 6) -> str:
-    """Return the motions of the steps that go and that come, ``- heat  + pour (2)``, so many at most."""
+def changed_motions(
+    gone: Iterable[Step | FunctionalUnit], new: Iterable[Step | FunctionalUnit], named: int = 6
+) -> str:
+    """Return the motions of what goes and what comes, ``- heat  + pour (2)``, at most ``named`` of each."""
     texts = []
     for sign, steps in (("-", gone), ("+", new)):
         counts = Counter(step.motion for step in steps)

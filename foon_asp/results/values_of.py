@@ -165,7 +165,7 @@ def steps_of(
             node_as(Input, network, o, origin=origin, stays=UNSET if uses is None else o not in uses)
             for o, origin in zip(network.inputs[unit], origins, strict=True)
         )
-        gives = problem.gives[unit]
+        gives = frozenset(problem.gives[unit])
         outputs = tuple(node_as(Output, network, o, made=o in gives) for o in network.outputs[unit])
         by = UNSET if helped is None else "person" if unit in helped else "robot"
         named = network.unit_number(unit), network.motions[unit]
@@ -240,7 +240,7 @@ def _origins(
         for o in problem.gives[unit]:
             makers.setdefault(o, []).append(step)
     for step, unit in enumerate(units, 1):
-        needs = problem.needs[unit]
+        needs = frozenset(problem.needs[unit])  # a unit may need very many
         yield (
             unit,
             [_origin(problem, o, step, makers, o in needs, bought) for o in problem.network.inputs[unit]],

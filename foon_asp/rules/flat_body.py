@@ -1,44 +1,59 @@
-"""Bodies of rules as plain questions about the network: what needs no clingo to be answered.
+"""Flat bodies: rules that are understood, as questions about one unit of the tree at a time.
 
-A body is flat if helper predicates are replaced by what derives them, and what is left are facts, texts and
-whole numbers, comparisons, and bodies that must not hold. Everything else (arithmetic, intervals, aggregates,
-helpers that are derived from themselves, variables that nothing binds) is left to clingo, and so is whatever
-sees beyond one unit.
+A body is flat if auxiliary predicates are unfolded, and what is left are facts, texts and whole numbers,
+comparisons, counts of facts, and bodies that must not hold. A rule with flat bodies removes units, asks for
+one unit of a set, or bounds a sum over units. Everything else (arithmetic, intervals, sums within a body,
+recursion, variables that nothing binds, two units that together break a rule) is left to the search.
 """
 
 from collections.abc import Iterable, Sequence
 from copy import copy
-from itertools import product
-from typing import NamedTuple
+from itertools import count, product
+from typing import Final, NamedTuple
 
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
-from clingo.symbol import Symbol, SymbolType
+from clingo.symbol import Number, Symbol, SymbolType
 
 from foon_asp.rules.clause import (
     Aggregate,
     Clause,
     Conditional,
+    Constants,
+    Element,
     Literal,
     Part,
     Signature,
     Strange,
     Test,
+    compared,
+    factors,
     global_variables,
     value,
     variables,
 )
-from foon_asp.rules.dependence import AVAILABLE, USE
-from foon_asp.rules.fact_subject import SUBJECTS, Subject
-from foon_asp.rules.rule_kind import Analysis
+from foon_asp.rules.dependence import AVAILABLE, TIMES, USE, Dependence, Depends
+from foon_asp.rules.fact_subject import SUBJECTS, Subject, Subjects
+from foon_asp.rules.locality import Locality
 
 _OFTEN = {"input", "output", "needs", "gives", "state", "ingredient", "located", "source", "video"}
 _READ = _OFTEN | {"motion", "label", "inputs", "ingredients", "rate", "price"}
 _READ |= {"unit", "object", "kitchen", "utensil", "goal"}
 _MOST = 256  # ways in which a body can hold that are followed
+_ONE_EXECUTION = {USE, TIMES}
+NUMBER: Final = ("_number", 2)  # of a unit: what ``use(17)`` says
+_SUBJECTS = {**SUBJECTS, NUMBER: Subjects({0: Subject.UNIT}, {})}
+
+# What a forbidden comparison leaves: whether that is at least or at most the number, and how far from it.
+_ALLOWED = {
+    ComparisonOperator.GreaterThan: (False, 0),
+    ComparisonOperator.GreaterEqual: (False, -1),
+    ComparisonOperator.LessThan: (True, 0),
+    ComparisonOperator.LessEqual: (True, 1),
+}
 
 
 class NotFlatError(Exception):
-    """A rule is left to clingo."""
+    """A rule is not understood, and left to the search."""
 
 
 class Variable(int):
@@ -120,6 +135,21 @@ class Asking(NamedTuple):
     helping: tuple[Way, ...]
 
 
+class Row(NamedTuple):
+    """A rule that bounds a sum over units: its ``terms`` are at most ``bound`` together, or ``at_least``.
+
+    A term is a way that takes a unit, with what one execution of that unit counts; equal numbers that several
+    ways give a unit count once. If it says what is ``used``, a unit counts once however often it is executed.
+    ``each`` says that the bound is for each unit by itself.
+    """
+
+    terms: tuple[tuple[Way, Term], ...]
+    bound: int
+    at_least: bool = False
+    used: bool = False
+    each: bool = False
+
+
 _Subjects = dict[Variable, Subject]  # LABEL for whatever is no id
 _OPPOSITE = {
     ComparisonOperator.Equal: ComparisonOperator.NotEqual,
@@ -132,30 +162,32 @@ _OPPOSITE = {
 
 
 class FlatBodies:
-    """Makes bodies of an analysis flat; raises :class:`NotFlatError` for those that are left to clingo.
+    """Makes bodies of a program flat; raises :class:`NotFlatError` for those that are left to the search.
 
     The items of a way are in an order in which each variable has its value before it is needed. ``tables``
-    are the helpers that they look at, ``size`` is above the number of each variable.
+    are the auxiliary predicates that they look at.
     """
 
-    def __init__(self, analysis: Analysis) -> None:
-        self.analysis = analysis
+    def __init__(
+        self, program: Iterable[Clause], constants: Constants, dependence: Dependence, locality: Locality
+    ) -> None:
+        self.constants, self._dependence, self._locality = constants, dependence, locality
         self._rules: dict[Signature, list[Clause]] = {}
-        for clause in analysis.live:
+        for clause in program:
             if clause.head is not None:
                 self._rules.setdefault(clause.head.signature, []).append(clause)
         self.tables: dict[Signature, Table] = {}
         self._open: list[Signature] = []  # that are being looked into
-        self.size = 0
+        self._numbers = count()
 
     def ways(self, clause: Clause) -> tuple[Way, ...]:
-        """Give the ways in which the body of a rule holds."""
+        """Return the ways in which the body of a rule holds."""
         return tuple(self._sorted(way, frozenset(), {}) for way in _Scope(self, clause).ways(clause.body))
 
     def askings(self, clause: Clause) -> tuple[Asking, ...]:
-        """Give what a rule asks for that requires one unit of a set."""
+        """Return what a rule asks for that requires one unit of a set, or of each of several sets."""
         scope = _Scope(self, clause)
-        deciding = self.analysis.deciding(clause.body)
+        deciding = [part for part in clause.body if self._dependence.of_part(part) is not Depends.NOT]
         askings = []
         for way in scope.ways([part for part in clause.body if part not in deciding]):
             subjects: _Subjects = {}
@@ -167,17 +199,74 @@ class FlatBodies:
             askings.append(Asking(when, tuple(helping)))
         return tuple(askings)
 
+    def row(self, clause: Clause) -> Row:
+        """Return the sum over units that a rule bounds: ``#sum { N,U : times(U,N) } > 9`` and the like."""
+        scope = _Scope(self, clause)
+        counts = [part for part in clause.body if isinstance(part, Aggregate)]
+        if not counts:
+            return self._row_of_each(scope, clause.body)
+        if len(clause.body) > 1 or counts[0].negations or len(counts[0].guards) != 1:
+            raise NotFlatError
+        at_least, bound = self._allowed(counts[0].guards[0].comparison, counts[0].guards[0].term)
+        terms = tuple(term for each in counts[0].elements for term in self._terms(scope, counts[0], each))
+        deciding = {
+            literal.signature
+            for element in counts[0].elements
+            for literal in element.condition
+            if isinstance(literal, Literal) and literal.signature in _ONE_EXECUTION
+        }
+        if len(deciding) != 1:
+            raise NotFlatError
+        return Row(terms, bound, at_least, deciding == {USE})
+
+    def _row_of_each(self, scope: "_Scope", body: Sequence[Part]) -> Row:
+        """Return the row of ``:- times(U,N), N > 2, ...``."""
+        for part in body:
+            if not isinstance(part, Test) or part.ast.sign or part.ast.atom.ast_type != ASTType.Comparison:
+                continue
+            number, guards = part.ast.atom.term, part.ast.atom.guards
+            condition = tuple(each for each in body if each is not part)
+            times = [each for each in condition if isinstance(each, Literal) and each.signature == TIMES]
+            if len(guards) != 1 or len(times) != 1 or times[0].arguments[1] != number:
+                continue
+            at_least, bound = self._allowed(guards[0].comparison, guards[0].term)
+            if not at_least:
+                element = Element((number, times[0].arguments[0]), condition)
+                return Row(tuple(self._terms(scope, None, element)), bound, each=True)
+        raise NotFlatError
+
+    def _allowed(self, comparison: int, term: AST) -> tuple[bool, int]:
+        """Return what is left if a comparison with a number is forbidden: whether at least, and how much."""
+        number, sides = value(term, self.constants), _ALLOWED.get(ComparisonOperator(comparison))
+        if number is None or number.type is not SymbolType.Number or sides is None:
+            raise NotFlatError
+        return sides[0], number.number + sides[1]
+
+    def _terms(self, scope: "_Scope", counts: Aggregate | None, element: Element) -> list[tuple[Way, Term]]:
+        """Return the terms of a row that one element of a sum or a count stands for."""
+        is_count = counts is not None and counts.function is AggregateFunction.Count
+        is_sum = counts is None or counts.function is AggregateFunction.Sum
+        if not (is_count and len(element.terms) == 1) and not (is_sum and len(element.terms) == 2):
+            raise NotFlatError
+        found = []
+        for way, weight in scope.summands(element):
+            subjects: _Subjects = {}
+            found.append((self._sorted(way, frozenset(), subjects), weight))
+            if isinstance(weight, Variable) and subjects.get(weight) is not Subject.LABEL:
+                raise NotFlatError
+        return found
+
     def variable(self) -> Variable:
-        """Give a variable that is nowhere yet."""
-        self.size += 1
-        return Variable(self.size - 1)
+        """Return a variable that is nowhere yet."""
+        return Variable(next(self._numbers))
 
     def of_atom(self, signature: Signature, terms: tuple[Term, ...]) -> list[Way]:
-        """Give the ways in which an atom holds, their items in any order."""
+        """Return the ways in which an atom holds, their items in any order."""
         if signature == USE:
-            if not isinstance(terms[0], Variable):
-                raise NotFlatError
-            return [Way((), terms[0])]
+            if isinstance(terms[0], Variable):
+                return [Way((), terms[0])]
+            unit = self.variable()
+            return [Way((Fact(NUMBER, (unit, *terms)),), unit)]
         if signature == AVAILABLE:
             unit = self.variable()
             return [Way((Fact(("kitchen", 1), terms),)), Way((Fact(("gives", 2), (unit, *terms)),), unit)]
@@ -204,7 +293,9 @@ class FlatBodies:
     def _is_table(self, signature: Signature) -> bool:
         """Whether a predicate is a table; makes it one if it is met first."""
         if signature not in self.tables:
-            if signature not in self._rules or not self.analysis.is_closed(signature):
+            depends = self._dependence.of(signature) is not Depends.NOT
+            doubtful = depends or signature in self._dependence.doubts
+            if signature not in self._rules or doubtful or not self._locality.closed(signature):
                 return False
             rows = []
             kinds = set()
@@ -262,7 +353,7 @@ class FlatBodies:
             return 0 if not any(free) else 1 if binds else -1
         if isinstance(item, Listed):
             return 10 if any(free) else 1
-        about = SUBJECTS[item.signature].about
+        about = _SUBJECTS[item.signature].about
         if not bound.issuperset(_variables(item.terms[place] for place in about)):
             return -1
         if item.signature == ("goal", 1):
@@ -276,7 +367,7 @@ class FlatBodies:
             before = len(subjects)
             for item in items:
                 if isinstance(item, Fact):
-                    facts = SUBJECTS[item.signature]
+                    facts = _SUBJECTS[item.signature]
                     of = {**facts.about, **facts.leads_to}
                     for place, term in enumerate(item.terms):
                         _set_subject(term, of.get(place, Subject.LABEL), subjects)
@@ -300,7 +391,7 @@ class _Scope:
     """The variables of one rule."""
 
     def __init__(self, bodies: FlatBodies, clause: Clause) -> None:
-        self._bodies, self._constants = bodies, bodies.analysis.constants
+        self._bodies, self._constants = bodies, bodies.constants
         self._named: dict[str, Term] = {}
         # those that a rule has as a whole; others are of their condition alone
         self._whole = {
@@ -380,12 +471,43 @@ class _Scope:
         return found
 
     def helping(self, part: Part) -> list[Way]:
-        """Give the ways in which a unit keeps a part of a requiring rule from holding."""
+        """Return the ways in which a unit keeps a part of a requiring rule from holding."""
         if isinstance(part, Aggregate):
+            if not _counts_none(part, self._constants):
+                raise NotFlatError
             return [way for each in part.elements for way in self._within().ways(each.condition)]
         literal, condition = (part.literal, part.condition) if isinstance(part, Conditional) else (part, ())
-        assert isinstance(literal, Literal)
+        if not isinstance(literal, Literal) or literal.negations != 1:
+            raise NotFlatError
         return self._within().ways((literal._replace(negations=0), *condition))
+
+    def summands(self, element: Element) -> list[tuple[Way, Term]]:
+        """Return the ways in which units count in an element of a sum, each with what one execution counts.
+
+        That is as many times as much for several executions: how many there are stands nowhere else.
+        """
+        within = self._within()
+        executions = [
+            part
+            for part in element.condition
+            if isinstance(part, Literal) and part.positive and part.signature in _ONE_EXECUTION
+        ]
+        if len(executions) != 1:
+            raise NotFlatError
+        unit, *number = map(within.term, executions[0].arguments)
+        *product, last = (within.term(each) for term in element.terms for each in factors(term))
+        for each in number:
+            if each not in product or product.count(each) > 1:
+                raise NotFlatError
+            product.remove(each)
+        if len(product) > 1 or last != unit:
+            raise NotFlatError
+        ways = within.ways(element.condition)
+        for way in ways:
+            uses = [item for item in way.items for each in number if each in variables_of([item])]
+            if way.unit != unit or len(uses) != len(number):
+                raise NotFlatError
+        return [(way, product[0] if product else Constant(1)) for way in ways]
 
     def _of_part(self, part: Part) -> list[Way]:
         if isinstance(part, Literal):
@@ -476,6 +598,26 @@ def _equal(test: Test) -> set[str]:
         return set()
     is_equal = test.ast.atom.guards[0].comparison == ComparisonOperator.Equal
     return set(global_variables(test)) if is_equal else set()
+
+
+def variables_of(items: Iterable[Item]) -> set[Variable]:
+    """Return the variables of items, but for those that are only within one."""
+    found = set[Variable]()
+    for item in items:
+        found.update(item.given if isinstance(item, Never | Counted) else _variables(_terms(item)))
+    return found
+
+
+def _counts_none(aggregate: Aggregate, constants: Constants) -> bool:
+    """Whether an aggregate says no more than that nothing is counted."""
+    if aggregate.function is not AggregateFunction.Count or len(aggregate.guards) != 1:
+        return False
+    bound = value(aggregate.guards[0].term, constants)
+    if bound is None or bound.type is not SymbolType.Number:
+        return False
+    compares = [compared(Number(n), aggregate.guards[0].comparison, bound) for n in (0, 1, 2**31 - 1)]
+    says = [not each for each in compares] if aggregate.negations == 1 else compares
+    return says == [True, False, False]
 
 
 def _terms(item: Item) -> tuple[Term, ...]:

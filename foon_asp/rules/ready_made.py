@@ -12,7 +12,6 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Any, Final
 
-from foon_asp.deadline import Deadline
 from foon_asp.encoding.facts import hundredths
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
@@ -79,8 +78,8 @@ class ReadyMade:
             return False
         return True
 
-    def applied(self, problem: Problem, deadline: Deadline | None = None) -> Restriction | Contradiction:
-        """Say what is left of a problem under what these remove and require."""
+    def applied(self, problem: Problem) -> Restriction | Contradiction:
+        """Return what is left of a problem under what these remove and require."""
         meanings, _ = self._said(problem)
         # what is needed by a unit of the last set is made by one of the others, as the tree executes
         required = tuple(

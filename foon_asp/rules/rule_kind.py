@@ -2,38 +2,37 @@
 
 All rules of a question are looked at together, since a rule in another file may change what one does. Where
 anything is in doubt, a rule is ``OTHER``; docs/writing-constraints.md says what that means for the user.
+What is said here of a rule serves to cut the search: the search itself asks clingo for every rule that is not
+known to remove units or to ask for one of a set.
 """
 
-from collections import defaultdict
 from collections.abc import Collection, Iterable, Sequence
+from contextlib import suppress
 from enum import StrEnum
 from functools import cache
 from typing import NamedTuple
 
-from clingo import Number
-from clingo.ast import AST, AggregateFunction, ASTType, parse_string
-from clingo.symbol import SymbolType
+from clingo.ast import AST, ASTType, parse_string
 
 from foon_asp.network import Source
 from foon_asp.rules.clause import (
     Aggregate,
     Clause,
-    Conditional,
     Constants,
     Literal,
     Part,
     Signature,
     Test,
     clauses,
-    compared,
     constant_values,
     literals,
     place,
     plain_value,
     value,
 )
-from foon_asp.rules.dependence import AVAILABLE, USE, Dependence, Depends, Doubt
+from foon_asp.rules.dependence import Dependence, Depends, Doubt
 from foon_asp.rules.fact_values import COLUMNS, misplaced
+from foon_asp.rules.flat_body import Asking, FlatBodies, NotFlatError, Row, Way
 from foon_asp.rules.locality import Locality
 
 
@@ -41,10 +40,10 @@ class Kind(StrEnum):
     """What a rule does.
 
     ``FACT``: there is no decision in it: it holds for every tree, or for none. ``DELETING``: a tree keeps to
-    it as long as it has none of some units. ``SHRINKING``: if a tree keeps to it, so does every tree whose
-    units are a subset. ``REQUIRING``: if a tree keeps to it, so does every tree whose units are a superset.
-    ``OTHER``: none of these is known. ``HELPER``: it derives what other rules look at, and rules nothing out
-    by itself.
+    it as long as it has none of some units, which are known without clingo. ``SHRINKING``: if a tree keeps to
+    it, so does every tree whose units are a subset. ``REQUIRING``: if a tree keeps to it, so does every tree
+    whose units are a superset. ``OTHER``: none of these is known. ``HELPER``: it derives what other rules
+    look at, and rules nothing out by itself.
     """
 
     FACT = "fact"
@@ -79,7 +78,7 @@ class Rule(NamedTuple):
     ``further_source``: if that is empty, the rule is local, and what it says of a tree stays the same when
     facts of units outside the tree, and of object nodes that only those have, are left out. A ``HELPER`` is
     always local: what it sees counts for the rules that use it. ``one_of`` says that a requiring rule asks
-    for one unit of a set, or of each of several sets.
+    for one unit of a set, or of each of several sets, which are known without clingo.
     """
 
     source: Source
@@ -105,8 +104,9 @@ class Analysis:
     """The rules of one question, taken apart, with what each does.
 
     ``rules`` are in the order of the files, ``live`` the clauses that can have an effect: those with a
-    condition that never holds are not among them. ``of_rule`` has the live clauses of each rule, by its place
-    in ``rules``. ``lifted`` are the predicates of which one unit of the tree, or none, decides each atom.
+    condition that never holds are not among them. By the place of a rule in ``rules``, ``of_rule`` has its
+    live clauses, ``removals`` the ways in which a unit breaks it, ``askings`` what it asks for one unit of,
+    and ``rows`` the sum that it bounds. A rule with removals or askings says nothing else.
     """
 
     def __init__(
@@ -127,10 +127,14 @@ class Analysis:
         self.of_rule = [[clause for clause in each if self._why_never(clause.body) is None] for each in taken]
         self.live = [clause for each in (*self.of_rule, _implied()) for clause in each]
         self.dependence = Dependence(self.live, self.constants, varied)
-        self.lifted = self._find_lifted()
         self._locality = Locality(self.live, self.dependence)
+        self.bodies = FlatBodies(self.live, self.constants, self.dependence, self._locality)
+        self.removals: dict[int, tuple[Way, ...]] = {}
+        self.askings: dict[int, tuple[Asking, ...]] = {}
+        self.rows: dict[int, Row] = {}
         self.rules = tuple(
-            self._rule(statement, live) for statement, live in zip(self.statements, self.of_rule, strict=True)
+            self._understood(number, self._rule(statement, live))
+            for number, (statement, live) in enumerate(zip(self.statements, self.of_rule, strict=True))
         )
 
     def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
@@ -150,7 +154,7 @@ class Analysis:
             return Kind.HELPER, None
         kinds = {
             Depends.NOT: Kind.FACT,
-            Depends.GROWS: Kind.DELETING if self.lifts(clause) else Kind.SHRINKING,
+            Depends.GROWS: Kind.SHRINKING,
             Depends.SHRINKS: Kind.REQUIRING,
             Depends.BOTH: Kind.OTHER,
         }
@@ -160,71 +164,6 @@ class Analysis:
     def reads(self, signature: Signature) -> bool:
         """Whether some rule looks at a predicate."""
         return any(each.signature == signature for clause in self.live for each in literals(clause.body))
-
-    def is_closed(self, signature: Signature) -> bool:
-        """Whether a helper has the same atoms for every tree, and whatever is beyond it."""
-        free = self.dependence.of(signature) is Depends.NOT and signature not in self.dependence.doubts
-        return free and self._locality.closed(signature)
-
-    def deciding(self, body: Iterable[Part]) -> list[Part]:
-        """Give the parts of a body that depend on the tree."""
-        return [part for part in body if self.dependence.of_part(part) is not Depends.NOT]
-
-    def lifts(self, clause: Clause) -> bool:
-        """Whether all that a body says of the tree is one atom that a single unit of it decides."""
-        deciding = self.deciding(clause.body)
-        return len(deciding) <= 1 and all(map(self._is_lifted, deciding))
-
-    def _counts_none(self, aggregate: Aggregate) -> bool:
-        """Whether an aggregate says no more than that nothing is counted."""
-        if aggregate.function is not AggregateFunction.Count or len(aggregate.guards) != 1:
-            return False
-        bound = value(aggregate.guards[0].term, self.constants)
-        if bound is None or bound.type is not SymbolType.Number:
-            return False
-        compares = [compared(Number(n), aggregate.guards[0].comparison, bound) for n in (0, 1, 2**31 - 1)]
-        says = [not each for each in compares] if aggregate.negations == 1 else compares
-        return says == [True, False, False]
-
-    def asks_for_one(self, part: Part) -> bool:
-        """Whether a part of a body holds as long as the tree has no unit of a set."""
-        if isinstance(part, Literal):
-            return part.negations == 1 and part.signature in self.lifted and part.single
-        if isinstance(part, Conditional):
-            literal = part.literal
-            return (
-                isinstance(literal, Literal)
-                and self.asks_for_one(literal)
-                and not self.deciding(part.condition)
-            )
-        return (
-            isinstance(part, Aggregate)
-            and self._counts_none(part)
-            and all(
-                len(found := self.deciding(element.condition)) == 1 and self._is_lifted(found[0])
-                for element in part.elements
-            )
-        )
-
-    def _is_lifted(self, part: Part) -> bool:
-        return isinstance(part, Literal) and part.positive and part.signature in self.lifted
-
-    def _find_lifted(self) -> frozenset[Signature]:
-        """Find the predicates of which each atom is derived with the help of at most one unit of the tree."""
-        rules: defaultdict[Signature, list[Clause]] = defaultdict(list)
-        for clause in self.live:
-            for head in clause.heads:
-                rules[head.signature].append(clause)
-        self.lifted = frozenset({USE, AVAILABLE}).union(
-            signature
-            for signature in rules
-            if self.dependence.of(signature) is Depends.GROWS and signature not in self.dependence.doubts
-        )
-        while True:
-            wrong = {s for s in self.lifted if not all(map(self.lifts, rules[s]))}
-            if not wrong:
-                return self.lifted
-            self.lifted -= wrong
 
     def _why_never(self, body: Iterable[Part]) -> str | None:
         """Say why a body cannot hold, whatever the facts are; ``None`` where it may."""
@@ -277,18 +216,30 @@ class Analysis:
             (doubt.source or source) if doubt else None,
             further.reason if further else "",
             further.source if further else None,
-            kind is Kind.REQUIRING
-            and all(self.asks_for_one(part) for clause in live for part in self.deciding(clause.body)),
         )
+
+    def _understood(self, number: int, rule: Rule) -> Rule:
+        """Find what a rule says that needs no clingo, and return the rule with a kind that says so."""
+        live = self.of_rule[number]
+        if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
+            return rule
+        if rule.kind is not Kind.FACT and len(live) == 1:
+            with suppress(NotFlatError):
+                self.rows[number] = self.bodies.row(live[0])
+        with suppress(NotFlatError):
+            if rule.kind is Kind.REQUIRING:
+                self.askings[number] = tuple(each for clause in live for each in self.bodies.askings(clause))
+                return rule._replace(one_of=True)
+            self.removals[number] = tuple(way for clause in live for way in self.bodies.ways(clause))
+            return rule._replace(kind=Kind.FACT if rule.kind is Kind.FACT else Kind.DELETING)
+        return rule
 
 
 def _together(kinds: Iterable[Kind]) -> Kind:
-    """Give what rules of several kinds do together."""
+    """Return what rules of several kinds do together."""
     found = set(kinds)
     if len(found) > 1:
         found.discard(Kind.FACT)
-    if found == {Kind.DELETING, Kind.SHRINKING}:
-        return Kind.SHRINKING
     return found.pop() if len(found) == 1 else Kind.OTHER
 
 

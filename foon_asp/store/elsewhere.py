@@ -16,10 +16,10 @@ _SCALE = 2**40  # of logarithms of success rates, which are counted in whole num
 class Elsewhere:
     """What it takes to execute units, wherever they are in a network, besides what is there already.
 
-    ``kitchen`` says of each node whether it is at hand, ``skipped`` whether units may do without it, and
-    ``motions`` are their names by number. Costs are counted by ``units``, or by ``success`` in logarithms,
-    rounded so that no unit costs less than is said here. What a unit costs is its own and that of what leads
-    to it along one way: the dearest of its inputs, each made by what makes it cheapest.
+    ``kitchen`` says of each node whether it is at hand, ``skipped`` whether units may do without it. Costs
+    are counted by ``units``, or by ``success`` in logarithms, rounded so that no unit costs less than is
+    said here. What a unit costs is its own and that of what leads to it along one way: the dearest of its
+    inputs, each made by what makes it cheapest.
     """
 
     def __init__(
@@ -27,19 +27,21 @@ class Elsewhere:
         outline: Outline,
         kitchen: Mask,
         skipped: Mask,
-        motions: Sequence[str],
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> None:
         self._outline, self._kitchen, self._at_hand = outline, kitchen, kitchen | skipped
+        motions = outline.motion_names
         each, self._step = [1] * len(motions), 1  # what to go on by
         if objective is Objective.SUCCESS and rates is not None:
-            each = [min(least_cost(rates.get(motion, Fraction(1))), FAR - 1) for motion in motions]
+            each = [
+                min(least_cost(rates.get(motion, Fraction(1))), FAR - 1) for motion in outline.motion_names
+            ]
             self._step = _SCALE // 8
         self._costs: NDArray[np.int64] = np.array(each, dtype=np.int64)
 
     def wanted(self, rows: Iterable[Iterable[Trait]]) -> Mask:
-        """Say of each unit whether it may have all traits of one of some rows."""
+        """Return for each unit whether it may have all traits of one of some rows."""
         found = np.zeros(len(self._outline.motions), dtype=np.bool_)
         for row in {tuple(row) for row in rows}:
             found |= self._outline.with_all(row, self._kitchen)
@@ -48,7 +50,7 @@ class Elsewhere:
     def nearest(
         self, wanted: Sequence[Mask], there: Collection[int], most: int, more: int
     ) -> tuple[list[int], list[int]]:
-        """Give some of the cheapest units of each kind that is wanted, and what leads to these.
+        """Return some of the cheapest units of each kind that is wanted, and what leads to these.
 
         ``there`` are units that cost nothing. Gives at most so many of each kind, of those that cost up to
         ``more`` steps more than the first, and what the first of each kind costs: :data:`FAR` where there
@@ -72,7 +74,7 @@ class Elsewhere:
         return np.flatnonzero(units).tolist(), first(found, of_kinds)
 
     def mattering(self, wanted: Sequence[Mask] | None, there: Collection[int], within: int) -> list[int]:
-        """Give the units that cost no more than this and are wanted, or lead to one that is.
+        """Return the units that cost no more than this and are wanted, or lead to one that is.
 
         ``there`` are units that cost nothing; any unit is wanted where ``wanted`` is ``None``.
         """
@@ -94,18 +96,18 @@ class Elsewhere:
 
 
 def least_cost(rate: Fraction) -> int:
-    """Give what a rate above 0 costs, or less: its logarithm without the sign, in whole numbers."""
+    """Return what a rate above 0 costs, or less: its logarithm without the sign, in whole numbers."""
     exact, error = _logarithm(rate)
     return max(0, math.floor(exact) - error)
 
 
 def most_cost(rate: Fraction) -> int:
-    """Give what a rate above 0 costs, or more."""
+    """Return what a rate above 0 costs, or more."""
     exact, error = _logarithm(rate)
     return math.ceil(exact) + error
 
 
 def _logarithm(rate: Fraction) -> tuple[float, int]:
-    """Give what a rate costs, and more than the error that this may have."""
+    """Return what a rate costs, and more than the error that this may have."""
     parts = math.log(rate.denominator), math.log(rate.numerator)
     return (parts[0] - parts[1]) * _SCALE, 2 + math.ceil(sum(parts) * _SCALE * 2**-50)

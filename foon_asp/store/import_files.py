@@ -12,17 +12,16 @@ from foon_asp.network import Source
 from foon_asp.problem import unrated_remarks
 from foon_asp.replacing import pass_on, warn_of_replaced
 from foon_asp.store.builder import StoreBuilder
-from foon_asp.store.stated_digests import StatedDigests
+from foon_asp.store.digests import append_digest
 from foon_asp.store.store_file import is_database_of_ours
 from foon_asp.text.assumed_goals import LAST, MARKED, as_entry
 from foon_asp.text.data_folder import STARTING, DataFiles, kitchen_item_warning, unit_price_warning
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store
-from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.repeated_node import repeated_note
+from foon_asp.text.tables import RATES, read_utensils
 from foon_asp.text.unit_price_list import read_unit_prices
 
 
@@ -55,14 +54,14 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     given = files.kitchen if files.kitchen != STARTING else None
     kitchen = read_object_list(given, warnings) if given else None
     goals = read_object_list(files.goals, warnings) if files.goals else []
-    rates = read_rates(files.rates) if files.rates else None
-    utensils = read_labels(files.utensils) if files.utensils else None
+    rates = RATES.read(files.rates) if files.rates else None
+    utensils = read_utensils(files.utensils) if files.utensils else None
     prices = read_unit_prices(files.unit_prices) if files.unit_prices else None
     earlier = len(warnings)
     last_units: dict[int, Source] = {}
     try:
-        with _written(store) as database, contextlib.closing(StatedDigests(store.parent)) as digests:
-            builder = StoreBuilder(database, kitchen, digests)
+        with _written(store) as database:
+            builder = StoreBuilder(database, kitchen)
             for file in files.network:
                 if is_store(file):
                     raise UserError(f"{file}: is a store already; merge the files that it was made from")
@@ -101,7 +100,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
 
 @contextlib.contextmanager
 def _written(store: Path) -> Iterator[sqlite3.Connection]:
-    """Give a new database, to be renamed to the store when all went well and to be removed when not.
+    """Yield a new database, to be renamed to the store when all went well and to be removed when not.
 
     One file beside the store, which a later import takes over when this process is killed.
     """
@@ -115,6 +114,7 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
         # No journal: until the file is renamed, nobody needs it.
         for setting in (
             "page_size = 4096",
+            "cache_size = -100000",  # kilobytes
             "journal_mode = OFF",
             "synchronous = OFF",
             "locking_mode = EXCLUSIVE",
@@ -125,6 +125,7 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
         yield database
         database.execute("COMMIT")
         database.close()
+        append_digest(partial)
         with partial.open("rb+") as file:
             os.fsync(file.fileno())
         old = None

@@ -1,28 +1,50 @@
 """A store, opened to ask questions: names, and the part of the network that a question is about."""
 
-from collections import Counter
-from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import chain, groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 from foon_asp.garbage import uncollected
 from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
 from foon_asp.network.network import UnitKey
-from foon_asp.network.starting import goal_changes, recipe_kitchen
 from foon_asp.problem import ContainerRule, Unpriced, needed_inputs
-from foon_asp.store.block import Table
+from foon_asp.store.columns import (
+    decoded,
+    decoded_label,
+    encoded_label,
+    entry_of,
+    ids_of,
+    listed,
+    node_columns,
+    node_of,
+    number_of,
+)
 from foon_asp.store.cone import Cone
-from foon_asp.store.label_index import LabelIndex
-from foon_asp.store.plain_values import entry_of, node_hashes, node_of, pattern_hash
-from foon_asp.store.store_file import StoreFile
+from foon_asp.store.label_search import labels_beginning, similar_labels
+from foon_asp.store.store_file import StoreFile, reporting_damage
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode
 
 if TYPE_CHECKING:  # few answers need numpy
     from foon_asp.store.outline import Outline
+
+LISTED = 12  # node ids given with a label: as many as a message has room for
+
+_NODE = (
+    "SELECT node.id, name, states, relations, contents, kitchen, starting "
+    "FROM node JOIN label ON label.id = label"
+)
+_UNIT = "SELECT id, motion, inputs, outputs FROM unit"
+_SOURCE = 'SELECT unit, origin, line, "column" FROM source'
+_ORIGIN = "SELECT origin.id, name, videos FROM origin JOIN file ON file.id = file"
+
+
+_NodeRow = tuple[int, bytes, str, str, str, int, int]
+_Unit = tuple[int, tuple[int, ...], tuple[int, ...]]  # motion, inputs and outputs by id
 
 
 class Store:
@@ -38,30 +60,29 @@ class Store:
     level = 3
 
     def __init__(self, file: Path) -> None:
-        self._file, self.name = StoreFile(file), str(file)
-        about = self._file.block(Table.ABOUT, 0)
-        self.units: int = about["units"]
-        self.objects: int = about["objects"]
-        self.left_out: int = about["left_out"]
-        self.has_kitchen = about["kitchen"] is not None  # if only an empty one
-        self.goals_from: str = about["goals_from"]  # what no goals file says
+        self.file, self.name = StoreFile(file), str(file)
+        self._database = self.file.database
+        self._node_rows: dict[int, _NodeRow] = {}  # those read
+        self._nodes: dict[int, ObjectNode] = {}
+        self._units: dict[int, _Unit] = {}
+        self._origins: dict[int, tuple[str, tuple[str, ...]]] = {}  # files with their videos
+        self._read_head()
+
+    @reporting_damage
+    def _read_head(self) -> None:
+        about = self.file.about
+        self.units, self.objects, self.left_out = (int(about(n)) for n in ("units", "objects", "left_out"))
+        self.has_kitchen = bool(about("kitchen"))  # if only an empty one
+        self.has_unit_prices = bool(about("unit_prices"))
+        self.goals_from = str(about("goals_from"))  # what no goals file says
         self.repeated = tuple(
             RepeatedNode(node, Source(file, line, column), bool(meant))
-            for node, file, line, column, meant in about["repeated"]
+            for node, file, line, column, meant in about("repeated")
         )
-        self._counts = about
-        labels = LabelIndex(self._file, about["labels"], about["trigram_blocks"])
-        self.labelled, self.beginning, self.near = labels.labelled, labels.beginning, labels.near
-        self._nodes: dict[int, ObjectNode] = {}
-        # what there is of each by number
-        tables = Table.UNIT, Table.NODE, Table.PRODUCERS, Table.MOTION, Table.ORIGIN, Table.PRICE
-        each = map(self._file.values, tables)
-        self._unit, self._node, self._makers, self._motion, self._origin, self._price_row = each
-        self._starting, self._file_units = map(self._file.values, (Table.STARTING, Table.FILE))
 
     def close(self) -> None:
         """Close the file; to read more of it raises :class:`UserError`."""
-        self._file.close()
+        self.file.close()
 
     def __enter__(self) -> Self:
         return self
@@ -69,246 +90,371 @@ class Store:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    # What stands beside the network.
+
     @cached_property
+    @reporting_damage
     def rates(self) -> dict[str, Fraction] | None:
         """The success rates of motions, or ``None`` when none were imported."""
-        rates = self._file.block(Table.ABOUT, 1)
-        return None if rates is None else {motion: Fraction(rate) for motion, rate in rates.items()}
+        rates = self.file.about("rates")
+        found = None if rates is None else {motion: number_of(rate) for motion, rate in rates.items()}
+        if found and not all(0 < rate <= 1 for rate in found.values()):
+            raise ValueError("a success rate is not above 0 and at most 1")
+        return found
 
     @cached_property
+    @reporting_damage
     def motion_prices(self) -> dict[str, Fraction] | None:
         """The prices of units by motion, or ``None`` when no file of prices was imported."""
-        prices = self._file.block(Table.ABOUT, 5)
-        return None if prices is None else {motion: Fraction(price) for motion, price in prices.items()}
+        prices = self.file.about("motion_prices")
+        return None if prices is None else {motion: number_of(price) for motion, price in prices.items()}
 
     @cached_property
+    @reporting_damage
     def digests(self) -> dict[str, str]:
         """The digests of ``network``, ``kitchen`` and ``prices`` that were made when it was imported.
 
         Certificates name them; nothing here says that they are true.
         """
-        found: dict[str, str] = self._file.block(Table.ABOUT, 6)
-        return found
+        digests = self.file.about("digests")
+        return {name: bytes.fromhex(digests[name]).hex() for name in ("network", "kitchen", "prices")}
 
-    @property
-    def has_unit_prices(self) -> bool:
-        """Whether single units have prices."""
-        return bool(self._counts["prices"])
+    @cached_property
+    @reporting_damage
+    def utensils(self) -> frozenset[str]:
+        """The labels of utensils."""
+        return frozenset(map(str, self.file.about("utensils")))
 
-    def unit_prices(self, network: Network, listed: bool) -> dict[FunctionalUnit, Fraction]:
+    @cached_property
+    @reporting_damage
+    def goals(self) -> tuple[ListedObject, ...]:
+        """The entries of the goals file."""
+        return tuple(map(entry_of, self.file.about("goals")))
+
+    @reporting_damage
+    def kitchen_items(self) -> tuple[ListedObject, ...]:
+        """Read the entries of the kitchen file: all of them, which only a whole network needs."""
+        rows = self._database.execute("SELECT entry FROM kitchen_item ORDER BY number")
+        return tuple(entry_of(entry) for (entry,) in rows)
+
+    # Prices.
+
+    @reporting_damage
+    def unit_prices(self, network: Network, from_file: bool) -> dict[FunctionalUnit, Fraction]:
         """Read the prices of single units of a part of the network, or of all of it.
 
-        They are those that the networks had which were imported, and where ``listed`` those of the file that
-        was imported beside them, which count before the others.
+        They are those that the networks had which were imported, and with ``from_file`` those of the file
+        that was imported beside them, which count before the others.
         """
         if not self.has_unit_prices:
             return {}
-        rows: Iterable[Any]
+        statement = f"SELECT unit, {_price(from_file)} FROM price"
+        rows: Iterable[tuple[int, str | None]]
         if network.object_numbers:  # a part, be it one without units
-            rows = (self._price_row(unit) for unit in network.unit_numbers)
+            rows = self.file.rows(f"{statement} WHERE unit IN ids", network.unit_numbers)
         else:
-            rows = [row for block in self._file.blocks(Table.PRICE) for row in block]
-            if len(rows) != self.units:
-                self._file.damaged(f"{len(rows)} prices for {self.units} units")
-        prices = ((unit, _price(row, listed)) for unit, row in zip(range(len(network)), rows, strict=True))
-        return {network.unit(unit): Fraction(price) for unit, price in prices if price is not None}
+            rows = self._database.execute(statement)
+        prices = ((network.unit_of_number(number), price) for number, price in rows if price is not None)
+        return {network.unit(unit): number_of(price) for unit, price in prices if unit is not None}
 
+    @reporting_damage
     def unpriced(
-        self, motions: Container[str], units: Iterable[FunctionalUnit], listed: bool
+        self, motions: Container[str], units: Iterable[FunctionalUnit], from_file: bool
     ) -> list[Unpriced]:
-        """Give the units that have no price, but for those with some motions, and for some others.
+        """Return the units that have no price, but for those with some motions, and for some others.
 
-        ``listed`` is as for :meth:`unit_prices`.
+        ``from_file`` is as for :meth:`unit_prices`. All units are looked at where a motion has no price.
         """
-        ids = {unit_id for unit in units if (unit_id := self.unit_id(unit)) is not None}
-        others = Counter(self._unit(u)[0] for u in ids if self._stored_price(u, listed) is None)
-        found: dict[int, Unpriced] = {}
-        for number in range(self._counts["motions"]):
-            motion, *_, own, first_own, both, first_both = self._motion(number)
-            count, first = (both, first_both) if listed else (own, first_own)
-            count -= others[number]
-            if motion in motions or count <= 0:
-                continue
-            while first in ids or not self._is_unpriced(first, number, listed):
-                first += 1
-            source = self._source(*self._unit(first)[3][:3])
-            found[first] = Unpriced(motion, count, source)
-        return [found[first] for first in sorted(found)]
+        lacking = [number for number, (name, _) in self._motions.items() if name not in motions]
+        if not lacking:
+            return []
+        known = {unit_id for unit in units if (unit_id := self.unit_id(unit)) is not None}
+        rows = self.file.rows(
+            f"SELECT motion, unit.id FROM unit LEFT JOIN price ON unit = unit.id "
+            f"WHERE {_price(from_file)} IS NULL AND motion IN ids ORDER BY unit.id",
+            lacking,
+        )
+        found: dict[int, list[int]] = {}
+        for motion, unit in rows:
+            if unit not in known:
+                found.setdefault(motion, []).append(unit)
+        return [
+            Unpriced(
+                self._motions[motion][0], len(of_motion), self.sources_of(of_motion[:1])[of_motion[0]][0]
+            )
+            for motion, of_motion in found.items()
+        ]
 
-    def _is_unpriced(self, unit: int, motion: int, listed: bool) -> bool:
-        return self._unit(unit)[0] == motion and self._stored_price(unit, listed) is None
+    # Object nodes, by id and by name.
 
-    def _stored_price(self, unit: int, listed: bool) -> str | None:
-        return _price(self._price_row(unit), listed) if self.has_unit_prices else None
+    @reporting_damage
+    def read_nodes(self, ids: Iterable[int]) -> None:
+        """Read some nodes together, which is quicker than one by one."""
+        known = self._node_rows
+        wanted = [o for o in ids if o not in known]
+        if wanted:
+            known.update((row[0], row) for row in self.file.rows(f"{_NODE} WHERE node.id IN ids", wanted))
 
-    @cached_property
-    def utensils(self) -> frozenset[str]:
-        """The labels of utensils."""
-        return frozenset(self._file.block(Table.ABOUT, 2) or ())
-
-    @cached_property
-    def goals(self) -> tuple[ListedObject, ...]:
-        """The entries of the goals file."""
-        return tuple(map(entry_of, self._file.block(Table.ABOUT, 3)))
-
-    def kitchen_items(self) -> tuple[ListedObject, ...]:
-        """Read the entries of the kitchen file: all of them, which only a whole network needs."""
-        return tuple(entry_of(values) for block in self._file.blocks(Table.KITCHEN) for values in block)
-
-    def motion_sources(self) -> list[tuple[str, Source]]:
-        """Read every motion, with the place of the first unit that has it."""
-        motions = range(self._counts["motions"])
-        return [(values[0], Source(*values[1:4])) for values in (self._motion(m) for m in motions)]
+    @reporting_damage
+    def _node_row(self, object_id: int) -> _NodeRow:
+        if object_id not in self._node_rows:
+            self.read_nodes((object_id,))
+        return self._node_rows[object_id]
 
     def node(self, object_id: int) -> ObjectNode:
-        """Give the node with that id."""
-        found = self._nodes.get(object_id)
-        if found is None:
-            found = self._nodes[object_id] = node_of(self._node(object_id))
-        return found
+        """Return the node with that id."""
+        return self._nodes.get(object_id) or self.nodes((object_id,))[0]
+
+    @reporting_damage
+    def nodes(self, ids: Collection[int]) -> list[ObjectNode]:
+        """Return some nodes by id, in order."""
+        self.read_nodes(ids)
+        known = self._nodes
+        for o in ids:
+            if o not in known:
+                _, label, states, relations, contents, _, _ = self._node_rows[o]
+                known[o] = node_of(decoded_label(label), states, relations, contents)
+        return [known[o] for o in ids]
 
     def in_kitchen(self, object_id: int) -> bool:
         """Whether the node is in the kitchen that was imported."""
-        return bool(self._node(object_id)[0])
+        return self._node_row(object_id)[-2] == 1
 
     def is_starting(self, object_id: int) -> bool:
         """Whether the node is in the starting kitchen, see :class:`foon_asp.network.StartingKitchen`."""
-        return bool(self._starting(object_id))
+        return self._node_row(object_id)[-1] == 1
 
-    def starting_kitchen(self) -> frozenset[int]:
-        """Read the whole starting kitchen."""
-        rows = (row for block in self._file.blocks(Table.STARTING) for row in block)
-        return frozenset(o for o, row in enumerate(rows) if row)
-
-    def starting_changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
-        """Return what the starting kitchen has more, and what it lacks, because these are the goals."""
-        makers = {o: self._making(o) for o in goals if o < self.objects and self.is_starting(o)}
-        assumed = [o for o, units in makers.items() if units]
-        return goal_changes(assumed, self._granting, lambda o: self._files_of(makers[o]), self._kitchen_of)
-
-    def made_too(self, objects: Iterable[int]) -> list[int]:
-        """Return those of some nodes that a unit makes out of others."""
-        return [o for o in objects if self._making(o)]
-
-    def _making(self, object_id: int) -> list[int]:
-        """Return the units that make a node out of others."""
-        return [unit for unit in self.producers(object_id) if object_id not in self._unit(unit)[1]]
-
-    def _granting(self, object_id: int) -> list[int]:
-        row: int | list[int] = self._starting(object_id)
-        return row if isinstance(row, list) else []
-
-    def _files_of(self, units: Iterable[int]) -> Iterator[int]:
-        """Return the files of units, by the number of the first origin of each."""
-        for unit in units:
-            for origin in self._unit(unit)[3][::3]:
-                row = self._file_units(origin)
-                yield row if isinstance(row, int) else origin
-
-    def _kitchen_of(self, file: int, goals: Collection[int]) -> set[int]:
-        units = [self._unit(unit) for unit in self._file_units(file)]
-        raw, granted = recipe_kitchen([unit[1] for unit in units], [unit[2] for unit in units], goals)
-        return {*raw, *granted}
-
+    @reporting_damage
     def object_id(self, node: ObjectNode) -> int | None:
-        """Give the id of a node, or ``None`` when the network does not have it."""
-        found = self._hashed(node_hashes(node)[0], lambda other: other == node)
-        return found[0] if found else None
+        """Return the id of a node, or ``None`` when the network does not have it."""
+        columns = node_columns(node)[1:]
+        return next(self._named(node.label, "states = ? AND relations = ? AND contents = ?", *columns), None)
 
+    @reporting_damage
     def find(self, pattern: NodePattern) -> list[int]:
-        """Give the ids of the nodes that a kitchen or goals entry stands for."""
-        return self._hashed(pattern_hash(pattern), pattern.matches)
+        """Return the ids of the nodes that a kitchen or goals entry stands for."""
+        where, columns = "states = ?", [listed(sorted(pattern.states))]
+        if pattern.container is None and not pattern.relations:
+            where += " AND relations = '[]'"
+        found = [*self._named(pattern.label, where, *columns)]
+        return [o for o, node in zip(found, self.nodes(found), strict=True) if pattern.matches(node)]
 
+    def _named(self, label: str, where: str = "1", *columns: str) -> Iterator[int]:
+        """Yield the ids of the nodes with a label, in order."""
+        statement = (
+            f"SELECT id FROM node WHERE label = (SELECT id FROM label WHERE name = ?) AND {where} ORDER BY id"
+        )
+        return (o for (o,) in self._database.execute(statement, (encoded_label(label), *columns)))
+
+    @reporting_damage
+    def labelled(self, label: str) -> tuple[int, Sequence[int]]:
+        """Return how many nodes have a label, and the ids of the first :data:`LISTED`."""
+        found = [*self._named(label)]
+        if not found and label in self.beginning(label, 1):
+            raise LookupError(f"no object node has the label {label!r}")
+        return len(found), found[:LISTED]
+
+    @reporting_damage
+    def beginning(self, start: str, most: int) -> list[str]:
+        """Return at most ``most`` labels that begin with ``start``, in alphabetical order."""
+        return labels_beginning(self._database, start, most)
+
+    @reporting_damage
+    def near(self, label: str, most: int) -> list[str]:
+        """Return at most ``most`` labels that are similar to one, the most similar first."""
+        return similar_labels(self._database, label, most)
+
+    @reporting_damage
+    def nodes_where(self, condition: str, *values: object) -> frozenset[int]:
+        """Return the ids of the nodes of which a condition on the columns of the table ``node`` holds."""
+        return frozenset(
+            o for (o,) in self._database.execute(f"SELECT id FROM node WHERE {condition}", values)
+        )
+
+    # Units.
+
+    @cached_property
+    @reporting_damage
+    def _motions(self) -> dict[int, tuple[str, int]]:
+        """The motions by id, each with the first unit that has it."""
+        rows = self._database.execute("SELECT id, name, first_unit FROM motion ORDER BY id")
+        return {number: (str(decoded(name)), unit) for number, name, unit in rows}
+
+    @reporting_damage
+    def motion_sources(self) -> list[tuple[str, Source]]:
+        """Read every motion, with the place of the first unit that has it."""
+        sources = self.sources_of([unit for _, unit in self._motions.values()])
+        return [(motion, sources[unit][0]) for motion, unit in self._motions.values()]
+
+    @reporting_damage
+    def sources_of(self, units: Iterable[int]) -> dict[int, tuple[Source, ...]]:
+        """Read the places of some units, those of all copies of each."""
+        rows = self.file.rows(f"{_SOURCE} WHERE unit IN ids ORDER BY unit, copy", units).fetchall()
+        new = {origin for _, origin, _, _ in rows if origin not in self._origins}
+        self._keep_origins(self.file.rows(f"{_ORIGIN} WHERE origin.id IN ids", new) if new else ())
+        return self._sources(rows)
+
+    def _keep_origins(self, rows: Iterable[tuple[int, str, str]]) -> None:
+        for number, file, videos in rows:
+            self._origins[number] = str(decoded(file)), tuple(decoded(videos))
+
+    def _sources(self, rows: Iterable[tuple[int, int, int, int]]) -> dict[int, tuple[Source, ...]]:
+        def source(_: int, origin: int, line: int, column: int) -> Source:
+            file, videos = self._origins[origin]
+            return Source(file, int(line), int(column), videos)
+
+        of_unit = groupby(rows, lambda row: row[0])
+        return {unit: tuple(source(*row) for row in copies) for unit, copies in of_unit}
+
+    @reporting_damage
+    def read_units(self, ids: Iterable[int]) -> None:
+        """Read some units together, which is quicker than one by one."""
+        wanted = [unit for unit in ids if unit not in self._units]
+        if wanted:
+            for unit, motion, inputs, outputs in self.file.rows(f"{_UNIT} WHERE id IN ids", wanted):
+                self._units[unit] = motion, ids_of(inputs), ids_of(outputs)
+
+    @reporting_damage
+    def _unit(self, unit_id: int) -> _Unit:
+        if unit_id not in self._units:
+            self.read_units((unit_id,))
+        return self._units[unit_id]
+
+    @reporting_damage
+    def unit_parts(self, unit: int) -> tuple[str, tuple[int, ...], tuple[int, ...], tuple[Source, ...]]:
+        """Return the motion, the inputs, the outputs and the places of a unit."""
+        motion, inputs, outputs = self._unit(unit)
+        return self._motions[motion][0], inputs, outputs, self.sources_of((unit,))[unit]
+
+    @reporting_damage
     def unit_id(self, unit: FunctionalUnit) -> int | None:
-        """Give the id of a unit, or ``None`` when the network does not have it."""
-        sides = [[self.object_id(node) for node in side] for side in (unit.inputs, unit.outputs)]
-        if None in sides[0] or None in sides[1]:
+        """Return the id of a unit, or ``None`` when the network does not have it."""
+        inputs, outputs = ([self.object_id(node) for node in side] for side in (unit.inputs, unit.outputs))
+        if None in inputs or None in outputs:
             return None
-        outputs = sides[1]
-        candidates = self._file.block(Table.ABOUT, 4) if not outputs else self.producers(outputs[0])  # type: ignore[arg-type]
+        if outputs:
+            candidates = self.producers(outputs[0])  # type: ignore[arg-type]
+        else:
+            rows = self._database.execute("SELECT id FROM unit WHERE outputs = '[]' ORDER BY id")
+            candidates = [candidate for (candidate,) in rows]
         for candidate in candidates:
-            motion, inputs, outputs, _ = self._unit(candidate)
-            if [set(inputs), set(outputs)] == [set(side) for side in sides] and (
-                self._motion(motion)[0] == unit.motion
-            ):
+            motion, *sides = self._unit(candidate)
+            if [*map(set, sides)] == [set(inputs), set(outputs)] and self._motions[motion][0] == unit.motion:
                 return candidate
         return None
 
-    @uncollected()
+    def producers(self, object_id: int) -> list[int]:
+        """Return the units that have a node as an output, in order."""
+        return self.producers_of((object_id,))[0]
+
+    @reporting_damage
+    def producers_of(self, objects: Sequence[int]) -> list[list[int]]:
+        """Return for each of some nodes the units that have it as an output, in order."""
+        rows = self.file.rows(
+            "SELECT node, id, motion, inputs, outputs FROM producer JOIN unit ON id = unit WHERE node IN ids "
+            "ORDER BY node, id",
+            objects,
+        )
+        found: dict[int, list[int]] = {o: [] for o in objects}
+        for o, unit, motion, inputs, outputs in rows:
+            found[o].append(unit)
+            if unit not in self._units:
+                self._units[unit] = motion, ids_of(inputs), ids_of(outputs)
+        return [found[o] for o in objects]
+
+    @reporting_damage
+    def needs(
+        self, units: Sequence[int], containers: ContainerRule, utensils: frozenset[str]
+    ) -> list[list[int]]:
+        """Return what each of some units needs under a container rule; ``utensils`` are what it looks at."""
+        self.read_units(units)
+        inputs = [self._unit(unit)[1] for unit in units]
+        self.read_nodes(set(chain.from_iterable(inputs)))
+        if containers is ContainerRule.STRICT:
+            return [*map(list, inputs)]
+        found = []
+        for side in inputs:
+            nodes = tuple(self.nodes(side))
+            needed = set(needed_inputs(FunctionalUnit("", nodes, ()), containers, utensils))
+            found.append([o for o, node in zip(side, nodes, strict=True) if node in needed])
+        return found
+
     def cone(
         self,
         goals: Iterable[int],
         containers: ContainerRule,
         utensils: frozenset[str],
-        in_kitchen: Callable[[int], bool] | None = None,
+        at_hand: Container[int],
         most: int | None = None,
     ) -> Cone:
-        """Find the units that goals can need: backwards through all producers, stopping at the kitchen.
+        """Find the units that goals can need: backwards through all producers, stopping at what is at hand.
 
-        ``utensils`` are what the container rule looks at, ``in_kitchen`` says of a node whether it is at
-        hand (in the store's kitchen if ``None``). Whatever tree for these goals is best in the whole
+        ``utensils`` are what the container rule looks at. Whatever tree for these goals is best in the whole
         network, without a unit to spare, is one of them. Producers are units with a node among their
         outputs, whether or not the rule has them make it: there may be more than need be. With ``most``,
         about as many are found at first.
         """
-        cone = Cone(
-            goals,
-            self.producers,
-            lambda unit: self._needs(unit, containers, utensils),
-            in_kitchen or self.in_kitchen,
-        )
+        cone = Cone(goals, self, containers, utensils, at_hand)
         cone.grow(sorted(cone.open), most)
         return cone
 
-    def part_of(self, cone: Cone) -> Network:
-        """Read what was found of a cone."""
-        return self.part(cone.units, cone.goals)
+    # Networks.
 
+    @reporting_damage
     @uncollected()
     def part(self, units: Iterable[int], objects: Iterable[int] = ()) -> Network:
         """Read some units, the nodes in them, and further nodes, as a part of the whole network."""
         unit_ids = sorted(set(units))
-        read = [self._unit(unit) for unit in unit_ids]
-        object_ids = sorted(
-            {*objects, *(o for _, ins, outs, _ in read for side in (ins, outs) for o in side)}
-        )
+        self.read_units(unit_ids)
+        parts = [self._unit(unit) for unit in unit_ids]
+        object_ids = sorted({*objects, *(o for _, *sides in parts for side in sides for o in side)})
         new_ids = {o: place for place, o in enumerate(object_ids)}
-        network = self._network(read, [self.node(o) for o in object_ids], new_ids)
+        sources = self.sources_of(unit_ids)
+        network = self._network(parts, [sources[unit] for unit in unit_ids], self.nodes(object_ids), new_ids)
         return replace(network, unit_numbers=tuple(unit_ids), object_numbers=tuple(object_ids))
 
+    @reporting_damage
     @uncollected()
     def whole(self) -> tuple[Network, frozenset[int]]:
-        """Read the whole network, and which nodes are in the kitchen."""
-        values = [values for block in self._file.blocks(Table.NODE) for values in block]
-        units = [values for block in self._file.blocks(Table.UNIT) for values in block]
-        if len(values) != self.objects or len(units) != self.units:
-            self._file.damaged(f"{len(units)} of {self.units} units, {len(values)} of {self.objects} nodes")
-        network = self._network(units, [node_of(node) for node in values], range(len(values)))
-        return network, frozenset(o for o, node in enumerate(values) if node[0])
+        """Read the whole network, and which nodes are in the kitchen; the file has to have its digest."""
+        self.file.check_digest()
+        labels = dict(self._database.execute("SELECT id, name FROM label"))
+        labels = {number: decoded_label(name) for number, name in labels.items()}
+        rows = self._database.execute("SELECT label, states, relations, contents FROM node ORDER BY id")
+        objects = [node_of(labels[label], *columns) for label, *columns in rows]
+        units = [
+            (motion, ids_of(inputs), ids_of(outputs))
+            for _, motion, inputs, outputs in self._database.execute(f"{_UNIT} ORDER BY id")
+        ]
+        self._keep_origins(self._database.execute(_ORIGIN))
+        sources = self._sources(self._database.execute(f"{_SOURCE} ORDER BY unit, copy"))
+        if (len(units), len(objects)) != (self.units, self.objects):
+            raise ValueError(f"{len(units)} of {self.units} units, {len(objects)} of {self.objects} nodes")
+        network = self._network(units, list(sources.values()), objects, range(len(objects)))
+        return network, self.nodes_where("kitchen")
 
     def _network(
-        self, units: Sequence[Any], objects: Sequence[ObjectNode], ids: Mapping[int, int] | range
+        self,
+        units: Sequence[_Unit],
+        sources: Sequence[tuple[Source, ...]],
+        objects: Sequence[ObjectNode],
+        ids: Mapping[int, int] | range,
     ) -> Network:
         """Put a network together; ``ids`` are the new ids of the nodes by the old ones."""
         motions: list[str] = []
         inputs: list[tuple[int, ...]] = []
         outputs: list[tuple[int, ...]] = []
-        sources: list[tuple[Source, ...]] = []
         unit_ids: dict[UnitKey, int] = {}
-        named = [o for _, ins, outs, _ in units for side in (ins, outs) for o in side]
-        if isinstance(ids, range) and max(named, default=-1) >= len(ids):
-            self._file.damaged("a unit has an object node that is missing")
-        for motion, ins, outs, places in units:
-            motions.append(self._motion(motion)[0])
+        for motion, ins, outs in units:
+            motions.append(self._motions[motion][0])
             inputs.append(tuple([ids[o] for o in ins]))
             outputs.append(tuple([ids[o] for o in outs]))
-            sources.append(tuple(self._source(*places[i : i + 3]) for i in range(0, len(places), 3)))
             unit_ids[motions[-1], frozenset(inputs[-1]), frozenset(outputs[-1])] = len(unit_ids)
         object_ids = {node: place for place, node in enumerate(objects)}
-        if len(object_ids) != len(objects) or len(unit_ids) != len(units):
-            self._file.damaged("an object node or a unit is there twice")
+        if (len(object_ids), len(unit_ids), len(sources)) != (len(objects), len(units), len(units)):
+            raise ValueError("an object node or a unit is there twice")
         if any(len(set(side)) != len(side) for side in (*inputs, *outputs)):
-            self._file.damaged("a unit has an object node twice")
+            raise ValueError("a unit has an object node twice")
         return Network(
             tuple(objects),
             tuple(motions),
@@ -319,56 +465,17 @@ class Store:
             unit_ids,
         )
 
-    def _source(self, origin: int, line: int, column: int) -> Source:
-        file, videos = self._origin(origin)
-        return Source(file, line, column, tuple(videos))
-
-    def _needs(self, unit: int, containers: ContainerRule, utensils: frozenset[str]) -> list[int]:
-        inputs: list[int] = self._unit(unit)[1]
-        if containers is ContainerRule.STRICT:
-            return inputs
-        nodes = tuple(map(self.node, inputs))
-        needed = set(needed_inputs(FunctionalUnit("", nodes, ()), containers, utensils))
-        return [o for o, node in zip(inputs, nodes, strict=True) if node in needed]
-
-    def producers(self, object_id: int) -> list[int]:
-        """Give the units that have a node as an output, in order."""
-        found: list[int] = self._makers(object_id)
-        return found
-
     @cached_property
+    @reporting_damage
     def outline(self) -> "Outline":
-        """Read the outline of the whole network: 55 bytes or so for each unit."""
+        """Read the outline of the whole network."""
         from foon_asp.store.outline import Outline  # noqa: PLC0415 (few answers need numpy)
 
-        motions = [motion for motion, _ in self.motion_sources()]
-        return Outline(self._file.column, self.units, self.objects, motions, self._file.damaged)
-
-    def outline_with(self, units: Iterable[int]) -> "Outline":
-        """Give the outline, which has to say the same of some units as the rest of the store."""
-        outline = self.outline
-        kitchen = outline.kitchen()
-        for unit in units:
-            motion, inputs, outputs, _ = self.unit_parts(unit)
-            held = all(bool(kitchen[o]) is self.in_kitchen(o) for o in (*inputs, *outputs))
-            if not held or not outline.has(unit, motion, inputs, outputs):
-                self._file.damaged(f"the outline has another unit {unit}")
-        return outline
-
-    def unit_parts(self, unit: int) -> tuple[str, tuple[int, ...], tuple[int, ...], tuple[Source, ...]]:
-        """Give the motion, the inputs, the outputs and the places of a unit."""
-        motion, ins, outs, places = self._unit(unit)
-        sources = tuple(self._source(*places[i : i + 3]) for i in range(0, len(places), 3))
-        return self._motion(motion)[0], tuple(ins), tuple(outs), sources
-
-    def _hashed(self, wanted: int, is_it: Callable[[ObjectNode], bool]) -> list[int]:
-        """Give the ids of the nodes that have this hash and that ``is_it`` says yes of."""
-        bucket = self._file.block(Table.NODE_HASH, wanted % self._counts["hash_blocks"])
-        found = zip(bucket[::2], bucket[1::2], strict=True)
-        return [o for known, o in found if known == wanted and is_it(self.node(o))]
+        motions = [motion for motion, _ in self._motions.values()]
+        rows = self._database.execute("SELECT name, numbers FROM outline")
+        return Outline(rows, self.units, self.objects, motions, self.nodes_where)
 
 
-def _price(row: list[str | None] | None, listed: bool) -> str | None:
-    """Give the price of a unit: its own, or where those of the file count, the file's if it has one."""
-    own, of_file = row or (None, None)
-    return of_file if listed and of_file is not None else own
+def _price(from_file: bool) -> str:
+    """Return the column of a unit's price: its own, or where those of the file count, the file's if any."""
+    return "coalesce(listed, stated)" if from_file else "stated"

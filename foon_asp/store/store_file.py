@@ -1,19 +1,35 @@
-"""The file of a store: what is a store, is it whole, and its blocks."""
+"""The file of a store: what is a store, and is it whole."""
 
+import functools
+import json
 import os
 import sqlite3
 import weakref
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, Concatenate, NoReturn, ParamSpec, Protocol, TypeVar
 
 from foon_asp.errors import UserError
-from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, table_statement, unseal, unsealed
-from foon_asp.store.block_shape import check_block, note_line_ends
+from foon_asp.store.columns import decoded
+from foon_asp.store.digests import FILE_DIGEST, has_true_digest
+from foon_asp.store.schema import APPLICATION_ID, VERSION, check_tables
 from foon_asp.text.plain_file import STORE_MAGIC, read_beginning
 
 _HEADER = 100  # bytes; https://www.sqlite.org/fileformat2.html says what is where
 
+# What values of other types, lengths and ids than a store has end in.
+_DAMAGE = (
+    sqlite3.Error,
+    ValueError,
+    TypeError,
+    LookupError,
+    AttributeError,
+    ArithmeticError,
+    MemoryError,
+    RecursionError,
+)
+
+Words = ParamSpec("Words")
 Value = TypeVar("Value")
 
 
@@ -27,94 +43,53 @@ class StoreFile:
     """An opened store, read only. Any number of processes can have one open, and it is never written.
 
     It is closed by :meth:`close`, or when nothing refers to it any more. Raises :class:`UserError`, here and
-    at every block, for a file that is no store, was made by a newer program, is cut off or damaged. Every
-    block that is read is compared with its checksum.
+    where something is read, for a file that is no store, was made by a newer program, is cut off or damaged.
     """
 
     def __init__(self, file: Path) -> None:
         self.file = file
-        self._blocks: dict[Table, dict[int, Any]] = {table: {} for table in Table}
         self._check_header()
         try:
             # immutable: no locks, no files beside it. Who holds it open keeps what an import replaces.
             uri = f"{file.absolute().as_uri()}?mode=ro&immutable=1"
-            self._database = sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
+            self.database = sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
         except sqlite3.Error as error:
             raise UserError(f"{file}: cannot be read: {error}") from None
-        self._closing = weakref.finalize(self, self._database.close)
-        self._guarded(self._check_tables)
+        self._closing = weakref.finalize(self, self.database.close)
+        try:
+            check_tables(self.database)
+        except (sqlite3.Error, ValueError) as error:
+            self.failed(error)
 
     def close(self) -> None:
-        """Close the file; blocks that were read stay, and to read another raises :class:`UserError`."""
+        """Close the file; to read more of it raises :class:`UserError`."""
         self._closing()
 
-    def block(self, table: Table, number: int) -> Any:
-        """Give a block, which is not to be changed."""
-        known = self._blocks[table]
-        found = known.get(number)
-        if found is None:
-            content = self._content(table, number)
-            found = known[number] = self._guarded(lambda: _opened(table, number, content))
-        return found
+    def rows(self, statement: str, ids: Iterable[int]) -> sqlite3.Cursor:
+        """Run a statement that names some ids as ``IN ids``."""
+        listed = "IN (SELECT value FROM json_each(?))"
+        return self.database.execute(statement.replace("IN ids", listed), (json.dumps([*ids]),))
 
-    def column(self, number: int) -> bytes:
-        """Read a column of the outline."""
-        content = self._content(Table.OUTLINE, number)
-        return self._guarded(lambda: unsealed(Table.OUTLINE, number, content))
+    def about(self, name: str) -> Any:
+        """Return what the store says of itself under a name."""
+        row = self.database.execute("SELECT value FROM about WHERE name = ?", (name,)).fetchone()
+        return decoded(row[0])
 
-    def values(self, table: Table) -> Callable[[int], Any]:
-        """Make a function that gives what a table has under a number, among others in a block."""
-        known, size = self._blocks[table], SIZES[table]
+    def check_digest(self) -> None:
+        """Refuse a file that is not what the import wrote; all of it is read."""
+        if not has_true_digest(self.file):
+            (found,) = self.database.execute("PRAGMA quick_check(1)").fetchone()
+            self.damaged("it was changed after the import" if found == "ok" else " ".join(found.split()))
 
-        def value(number: int) -> Any:
-            values = known.get(number // size)
-            if values is None:
-                values = self.block(table, number // size)
-            place = number % size
-            if place >= len(values):
-                self.damaged(f"number {number} of {table} is missing")
-            return values[place]
-
-        return value
-
-    def blocks(self, table: Table) -> Iterator[Any]:
-        """Give all blocks of a table in order, and keep none of them."""
-        rows = self._guarded(lambda: self._database.execute(f"SELECT * FROM {table} ORDER BY number"))
-        number = 0
-        while (row := self._guarded(rows.fetchone)) is not None:
-            if row[0] != number:
-                self.damaged(f"block {number} of {table} is missing")
-            yield self._guarded(lambda row=row: _opened(table, row[0], row[1]))  # type: ignore[misc]
-            number += 1
+    def failed(self, error: BaseException) -> NoReturn:
+        """Say why nothing can be read."""
+        if not self._closing.alive:
+            raise UserError(f"{self.file}: the store was closed; open it again to read from it") from None
+        self.damaged(str(error) or type(error).__name__)
 
     def damaged(self, what: str) -> NoReturn:
         """Say that the store is of no use."""
         raise UserError(f"{self.file}: the store is damaged ({what}); import its source files again")
-
-    def _content(self, table: Table, number: int) -> object:
-        statement = f"SELECT content FROM {table} WHERE number = ?"
-        row = self._guarded(lambda: self._database.execute(statement, (number,)).fetchone())
-        if row is None:
-            self.damaged(f"block {number} of {table} is missing")
-        found: object = row[0]
-        return found
-
-    def _guarded(self, read: Callable[[], Value]) -> Value:
-        if not self._closing.alive:
-            raise UserError(f"{self.file}: the store was closed; open it again to read from it")
-        # MemoryError and OverflowError: lengths that are none; ValueError: names and checksums.
-        try:
-            return read()
-        except (sqlite3.Error, MemoryError, OverflowError, ValueError) as error:
-            self.damaged(str(error) or type(error).__name__)
-
-    def _check_tables(self) -> None:
-        """Refuse a database with anything in it but our tables: a view or trigger runs what it likes."""
-        self._database.execute("PRAGMA trusted_schema = OFF")
-        found = self._database.execute("SELECT type, name, tbl_name, sql FROM sqlite_master").fetchall()
-        ours = {("table", table.value, table.value, table_statement(table)) for table in Table}
-        if len(found) != len(ours) or set(found) != ours:
-            raise ValueError("its tables are not those of a store")
 
     def _check_header(self) -> None:
         """Refuse what is no store of ours, before SQLite looks at it."""
@@ -135,28 +110,43 @@ class StoreFile:
         if int.from_bytes(header[68:72]) != APPLICATION_ID:
             raise UserError(f"{file}: is a database of another program, expected a store of foon-asp")
         version = int.from_bytes(header[60:64])
-        if version > VERSION:
-            raise UserError(
-                f"{file}: has version {version} of the store format, this foon-asp reads version {VERSION}: "
-                "use a newer foon-asp, or import its source files again"
-            )
         if version < 1:
             self.damaged(f"version {version} of the store format does not exist")
         if version != VERSION:
+            newer = "use a newer foon-asp, or " if version > VERSION else ""
             raise UserError(
                 f"{file}: has version {version} of the store format, this foon-asp reads version {VERSION}: "
-                "import its source files again"
+                f"{newer}import its source files again"
             )
         page = int.from_bytes(header[16:18])
-        expected = (65536 if page == 1 else page) * int.from_bytes(header[28:32])
+        expected = (65536 if page == 1 else page) * int.from_bytes(header[28:32]) + FILE_DIGEST
         if size != expected:
             self.damaged(f"it has {size} bytes, expected {expected}")
 
 
-def _opened(table: Table, number: int, block: object) -> object:
-    """Give what is in a block; raises :class:`ValueError` where it is not what its table holds."""
-    value = unseal(table, number, block)
-    check_block(table, number, value)
-    if isinstance(block, bytes) and b"\\n" in block:
-        note_line_ends(value)
-    return value
+class _Reading(Protocol):
+    """What reads from a store."""
+
+    @property
+    def file(self) -> StoreFile:
+        """The file."""
+
+
+Reader = TypeVar("Reader", bound=_Reading)
+
+
+def reporting_damage(
+    read: Callable[Concatenate[Reader, Words], Value],
+) -> Callable[Concatenate[Reader, Words], Value]:
+    """Make a method raise :class:`UserError` where what it reads is not what a store holds."""
+
+    @functools.wraps(read)
+    def guarded(reader: Reader, *words: Words.args, **named: Words.kwargs) -> Value:
+        try:
+            return read(reader, *words, **named)
+        except UserError:
+            raise
+        except _DAMAGE as error:
+            reader.file.failed(error)
+
+    return guarded  # type: ignore[return-value]

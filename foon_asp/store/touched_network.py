@@ -1,7 +1,9 @@
 """The whole network of a store, of which no more is read than is looked at."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar, overload
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Self, TypeVar, overload
 
 from foon_asp.network import FunctionalUnit, Network, ObjectNode
 from foon_asp.store.store import Store
@@ -28,28 +30,40 @@ class _Each(Sequence[Value]):
         return self._read(self._ids[place])
 
 
+def _each(size: int, read: Callable[[int], Value]) -> Any:  # in place of a tuple
+    return _Each(size, read)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class TouchedNetwork(Network):
     """The whole network of a store; looked at one by one, units and nodes are read one by one."""
 
-    _store: Store
+    store: Store = field(kw_only=True)
 
-    def __init__(self, store: Store) -> None:
-        units, objects = store.units, store.objects
-        sides: list[Any] = [
-            _Each(units, lambda unit, part=part: store.unit_parts(unit)[part])  # type: ignore[misc]
+    @classmethod
+    def of(cls, store: Store) -> Self:
+        """Return the network of a store."""
+        nodes = _each(store.objects, store.node)
+        motions, inputs, outputs, sources = [
+            _each(store.units, lambda unit, part=part: store.unit_parts(unit)[part])  # type: ignore[misc]
             for part in range(4)
         ]
-        nodes: Any = _Each(objects, store.node)
-        super().__init__(nodes, sides[0], sides[1], sides[2], sides[3], {}, {})
-        producers: Any = _Each(objects, store.producers)
-        motions = frozenset(motion for motion, _ in store.motion_sources())
-        # the class is frozen, and would work these out of everything
-        self.__dict__.update(_store=store, producers=producers, different_motions=motions)
+        return cls(nodes, motions, inputs, outputs, sources, {}, {}, store=store)
+
+    @cached_property
+    def producers(self) -> Any:
+        """For each object node, the units that have it as an output, in order."""
+        return _each(self.store.objects, self.store.producers)
+
+    @cached_property
+    def different_motions(self) -> frozenset[str]:
+        """The motions of the units, each once."""
+        return frozenset(motion for motion, _ in self.store.motion_sources())
 
     def object_id(self, node: ObjectNode) -> int | None:
-        """Give the id of a node, or ``None`` if the network does not have it."""
-        return self._store.object_id(node)
+        """Return the id of a node, or ``None`` if the network does not have it."""
+        return self.store.object_id(node)
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
-        """Give the id of a unit, or ``None`` if the network does not have it."""
-        return self._store.unit_id(unit)
+        """Return the id of a unit, or ``None`` if the network does not have it."""
+        return self.store.unit_id(unit)

@@ -1,79 +1,55 @@
-"""Lines of FOON text, and nodes, that are a single token of the grammar: most are, and need no parser."""
+"""Lines of FOON text that are written as they should be, and labels alone: most are, and need no parser.
+
+To import Lark and build the parser takes a third of a cold ``solve``.
+"""
 
 import re
-from collections.abc import Callable
-from functools import cache
 
-from foon_asp.network import Contents, ObjectNode, Relation, unquoted
-from foon_asp.text.grammar import patterns
+from foon_asp.network import Contents, ObjectNode, Relation
 from foon_asp.text.line import Line, MotionLine, ObjectLine, Remark, StateLine
+
+_NAME = r"[^ \t\r\n\[\]{}](?:[^\t\r\n\[\]{}]*[^ \t\r\n\[\]{}])?"
+_MOTION = r"[^ *\t\r\n\[\]{}](?:[^*\t\r\n\[\]{}]*[^ *\t\r\n\[\]{}])?"
+_RELATED = r"[^ ,\[\]{}\t\r\n](?:[^,\[\]{}\t\r\n]*[^ ,\[\]{}\t\r\n])?"
+_OBJECT_LINE = re.compile(rf"O([0-9]*)\t({_NAME})(?:\t([01]))?")
+_MOTION_LINE = re.compile(rf"M([0-9]*)\t({_MOTION})((?:\t(?:[0-9]+:[0-9][0-9]|Assumed))*)")
+# with a blank for the tab before a place, as JSON has it; what contains [something] is a list in disguise
+_STATE_LINE = re.compile(
+    rf"S([0-9]*)\t(?!contains[\t ]\[)({_NAME})(?:([\t ])\[({_RELATED})\]|\t\{{([^\[\]{{}}\t\r\n]*)\}})?"
+)
+_LABEL = re.compile(r' *[^ ";\t\r\n\[\]{}][^;\t\r\n\[\]{}]*')
 
 
 def clean_line(text: str) -> Line | None:
-    """Read a line that is a single token of the grammar; ``None`` for any other."""
-    match = _whole_lines()(f"{text}\n")
-    return CLEAN[match.lastgroup](text) if match and match.lastgroup else None
+    """Return what a line says that is written as it should be; ``None`` for any other."""
+    if match := _STATE_LINE.fullmatch(text):
+        return _state(match)
+    if match := _OBJECT_LINE.fullmatch(text):
+        id_, label, flag = match.groups()
+        return ObjectLine(label, id_, (flag,) if flag else ())
+    if match := _MOTION_LINE.fullmatch(text):
+        id_, motion, times = match.groups()
+        return MotionLine(motion, id_, fields=tuple(times.split("\t")[1:]))
+    return None
 
 
 def clean_node(notation: str) -> ObjectNode | None:
-    """Read a node in one-line notation that is a label alone; ``None`` for any other."""
-    return ObjectNode(unquoted(notation)) if _name()(notation) else None
+    """Return the node of a label alone, without quotes; ``None`` for any other notation."""
+    return ObjectNode(notation.strip(" ")) if _LABEL.fullmatch(notation) else None
 
 
-@cache
-def _whole_lines() -> Callable[[str], re.Match[str] | None]:
-    tokens = "|".join(f"(?P<{name}>{pattern})" for name, pattern in patterns(CLEAN).items())
-    return re.compile(tokens).fullmatch
-
-
-@cache
-def _name() -> Callable[[str], re.Match[str] | None]:
-    return re.compile(patterns(["NAME"])["NAME"]).fullmatch
-
-
-def _object(text: str) -> ObjectLine:
-    letter, label, *fields = text.split("\t")
-    return ObjectLine(label, letter[1:], tuple(fields))
-
-
-def _plain(text: str) -> StateLine:
-    letter, state = text.split("\t")
-    return StateLine(state, letter[1:])
-
-
-def _related(text: str) -> StateLine:
-    letter, word, bracket = text.split("\t")
-    return StateLine(Relation(word, bracket[1:-1]), letter[1:])
-
-
-def _related_by_blank(text: str) -> StateLine:
-    letter, state = text.split("\t")
-    word, related = state[:-1].split(" [")
-    remark = no_tab(f"[{related}]", len(letter + word) + 2)
-    return StateLine(Relation(word, related), letter[1:], remarks=(remark,))
-
-
-def _holding(text: str) -> StateLine:
-    letter, word, bracket = text.split("\t")
+def _state(match: re.Match[str]) -> StateLine:
+    id_, name, gap, related, listed = match.groups()
+    end = match.end(2)
     remarks: list[Remark] = []
-    listed = items(bracket[1:-1], len(letter + word) + 4, remarks)
-    return StateLine(Contents(word, tuple(sorted(listed))), letter[1:], listed, tuple(remarks))
-
-
-def _motion(text: str) -> MotionLine:
-    letter, motion, *fields = text.split("\t")
-    return MotionLine(motion, letter[1:], fields=tuple(fields))
-
-
-CLEAN: dict[str, Callable[[str], Line]] = {
-    "CLEAN_OBJECT": _object,
-    "CLEAN_PLAIN": _plain,
-    "CLEAN_RELATED": _related,
-    "BLANK_RELATED": _related_by_blank,
-    "CLEAN_HOLDING": _holding,
-    "CLEAN_MOTION": _motion,
-}
-"""By the name of the token."""
+    if related is not None:
+        if gap == " ":
+            remarks.append(no_tab(f"[{related}]", end + 1))
+        return StateLine(Relation(name, related), id_, remarks=tuple(remarks))
+    if listed is None:
+        return StateLine(name, id_)
+    found = items(listed, end + 3, remarks)
+    return StateLine(Contents(name, tuple(sorted(found))), id_, found, tuple(remarks))
 
 
 def no_tab(bracket: str, column: int) -> Remark:

@@ -5,9 +5,8 @@ from collections.abc import Iterator
 from enum import StrEnum
 
 from foon_asp.network import Contents, Relation
-from foon_asp.text.conversion_times import in_two_fields
 from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine, is_number
-from foon_asp.text.motion_times import MotionFields
+from foon_asp.text.motion_times import MotionFields, in_two_fields
 
 
 class Loss(StrEnum):

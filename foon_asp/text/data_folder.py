@@ -20,21 +20,21 @@ from foon_asp.network import (
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.assumed_goals import LAST, MARKED, as_entry, last_goals
 from foon_asp.text.diagnostics import Diagnostic, Severity
-from foon_asp.text.label_list import read_labels
+from foon_asp.text.formats import NEUTRAL
 from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, begins_neutral, read_content
-from foon_asp.text.rate_table import read_rates
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, beginning, read_content
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.repeated_node import RepeatedNode
 from foon_asp.text.stated_prices import StatedPrices
+from foon_asp.text.tables import RATES, read_utensils
 from foon_asp.text.unit_price_list import UnitPriceList, read_unit_prices
 
-_RATES, _UTENSILS, _UNIT_PRICES = "motion.txt", "utensils.txt", "unit_prices.txt"
+_RATES, _read_utensils, _UNIT_PRICES = "motion.txt", "utensils.txt", "unit_prices.txt"
 # In JSON or as FOON text, the first that is there.
 _KITCHENS, _GOALS = ("kitchen.json", "kitchen.txt"), ("goal_nodes.json", "goal_nodes.txt")
 _OBJECT_KEY = re.compile(rb'"(?:input_nodes|functional_units|object_label|label)"\s*:')
 _FOR_SCHEDULES = {"durations.txt", "tools.txt"}
-_SIDE_TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
+_SIDE_TABLES = {_RATES, _read_utensils, _UNIT_PRICES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
 
 STARTING = Path("@starting")
 """In place of a kitchen file: what makes the units of each file run is at hand."""
@@ -122,7 +122,7 @@ def find_data(
         files,
         beside(kitchen, *_KITCHENS),
         beside(rates, _RATES),
-        beside(utensils, _UTENSILS),
+        beside(utensils, _read_utensils),
         beside(goals, *_GOALS),
         beside(unit_prices, _UNIT_PRICES),
     )
@@ -153,7 +153,7 @@ def _may_be_network(file: Path) -> bool:
     if file.suffix == ".json":
         return _OBJECT_KEY.search(read_content(file)) is not None
     if file.name.endswith(NEUTRAL_SUFFIXES):
-        return begins_neutral(file)
+        return NEUTRAL.recognises(beginning(file), "")
     return file.suffix == ".txt"
 
 
@@ -192,8 +192,8 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         frozenset(kitchen),
         items,
         goals,
-        read_rates(files.rates) if files.rates else None,
-        read_labels(files.utensils) if files.utensils else frozenset(),
+        RATES.read(files.rates) if files.rates else None,
+        read_utensils(files.utensils) if files.utensils else frozenset(),
         tuple(warnings),
         reader.left_out,
         unit_prices(reader.prices, listed),

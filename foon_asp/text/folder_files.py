@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, begins_neutral, read_content
+from foon_asp.text.formats import NEUTRAL
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, beginning, read_content
 
 _LINE = re.compile(rb"^(?:\xef\xbb\xbf)?[OSM]\d*[\t ]", re.MULTILINE)
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
@@ -46,7 +47,7 @@ def _is_foon(file: Path, within: Path) -> bool:
     if any(part[:1] == "." for part in within.parts) or not file.is_file():
         return False
     if file.name.endswith(NEUTRAL_SUFFIXES):
-        return begins_neutral(file)
+        return NEUTRAL.recognises(beginning(file), "")
     sign = {".txt": _LINE, ".json": _KEY}.get(file.suffix)
     content = read_content(file) if sign else b""
     # one in UTF-16 is not read, but whoever reads the folder has to be told

@@ -5,7 +5,7 @@ import re
 
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
-from foon_asp.text.json_fault import json_fault
+from foon_asp.text.json_list import json_fault
 
 STEP = "    "
 TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{}:,]|[^\s\[\]{}:,"]+')

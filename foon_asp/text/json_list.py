@@ -8,10 +8,14 @@ from typing import Final, NamedTuple
 
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
-from foon_asp.text.json_fault import json_fault
-from foon_asp.text.plain_file import before_json
+from foon_asp.text.plain_file import FENCE
 
 _SPACE = re.compile(r"[ \t\r\n]*")
+_COMMA_BEFORE_END = re.compile(r",[ \t\r\n]*([\]}])")
+_BLANKS = " \t\r\n"
+_BEGINNING = 2_000  # letters of a text that are looked at for JSON
+_JSON_LINE = re.compile(r"^[ \t]*[\[{]", re.MULTILINE)
+_FOON_LINE = re.compile(r"[OSM]\d*[ \t]|//|#")
 
 
 class JsonElement(NamedTuple):
@@ -168,3 +172,47 @@ def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
 DECODER: Final = json.JSONDecoder(
     object_pairs_hook=_object, parse_int=JsonNumber, parse_float=JsonNumber, parse_constant=JsonNumber
 )
+
+
+def begins_json(text: str) -> bool:
+    """Whether a text is JSON; no line of FOON text begins with a bracket."""
+    return text[:1_000].lstrip(_BLANKS)[:1] in {"{", "["}
+
+
+def before_json(text: str) -> str:
+    """Return an error message about what stands before JSON in a text; empty where nothing does."""
+    begins = text[:_BEGINNING].lstrip(_BLANKS)
+    first = begins.split("\n", 1)[0].rstrip()
+    if not _JSON_LINE.search(begins) or begins_json(begins) or _FOON_LINE.match(first):
+        return ""
+    if first.startswith(FENCE):
+        return (
+            f"found a code fence around JSON, expected JSON alone: remove the lines that begin with {FENCE}"
+        )
+    return f"found the text {first[:40]!r} before JSON, expected JSON alone: remove it"
+
+
+class JsonFault(NamedTuple):
+    """What is wrong, at which offset of the text, and which line and column that is, counted from 1."""
+
+    message: str
+    offset: int
+    line: int
+    column: int
+
+
+def json_fault(error: json.JSONDecodeError) -> JsonFault:
+    """Say in our words what the standard library found.
+
+    A comma before the end of a list or an object is where the Pythons differ: some name the comma, some
+    what stands behind it. Here it is the comma.
+    """
+    text, offset, message = error.doc, error.pos, error.msg
+    start = offset
+    if text[offset : offset + 1] in {"]", "}"}:
+        start = len(text[:offset].rstrip(_BLANKS)) - 1
+    comma = _COMMA_BEFORE_END.match(text, start) if start >= 0 else None
+    if comma:
+        offset, message = start, f"found a comma before {comma[1]}, expected none"
+    line = text.count("\n", 0, offset) + 1
+    return JsonFault(f"not JSON: {message}", offset, line, offset - text.rfind("\n", 0, offset))

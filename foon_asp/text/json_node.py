@@ -1,24 +1,11 @@
-"""Object nodes and places as our own JSON has them, written and read."""
+"""Object nodes read from our own JSON."""
 
-from foon_asp.escapes import note_line_end
-from foon_asp.network import ObjectNode, Source
+from foon_asp.network import ObjectNode
 from foon_asp.text.json_value import Json
 
 
-def node_json(node: ObjectNode, number: int | None = None) -> Json:
-    """Give a node in its parts and in one-line notation; ``number`` is its id in the whole network."""
-    return {
-        "id": number,
-        "node": str(node),
-        "label": node.label,
-        "states": sorted(node.states),
-        "relations": [relation._asdict() for relation in sorted(node.relations)],
-        "contents": [contents._asdict() for contents in node.contents],
-    }
-
-
 def read_node_json(value: Json) -> ObjectNode:
-    """Give back the node of :func:`node_json`.
+    """Return the node that plain values of a :class:`foon_asp.results.values.Node` stand for.
 
     Raises :class:`KeyError` or :class:`TypeError` for what has another form, and :class:`ValueError` where
     the notation and the parts are not the same node.
@@ -31,13 +18,4 @@ def read_node_json(value: Json) -> ObjectNode:
     )
     if str(node) != value["node"]:
         raise ValueError(f"the parts of {str(value['node'])[:80]!r} are those of {str(node)[:80]!r}")
-    for name in (node.label, *node.states, *node.ingredients):
-        note_line_end(name)
-    for relation in node.relations:
-        note_line_end(relation.object)
     return node
-
-
-def place_json(place: Source) -> Json:
-    """Give where something was read."""
-    return {"file": place.file, "line": place.line, "videos": list(place.videos)}

@@ -2,16 +2,19 @@
 
 import json
 from collections.abc import Iterator
+from decimal import Decimal
+from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.escapes import note_line_end
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
+from foon_asp.text.exact_number import LONGEST, read_price
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import json_line
 from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number
 from foon_asp.text.line_parser import parse_node, read_state
 from foon_asp.text.listed_unit import ObjectBlock
+from foon_asp.text.reading import Reading
 
 # The names that say the same, and which of them are read at all.
 _LABEL, _STATES = ("label", "object_label"), ("states", "object_states")
@@ -59,6 +62,19 @@ def read_object(value: object) -> JsonObject:
     remarks = [remark.message for state in states for remark in state.remarks]
     plain = [state._replace(remarks=()) for state in states] if remarks else states
     return JsonObject(line, tuple(plain), container, (*remarks, *_left_out(value, flag, category, listed)))
+
+
+def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
+    """Read a list of objects; what there is to say about them is noted in ``reading``.
+
+    A ``container`` is in what an object stands for, and not among its states.
+    """
+    elements = JsonList(text, Path(file))
+    for block, pattern, remarks in read_objects(elements):
+        for remark in remarks:
+            reading.warn("json-value", remark, block.source)
+        yield block, pattern
+    reading.diagnostics += elements.errors
 
 
 def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern, tuple[str, ...]]]:
@@ -148,6 +164,28 @@ def number(value: dict[str, object], key: str) -> str:
     raise ValueError(f'found {shown(found)} as "{key}", expected a number')
 
 
+def price_of(value: object, exponents: bool = False) -> str:
+    """Return the price of a unit as it is written, a number or text; empty where there is none.
+
+    A number may have an exponent where the form has ``exponents``; the price is without it.
+    """
+    if value is None:
+        return ""
+    written = value.text if isinstance(value, JsonNumber) else value
+    if not isinstance(written, str):
+        raise ValueError('found no number as "price", expected a price from 0, as a decimal such as 1.99')
+    if exponents and isinstance(value, JsonNumber) and "e" in written.lower():
+        exact = Decimal(written)
+        if abs(exact.adjusted()) + len(written) >= LONGEST:
+            raise ValueError(f'found {written[:40]!r} as "price", expected one of at most {LONGEST} letters')
+        written = f"{exact:f}"
+    try:
+        read_price(written)
+    except LineError as error:
+        raise ValueError(f'in "price": {error}') from None
+    return written
+
+
 def _state(value: object) -> StateLine:
     if isinstance(value, dict):
         check_keys(value, _STATE_KEYS)
@@ -205,7 +243,6 @@ def _list(value: dict[str, object], key: str, found: object) -> list[object]:
 def _name(value: object, key: str, expected: str = "a name") -> str:
     if not isinstance(value, str):
         raise ValueError(f'found {shown(value)} as "{key}", expected {expected}')
-    note_line_end(value.strip(" "))
     return value
 
 

@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from foon_asp.network import Relation, Source
-from foon_asp.text.diagnostics import Diagnostic, Severity
-from foon_asp.text.exact_price import read_price
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
-from foon_asp.text.json_object import check_keys, number, optional_name, read_object
-from foon_asp.text.line import LineError, MotionLine, StateLine
+from foon_asp.text.json_object import check_keys, number, optional_name, price_of, read_object
+from foon_asp.text.line import MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import is_rate, is_time
+from foon_asp.text.reading import Reading
+from foon_asp.text.text_units import no_motion
 
 _NEEDED = {"input_nodes", "motion_node", "output_nodes"}
 _KEYS = {*_NEEDED, "price"}
@@ -23,10 +23,8 @@ _LABELS = {"label", "object_label"}
 _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_type", "weight_success"}
 
 
-def read_json_units(
-    text: str, file: str, diagnostics: list[Diagnostic], lenient: bool
-) -> Iterator[ListedUnit]:
-    """Give the units in order; what is wrong goes to ``diagnostics``, under ``lenient`` as warnings.
+def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
+    """Give the units in order; what there is to say about them is noted in ``reading``.
 
     An object whose ``container`` is named without a word is ``in`` it.
     """
@@ -34,9 +32,7 @@ def read_json_units(
     listed = list(elements)
     videos = _videos(elements.others.get("source"))
     if listed and not elements.errors and all(_is_object(element.value) for element in listed):
-        objects = "one object" if len(listed) == 1 else f"{len(listed)} objects"
-        message = f"{objects} and no motion: a list such as a kitchen or goals, without units"
-        diagnostics.append(Diagnostic(Severity.WARNING, "no-motion", message, listed[0].source))
+        reading.warn("no-motion", no_motion(len(listed)), listed[0].source)
         return
     for element in listed:
         try:
@@ -44,22 +40,17 @@ def read_json_units(
         except ValueError as problem:
             elements.error(element.source, str(problem))
             continue
-        diagnostics += [Diagnostic(Severity.WARNING, "json-value", text, element.source) for text in remarks]
+        for remark in remarks:
+            reading.warn("json-value", remark, element.source)
+        motion = unit.motion.motion
         if not unit.inputs:
-            message = f"the unit {unit.motion.motion!r} has no input objects; left out"
-            diagnostics.append(Diagnostic(Severity.WARNING, "no-inputs", message, element.source))
+            reading.warn("no-inputs", f"the unit {motion!r} has no input objects; left out", element.source)
             continue
         if not unit.outputs:
-            message = f"the unit {unit.motion.motion!r} has no output objects"
-            diagnostics.append(Diagnostic(Severity.WARNING, "no-outputs", message, element.source))
+            reading.warn("no-outputs", f"the unit {motion!r} has no output objects", element.source)
         yield unit
-    if lenient:
-        diagnostics += [
-            error._replace(severity=Severity.WARNING, message=f"{error.message}; left out")
-            for error in elements.errors
-        ]
-    else:
-        diagnostics += elements.errors
+    for error in elements.errors:
+        reading.reject(error.code, error.message, error.source, error.excerpt)
 
 
 def _is_object(value: object) -> bool:
@@ -81,23 +72,9 @@ def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, li
     remarks: list[str] = []
     inputs, outputs = (_side(value, key, source, remarks) for key in ("input_nodes", "output_nodes"))
     motion = _motion(value["motion_node"], remarks)
-    price = _price(value.get("price"))
+    price = price_of(value.get("price"))
     unit = ListedUnit(motion, inputs, outputs, (source._replace(videos=videos),), source, price)
     return unit, list(dict.fromkeys(remarks))
-
-
-def _price(value: object) -> str:
-    """Give the price of a unit as it is written, a number or text; empty where there is none."""
-    if value is None:
-        return ""
-    written = value.text if isinstance(value, JsonNumber) else value
-    if not isinstance(written, str):
-        raise ValueError('found no number as "price", expected a price from 0, as a decimal such as 1.99')
-    try:
-        read_price(written)
-    except LineError as error:
-        raise ValueError(f'in "price": {error}') from None
-    return written
 
 
 def _side(unit: dict[str, object], key: str, source: Source, remarks: list[str]) -> tuple[ObjectBlock, ...]:

@@ -6,16 +6,94 @@ What is written is laid out like the files in these forms, and read by :mod:`foo
 import re
 from collections.abc import Sequence
 
-from foon_asp.network import Contents, Relation
-from foon_asp.text.conversion_times import in_two_fields
-from foon_asp.text.json_layout import STEP
+from foon_asp.network import Contents, NodePattern, Relation
+from foon_asp.text.conversion_loss import CannotHoldError, lost_in_line, lost_in_states
+from foon_asp.text.diagnostics import Severity
+from foon_asp.text.format import Dialect, Part
+from foon_asp.text.json_layout import STEP, lay_out
 from foon_asp.text.json_list import JsonNumber
+from foon_asp.text.json_object import read_json_objects
+from foon_asp.text.json_units import read_json_units
 from foon_asp.text.json_value import json_line
 from foon_asp.text.line import MotionLine, ObjectLine, StateLine
-from foon_asp.text.motion_times import MotionFields
+from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
+from foon_asp.text.motion_times import MotionFields, in_two_fields
+from foon_asp.text.provenance import read_copy, read_video
+from foon_asp.text.reading import Reading
 
 # What a JSON number may look like; other digits, such as 007, are written as text.
 _NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
+
+
+class JsonWriter:
+    """Writes one of the forms, and reads each part back: names may mean something else there."""
+
+    holds_prices = True
+    holds_no_inputs = False
+
+    def __init__(self, target: Dialect) -> None:
+        self._is_list = target is Dialect.JSON_LIST
+        self._level = 1 if self._is_list else 2  # at which a unit stands
+
+    def block(self, block: ObjectBlock, in_list: bool) -> Part:
+        """Write an object."""
+        line, states = block.object, block.states
+        text = (list_object if self._is_list else json_object)(line, states)
+        back = _listed(text) if in_list else _unit(text, '"x"').inputs[0]
+        losses = lost_in_line(line, back.object) + lost_in_states(states, back.states)
+        return lay_out(text, 1 if in_list else self._level + 2), losses
+
+    def motion(self, line: MotionLine) -> Part:
+        """Write a motion."""
+        text = (list_motion if self._is_list else json_motion)(line)
+        back = _unit('{"label":"x"}', text).motion
+        return lay_out(text, self._level + 1), lost_in_line(line, back)
+
+    def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
+        """Put a unit together."""
+        return written_unit(inputs, motion, outputs, price, self._level)
+
+    def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
+        """Put a file together."""
+        return self.objects(units) if self._is_list else written_network(videos, units)
+
+    def objects(self, parts: Sequence[str]) -> str:
+        """Put a list together."""
+        return written_list(parts, 0) + "\n"
+
+    def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
+        """Return the videos, where they are those of the whole file and one key can name them."""
+        named = tuple(video for video in map(read_video, comments) if video)
+        return videos if not self._is_list and named == videos and not any(map(read_copy, comments)) else ()
+
+
+def with_container(block: ObjectBlock, pattern: NodePattern) -> ObjectBlock:
+    """Return a listed object with its container as a relation without a word, which comes last."""
+    if pattern.container is None:
+        return block
+    return block._replace(states=(*block.states, StateLine(Relation("", pattern.container))))
+
+
+def _listed(text: str) -> ObjectBlock:
+    reading = Reading()
+    found = [with_container(*entry) for entry in read_json_objects(f"[{text}]", "", reading)]
+    _raise_first_error(reading)
+    return found[0]
+
+
+def _unit(node: str, motion: str) -> ListedUnit:
+    text = f'[{{"input_nodes":[{node}],"motion_node":{motion},"output_nodes":[{node}]}}]'
+    reading = Reading()
+    found = list(read_json_units(text, "", reading))
+    _raise_first_error(reading)
+    return found[0]
+
+
+def _raise_first_error(reading: Reading) -> None:
+    """Refuse what cannot be read back; what is only in doubt there was so before, or counts as lost."""
+    for diagnostic in reading.diagnostics:
+        if diagnostic.severity is Severity.ERROR:
+            raise CannotHoldError(diagnostic.message)
 
 
 def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:

@@ -1,11 +1,30 @@
 """One line of FOON text and what it says."""
 
+from collections.abc import Iterator
+from enum import StrEnum
 from typing import NamedTuple, Self
 
 from foon_asp.network import Contents, Relation
 
 MOTION_FLAGS = {"0", "1"}
 SLIPPED_FLAGS = {"00", "01"}
+
+
+class NameKind(StrEnum):
+    """What a name is for; an object is named by its label, as a container and as an ingredient."""
+
+    OBJECT = "object"
+    STATE = "state"
+    WORD = "relation"
+    MOTION = "motion"
+
+
+class Mention(NamedTuple):
+    """A name where it stands in a file, with the id that stands with it, if any."""
+
+    kind: NameKind
+    name: str
+    id: str = ""
 
 
 class Remark(NamedTuple):
@@ -76,12 +95,29 @@ Line = ObjectLine | StateLine | MotionLine
 
 
 def name_of(line: Line) -> str:
-    """Give what an id stands for: a label, a motion, a state, or the word of a relation or of contents."""
+    """Return what an id stands for: a label, a motion, a state, or the word of a relation or of contents."""
     if isinstance(line, ObjectLine):
         return line.label
     if isinstance(line, MotionLine):
         return line.motion
     return line.attribute if isinstance(line.attribute, str) else line.attribute.word
+
+
+def kind_of(line: Line) -> NameKind:
+    """Return of what kind that name is."""
+    if isinstance(line, StateLine):
+        return NameKind.STATE if isinstance(line.attribute, str) else NameKind.WORD
+    return NameKind.OBJECT if isinstance(line, ObjectLine) else NameKind.MOTION
+
+
+def line_names(line: Line) -> Iterator[Mention]:
+    """Give the names that a line mentions, the first with the id of the line."""
+    yield Mention(kind_of(line), name_of(line), line.id)
+    if isinstance(line, StateLine):
+        if isinstance(line.attribute, Relation):
+            yield Mention(NameKind.OBJECT, line.attribute.object)
+        elif isinstance(line.attribute, Contents):
+            yield from (Mention(NameKind.OBJECT, item) for item in line.attribute.ingredients)
 
 
 class LineError(Exception):

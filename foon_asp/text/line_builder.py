@@ -2,17 +2,16 @@
 
 import re
 from functools import cache
+from pathlib import Path
 
 from lark import Lark, Token, Transformer
 from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput, UnexpectedToken
 
 from foon_asp.network import Contents, ObjectNode, Relation, unquoted
-from foon_asp.text.clean_line import CLEAN, items, no_tab
-from foon_asp.text.grammar import parser
+from foon_asp.text.clean_line import items, no_tab
 from foon_asp.text.line import (
     MOTION_FLAGS,
     SLIPPED_FLAGS,
-    Line,
     LineError,
     MotionLine,
     ObjectLine,
@@ -23,6 +22,7 @@ from foon_asp.text.line import (
 from foon_asp.text.motion_times import MotionFields, is_time, mended_time
 from foon_asp.text.plain_file import FENCE
 
+_GRAMMAR = Path(__file__).with_name("foon.lark")
 _NAME_LENGTH = 40  # letters of a line that may be a name
 _ITEM = re.compile(r' *"(?:\\.|[^"\\])*" *|[^,]+')  # between commas, which quotes may hold too
 _TERMINALS = {
@@ -45,12 +45,6 @@ _TERMINALS = {
 
 class _LineBuilder(Transformer[Token, object]):
     """Turns parsed lines into values; columns in remarks come from the tokens."""
-
-    def lines(self, lines: list[Line]) -> list[Line]:
-        return lines
-
-    def clean(self, tokens: list[Token]) -> Line:
-        return CLEAN[tokens[0].type](tokens[0][:-1])
 
     def object(self, tokens: list[Token]) -> ObjectLine:
         remarks: list[Remark] = []
@@ -252,18 +246,19 @@ def _related(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> Stat
 
 @cache
 def _parser() -> Lark:
-    return parser(_LineBuilder())
+    grammar = _GRAMMAR.read_text(encoding="utf-8")
+    return Lark(grammar, start=["line", "node"], parser="lalr", transformer=_LineBuilder())
 
 
 def build(start: str, text: str) -> object:
-    """Parse lines, or a node in one-line notation, and give what they say.
+    """Parse a line with its line end, or a node in one-line notation, and return what it says.
 
     Raises :class:`LineError` for a text that the grammar does not accept, taken as one line.
     """
     try:
         return _parser().parse(text, start=start)
     except UnexpectedInput as error:
-        fault = _line_error(error, text, in_file=start == "lines")
+        fault = _line_error(error, text, in_file=start == "line")
     raise fault  # with nothing of what the parser had in its hands
 
 

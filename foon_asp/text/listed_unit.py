@@ -25,6 +25,23 @@ class ObjectBlock(NamedTuple):
         return self.object, *self.states
 
 
+class ReadUnit(NamedTuple):
+    """One copy of a unit: what makes its identity, nodes in the order listed, and where it was read.
+
+    ``sources`` has one entry, unless a merged file says from which copies the unit came.
+    """
+
+    motion: str
+    inputs: list[ObjectNode]
+    outputs: list[ObjectNode]
+    sources: tuple[Source, ...]
+
+    @property
+    def source(self) -> Source:
+        """The place of the first copy."""
+        return self.sources[0]
+
+
 class ListedUnit(NamedTuple):
     """One copy of a functional unit with its lines as read, nodes in the order listed.
 
@@ -44,6 +61,11 @@ class ListedUnit(NamedTuple):
     def sides(self) -> tuple[list[ObjectNode], list[ObjectNode]]:
         """The input and the output nodes, in the order listed."""
         return [block.node for block in self.inputs], [block.node for block in self.outputs]
+
+    @property
+    def identity(self) -> ReadUnit:
+        """The unit without its lines."""
+        return ReadUnit(self.motion.motion, *self.sides, self.sources)
 
 
 def node_of(label: str, attributes: Iterable[str | Relation | Contents]) -> ObjectNode:

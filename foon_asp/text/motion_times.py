@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 _CLOCK = r"\d+:\d\d(?::\d\d)?"
 _SPAN = rf"{_CLOCK}(?: ?- ?{_CLOCK})?"
+_SPAN_OF_TWO = re.compile(r"<(\d[\d:]*) ?[,-] ?(\d[\d:]*)>")
+_ASSUMED = re.compile(r"<(assumed)(?:, ?(assumed))?>", re.IGNORECASE)
 _TIME = re.compile(
     rf"assumed|{_CLOCK}|<assumed(?:, ?assumed)?>|<{_SPAN}(?:, ?{_SPAN})*>", re.IGNORECASE | re.ASCII
 )
@@ -54,3 +56,22 @@ class MotionFields(NamedTuple):
         return (
             self.times if self.entity is None or self.rate is None else (*self.times, self.entity, self.rate)
         )
+
+
+def in_two_fields(times: tuple[str, ...]) -> tuple[str, ...]:
+    """Write ``<0:14,0:20>`` as ``0:14`` and ``0:20``; times that are no single span stay as they are."""
+    if len(times) == 1:
+        span = _SPAN_OF_TWO.fullmatch(times[0]) or _ASSUMED.fullmatch(times[0])
+        if span and is_time(times[0]):
+            return span[1], span[2] or span[1]
+    return times
+
+
+def in_one_field(times: tuple[str, ...]) -> tuple[str, ...]:
+    """Write ``0:14`` and ``0:20`` as ``<0:14,0:20>``; what would be no time stays as it is."""
+    if len(times) == 2 and not any(time[:1] == "<" for time in times):
+        begin, end = times
+        field = f"<{begin}>" if begin == end and begin[:1] in {"A", "a"} else f"<{begin},{end}>"
+        if in_two_fields((field,)) == times:
+            return (field,)
+    return times

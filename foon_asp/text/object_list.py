@@ -4,11 +4,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.network import NodePattern, Source
-from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
-from foon_asp.text.json_list import JsonList
-from foon_asp.text.json_object import read_objects
-from foon_asp.text.plain_file import is_json, read_plain_text
-from foon_asp.text.reader import FoonReader
+from foon_asp.text.diagnostics import Diagnostic
+from foon_asp.text.formats import JSON, format_of
+from foon_asp.text.plain_file import read_plain_text
+from foon_asp.text.reading import Reading
 
 
 class ListedObject(NamedTuple):
@@ -26,23 +25,12 @@ def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> li
     that is not of this form.
     """
     text = read_plain_text(file)
-    if file.suffix != ".json" and not is_json(text):
-        return _read_blocks(text, file, warnings)
-    elements = JsonList(text, file)
-    entries: list[ListedObject] = []
-    for block, pattern, remarks in read_objects(elements):
-        if warnings is not None:
-            warnings += [Diagnostic(Severity.WARNING, "json-value", text, block.source) for text in remarks]
-        entries.append(ListedObject(pattern, block.source))
-    if elements.errors:
-        raise InputError(elements.errors)
-    return entries
-
-
-def _read_blocks(text: str, file: Path, warnings: list[Diagnostic] | None) -> list[ListedObject]:
-    reader = FoonReader()
-    blocks = reader.object_blocks(text, str(file))
-    reader.raise_errors()
+    format_ = JSON if file.suffix == JSON.list_suffix else format_of(text, str(file))
+    reading = Reading()
+    entries = [
+        ListedObject(pattern, block.source) for block, pattern in format_.objects(text, str(file), reading)
+    ]
+    reading.raise_errors()
     if warnings is not None:
-        warnings += [d for d in reader.diagnostics if d.severity is Severity.WARNING]
-    return [ListedObject(NodePattern.of(block.node), block.source) for block in blocks]
+        warnings += reading.diagnostics
+    return entries

@@ -1,9 +1,8 @@
 """Text files as they come, UTF-8 with or without a byte order mark; and what is none."""
 
-import json
 import re
 from codecs import BOM_UTF8, getincrementaldecoder
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from io import TextIOWrapper
 from pathlib import Path
 from typing import BinaryIO
@@ -14,12 +13,11 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 STORE_SUFFIX = ".foon"
 NEUTRAL_SUFFIXES = (".jsonl", ".ndjson")
-_FIRST_LINE = 1_000_000  # bytes of it looked at
+_BEGINNING = 1_000_000  # bytes; a unit of the neutral form may be that long
+_LINE = re.compile(r"([^\r\n]*)(\r\n|\r|\n|\Z)")
+_LINE_END = re.compile(r"\r\n|\r|\n")
 FENCE = "```"
 """How a line begins by which Markdown, and who writes it, tells code from prose."""
-_BEGINNING = 2_000  # letters of a text that are looked at for JSON
-_JSON_LINE = re.compile(r"^[ \t]*[\[{]", re.MULTILINE)
-_FOON_LINE = re.compile(r"[OSM]\d*[ \t]|//|#")
 STORE_MAGIC = b"SQLite format 3\0"  # how every database begins
 
 
@@ -61,50 +59,6 @@ def _unreadable(file: Path, error: OSError) -> UserError:
     return UserError(f"{file}: cannot be read: {error.strerror or error}")
 
 
-def is_neutral(text: str, file: str = "") -> bool:
-    """Whether a text is in the neutral form: named as it, or its first line is one of its units as JSON."""
-    if file.endswith(NEUTRAL_SUFFIXES):
-        return True
-    start = len(text[:1_000]) - len(text[:1_000].lstrip("\ufeff \t\r\n"))
-    line = text[start:].split("\n", 1)[0] if text[start : start + 1] == "{" else ""
-    if '"outputs"' not in line:
-        return False
-    try:
-        unit = json.loads(line, parse_int=str, parse_float=str)
-    except (ValueError, RecursionError):
-        return False
-    return isinstance(unit, dict) and unit.keys() >= {"inputs", "outputs"} and "schema" not in unit
-
-
-def begins_neutral(file: Path) -> bool:
-    """Whether the first line of a file is a unit of the neutral form."""
-    with opened(file) as lines:
-        return is_neutral(lines.readline(_FIRST_LINE).decode(errors="replace"))
-
-
-def is_neutral_file(file: Path) -> bool:
-    """Whether a file is in the neutral form, by the ending of its name or by its first line."""
-    return file.is_file() and (file.name.endswith(NEUTRAL_SUFFIXES) or begins_neutral(file))
-
-
-def is_json(text: str) -> bool:
-    """Whether a text is JSON; no line of FOON text begins with a bracket."""
-    return text[:1_000].lstrip(" \t\r\n")[:1] in {"{", "["}
-
-
-def before_json(text: str) -> str:
-    """Return an error message about what stands before JSON in a text; empty where nothing does."""
-    begins = text[:_BEGINNING].lstrip(" \t\r\n")
-    first = begins.split("\n", 1)[0].rstrip()
-    if not _JSON_LINE.search(begins) or is_json(begins) or _FOON_LINE.match(first):
-        return ""
-    if first.startswith(FENCE):
-        return (
-            f"found a code fence around JSON, expected JSON alone: remove the lines that begin with {FENCE}"
-        )
-    return f"found the text {first[:40]!r} before JSON, expected JSON alone: remove it"
-
-
 def text_pieces(file: Path, size: int) -> Iterator[str]:
     """Give the text of a file in pieces of some ``size``, every line end as a line feed.
 
@@ -131,6 +85,27 @@ def text_pieces(file: Path, size: int) -> Iterator[str]:
 def split_lines(text: str) -> list[str]:
     """Give the lines of a text without their ends, whatever these are."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+def each_line(text: str, write: Callable[[str], str]) -> str:
+    """Return a text with each of its lines written anew; their ends stay."""
+    return _LINE.sub(lambda match: write(match[1]) + match[2], text)
+
+
+def usual_line_end(text: str) -> str:
+    """Return the line end that most lines of a text have."""
+    ends = _LINE_END.findall(text)
+    return max(("\n", "\r\n", "\r"), key=ends.count)
+
+
+def with_own_mark(text: str) -> str:
+    """Return what to write for a text: a byte order mark that begins it would be lost in reading."""
+    return f"\ufeff{text}" if text.startswith("\ufeff") else text
+
+
+def beginning(file: Path) -> str:
+    """Return the beginning of a file as text: enough of it to tell its format."""
+    return read_beginning(file, _BEGINNING).decode("utf-8-sig", errors="replace")
 
 
 def read_plain_text(file: Path) -> str:

@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices, in_quotes
-from foon_asp.text.exact_price import decimal_text, read_price
-from foon_asp.text.line import LineError
+from foon_asp.text.exact_number import decimal_text, read_price
+from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_node
-from foon_asp.text.table_rows import read_rows
+from foon_asp.text.table import Table
+from foon_asp.text.tables import motion_column
 
 _ARROWS = ("→", "->")
 
@@ -24,30 +25,26 @@ class UnitPriceList(NamedTuple):
 def read_unit_prices(file: Path) -> UnitPriceList:
     """Read ``motion⇥price`` lines, and ``motion⇥input⇥...⇥→⇥output⇥...⇥price`` for single units.
 
-    Nodes are in one-line notation; ``->`` is an arrow, too. Blank lines and ``#`` comments are passed over.
-    Raises :class:`InputError` for a line of another form, and for a motion or a unit with two different
-    prices.
+    Nodes are in one-line notation; ``->`` is an arrow, too. Raises :class:`InputError` for a line of another
+    form, and for a motion or a unit with two different prices.
     """
     found = UnitPriceList({}, {}, {})
-
-    def read(name: str, value: str, source: Source) -> None:
-        motion = name.strip()
-        *fields, written = value.split("\t")
-        column = len(name) + 2 + len(value) - len(written)
-        if not motion:
-            raise LineError(1, "a price", ("the motion before it",))
-        price = read_price(written.strip(), column)
-        if not fields:
-            if found.motions.setdefault(motion, price) != price:
-                raise LineError(column, f"a second price for {motion!r}", ("one",))
-            return
-        unit = _unit(motion, fields, len(name) + 2)
-        if found.units.setdefault(unit, price) != price:
-            raise LineError(column, "a second price for this unit", ("one",))
-        found.sources.setdefault(unit, source)
-
-    read_rows(file, "unit-price", "a price", read)
+    for name, price, source in UNIT_PRICES.rows(file):
+        if isinstance(name, str):
+            found.motions[name] = price
+        else:
+            found.units[name], found.sources[name] = price, source
     return found
+
+
+def _row(name: str, value: str, column: int) -> tuple[str | FunctionalUnit, Fraction]:
+    motion = motion_column(name, "a price")
+    *fields, written = value.split("\t")
+    price = read_price(written.strip(), column + len(value) - len(written))
+    return _unit(motion, fields, column) if fields else motion, price
+
+
+UNIT_PRICES = Table("unit-price", NameKind.MOTION, "a price", _row, "a second price for {name!r}")
 
 
 def write_unit_prices(prices: UnitPrices) -> str:

@@ -290,7 +290,7 @@ def test_why_there_is_no_tree_is_not_looked_for_beyond_the_limit(
         assert deadline is not None
         raise LimitError(deadline)
 
-    monkeypatch.setattr("foon_asp.report.answer.reach", stopped)
+    monkeypatch.setattr("foon_asp.questions.why_infeasible.reach", stopped)
     words = ["solve", "--goal", "tea", "--rule", ':- use(U), motion(U,"steep").', "--time-limit", "600"]
     with pytest.raises(SystemExit) as ended:
         main(words)

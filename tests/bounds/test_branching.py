@@ -16,6 +16,7 @@ from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lower_bound import Branch
 from foon_asp.bounds.relaxation import Covering, Relaxed
 from foon_asp.certificate import certify
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import RefusedError, seal, verify
 from foon_asp.reduce import ALL, NONE, SAFE, Reduction, reduce, reduction
@@ -289,7 +290,7 @@ def test_a_proof_that_names_too_much_is_not_given(monkeypatch: pytest.MonkeyPatc
 
 def verify_again(content: dict[str, Any], problem: Problem) -> None:
     sealed = {**content, "seal": seal(content)}
-    verify(*(sealed, problem.network, problem.kitchen, problem.rates, problem.utensils), problem.unit_prices)
+    verify(sealed, subject_of(problem))
 
 
 @pytest.mark.parametrize("worth", [0.0, 1.0])

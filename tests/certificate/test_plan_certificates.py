@@ -21,7 +21,7 @@ from foon_asp.network import ObjectNode, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, UsedUp, levels
 from foon_asp.proof.verify import RefusedError, Verified, seal
 from foon_asp.proof.verify_plan import FINE, verify_any
-from foon_asp.report.certified import certificate_lines
+from foon_asp.questions.certificate_text import certificate_lines
 from tests.conftest import Cli
 from tests.oracle.used_up import key, plans, random_problem
 from tests.proof.test_verify import mutants

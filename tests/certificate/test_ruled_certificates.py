@@ -9,6 +9,7 @@ import pytest
 
 from foon_asp.asp import Proof, Status, solve
 from foon_asp.certificate import Certificate, certify_outcome, coverage
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof.constraint import LIBRARY
@@ -36,8 +37,7 @@ def asked(seed: int, problem: Problem, objective: Objective) -> Certificate:
     outcome, found = certify_outcome(solve(problem, (objective,), settings), settings)
     assert found is not None
     assert outcome.proof is Proof.CERTIFICATE
-    given = problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
-    claim = verify(read_certificate(found.text()), *given)
+    claim = verify(read_certificate(found.text()), subject_of(problem))
     assert sorted(map(str, claim.rules)) == sorted(map(str, drawn.values()))
     kept = [t for t in task_trees.trees(problem) if all(keeps(problem, t, rule) for rule in drawn.values())]
     best = task_trees.best(kept, problem, [str(objective)])

@@ -166,7 +166,7 @@ def test_what_rules_of_the_users_own_claim() -> None:
     for given, claims, library in (
         ([NO_BOILING], [[[2], []]], []),
         ([NO_BOILING, JUNK], [[[2], []], [[], [4]]], []),
-        ([":- unit(0)."], [[[], []]], []),
+        ([":- goal(O)."], [[[], []]], []),
         # what ours say, too, is not taken on trust
         ([JUNK, NO_BOILING, "require_motion:required_motion=junk"], [[[2], []]], ["require_motion"]),
         ([NO_BOILING, NO_ROTTING, "forbid_motion:forbidden_motion=boil"], [[[3], []]], ["forbid_motion"]),

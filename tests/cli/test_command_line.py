@@ -112,7 +112,7 @@ def test_check_finds_an_order_or_says_what_is_missing(cli: Cli, data: Path, tmp_
     tree = tmp_path / "tree.txt"
     pour, mix, _fry, _flip, bake, serve, warm = [block for block in NETWORK.split("//\n")[1:] if block]
     for units, code, said in (
-        ([serve, mix, pour, bake], 0, f"as listed: unit 1, serve    [{tree}:1], lacks pancake; done"),
+        ([serve, mix, pour, bake], 0, "as listed: unit 1, serve    [tree.txt:1], lacks pancake; done"),
         ([mix, bake, serve], 1, "bowl; contains {flour}"),
         ([pour, mix], 1, "every unit runs, but the goal is not made: pancake; done; on [plate]"),
         ([pour, mix, bake, serve, warm.replace("warm up", "heat")], 1, "unit 5 is not in the network: heat"),

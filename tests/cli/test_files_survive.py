@@ -15,7 +15,7 @@ import foon_asp
 from foon_asp.cli.named_path import WrittenPath
 from foon_asp.cli.verbs import VERBS, verb_command
 from foon_asp.errors import UserError
-from foon_asp.report.whole_file import write_all_whole, write_whole
+from foon_asp.whole_file import write_all_whole, write_whole
 from tests.conftest import Cli
 
 UNIT = "O\ta\nM\tmix\nO\tb\n//\n"
@@ -188,7 +188,7 @@ def test_a_write_that_fails_leaves_the_old_file_and_nothing_else(
     def full(_: int) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("foon_asp.report.whole_file.os.fsync", full)
+    monkeypatch.setattr("foon_asp.whole_file.os.fsync", full)
     with pytest.raises(UserError, match=r"a\.txt: cannot be written: No space left on device"):
         write_whole(file, b"new")
     assert file.read_text() == "old"
@@ -199,7 +199,7 @@ def test_a_killed_write_leaves_the_old_file(tmp_path: Path) -> None:
     file = tmp_path / "a.txt"
     file.write_bytes(b"o" * 30_000_000)
     code = (
-        "import sys; from pathlib import Path; from foon_asp.report.whole_file import write_whole\n"
+        "import sys; from pathlib import Path; from foon_asp.whole_file import write_whole\n"
         "content = b'n' * 30_000_000; print('now', flush=True)\n"
         "while True: write_whole(Path(sys.argv[1]), content)"
     )
@@ -250,7 +250,7 @@ def test_what_a_kill_left_is_cleared_and_nothing_else(tmp_path: Path) -> None:
     target.symlink_to(tmp_path / stay[0])
     os.mkfifo(tmp_path / ".foon-asp.dddddddddddddddd")
     code = (
-        "import os, signal, sys; from pathlib import Path; from foon_asp.report import whole_file\n"
+        "import os, signal, sys; from pathlib import Path; from foon_asp import whole_file\n"
         "def hold(_):\n    print('written', flush=True); signal.pause()\n"
         "whole_file.os.fsync = hold; whole_file.write_whole(Path(sys.argv[1]), b'theirs')"
     )

@@ -18,11 +18,12 @@ from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.asp.outcome import Outcome
 from foon_asp.batch.answer_row import answer_row
 from foon_asp.batch.asked import Asked
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.cli.batch_data import BatchData
-from foon_asp.dataset import nearby_optimum
+from foon_asp.dataset import Dataset, nearby_optimum
 from foon_asp.dataset.nearby import Nearby, NearbyProblem
 from foon_asp.dataset.nearby_optimum import near_goals
-from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
+from foon_asp.dataset.reading_store import read_stored
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.foon import Foon
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
@@ -46,12 +47,10 @@ LISTS = (
 )
 
 
-def stored(problem: Problem, folder: Path) -> StoredDataset:
+def stored(problem: Problem, folder: Path) -> Dataset:
     """Import a problem, and give the data that its store has, with the rates and utensils of the problem."""
     dataset = read_stored(DataFiles((import_problem(problem, folder),)), 3)
-    assert isinstance(dataset, StoredDataset)
-    dataset.rates, dataset.utensils = problem.rates, problem.utensils
-    return dataset
+    return replace(dataset, rates=problem.rates, utensils=problem.utensils)
 
 
 def near_of(problem: Problem) -> Nearby | None:
@@ -79,16 +78,14 @@ LONG = [
 ]
 
 
-def two_ways(folder: Path) -> StoredDataset:
+def two_ways(folder: Path) -> Dataset:
     """Make a store of them, with water and bones at hand."""
     units = "".join(f"O\t{need}\nM\t{motion}\nO\t{give}\n//\n" for motion, need, give in (*SHORT, *LONG))
     file, kitchen = folder / "stew.txt", folder / "kitchen.txt"
     file.write_text(units, encoding="utf-8")
     kitchen.write_text("O\twater\nO\tbones\n", encoding="utf-8")
     import_files(DataFiles((file,), kitchen), folder / "stew.foon")
-    dataset = read_stored(DataFiles((folder / "stew.foon",)), 3)
-    assert isinstance(dataset, StoredDataset)
-    return dataset
+    return read_stored(DataFiles((folder / "stew.foon",)), 3)
 
 
 def test_what_is_taken_to_be_at_hand_is_in_no_answer(tmp_path: Path) -> None:
@@ -241,7 +238,7 @@ def test_where_rules_leave_no_tree_that_is_said_even_at_a_limit(
 @pytest.fixture
 def from_one_unit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have questions begin with one unit near the goals, and nobody read all that these need."""
-    monkeypatch.setattr(StoredDataset.nearby, "__defaults__", (None, 1))
+    monkeypatch.setattr(Dataset.nearby, "__defaults__", (None, 1))
     monkeypatch.setattr(Nearby, "whole", None)
 
 
@@ -324,7 +321,7 @@ def test_other_questions_read_all_that_the_goal_needs(
     words: tuple[str, ...], tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     two_ways(tmp_path).close()
-    monkeypatch.setattr(StoredDataset.nearby, "__defaults__", (None, 1))
+    monkeypatch.setattr(Dataset.nearby, "__defaults__", (None, 1))
     monkeypatch.setattr("foon_asp.questions.answer.answered_nearby", None)
     said = cli("solve", "--network", tmp_path / "stew.foon", "--goal", "stew", *words)
     assert said.code == 0, said.err
@@ -473,8 +470,8 @@ def test_a_certificate_of_a_store_is_one_of_the_text(rule: ContainerRule, part: 
         assert found.status is expected.status, seed
         assert found.certificate is not None, seed
         assert found.proof is Proof.CERTIFICATE
-        whole = problem.network, problem.kitchen, problem.rates, problem.utensils, dataset.unit_prices
-        there = verify.verify(found.certificate.content, *whole)
+        whole = subject_of(problem)._replace(prices=dataset.unit_prices)
+        there = verify.verify(found.certificate.content, whole)
         here = foon_asp.verify(Foon(dataset, "a store"), found.certificate)
         computed = foon_asp.verify(Foon(dataset, "a store"), found.certificate, full=True)
         assert (here.claim, here.tree) == (there.claim, there.tree)

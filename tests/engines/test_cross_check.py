@@ -24,7 +24,7 @@ from foon_asp.engines.fast_downward import installed, solve_with_fast_downward
 from foon_asp.engines.highs import solve_with_highs
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
-from foon_asp.proof.verify import digests
+from foon_asp.proof.verify import Subject
 from foon_asp.text.data_folder import find_data, read_data
 from tests.conftest import Cli
 from tests.encoding.test_exact_success import two_ways
@@ -214,7 +214,7 @@ def test_a_disagreement_is_our_bug_with_all_that_is_needed(
     assert again.code == 0
     assert "3 units" in again.out
     data = read_data(find_data(tmp_path / "again"))
-    assert digests(data.network, data.kitchen, data.rates, data.utensils) == report["digests"]
+    assert Subject(data.network, data.kitchen, data.rates, data.utensils).digests() == report["digests"]
 
 
 def test_what_no_whole_number_of_an_engine_or_float_holds_is_not_asked_of_it(

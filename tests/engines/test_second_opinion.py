@@ -367,7 +367,7 @@ def test_what_is_found_is_said_where_no_file_can_be_written(
         return []
 
     monkeypatch.setattr("foon_asp.questions.cross_check.ask_engines", wrong)
-    monkeypatch.setattr("foon_asp.report.disagreement.disagreement_name", lambda outcome: "file/report")
+    monkeypatch.setattr("foon_asp.questions.disagreement.disagreement_name", lambda outcome: "file/report")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").write_text("")
     ran = cli("solve", "--goal", "ice", "--cross-check")

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 
 from foon_asp.linting.catalog import CATALOG
+from foon_asp.linting.finding import Finding
 from foon_asp.linting.linter import lint
 from foon_asp.linting.mending import mended
 from foon_asp.linting.near_names import near_names
-from foon_asp.report.lint_findings import lint_text
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.reader import FoonReader
 from tests.conftest import CORPUS, Cli
@@ -55,7 +55,7 @@ def test_line_ends_do_not_matter(tmp_path: Path, end: str) -> None:
     ]
     assert here == there
     assert [code for _, _, code, _ in here] == [
-        "repeated-state",
+        "repeated-object",
         "space-for-tab",
         "unknown-container",
         "missing-separator",
@@ -259,7 +259,7 @@ def test_names_in_json_may_hold_anything(tmp_path: Path) -> None:
     node = {"label": 'a"b\\c', "states": ["tall"], "ingredients": ["x\\", "\ud800"], "container": "in {x}"}
     for value in ([node], [{"input_nodes": [node], "motion_node": "go", "output_nodes": [node]}]):
         findings = found(tmp_path, json.dumps(value), names=("a.json",))
-        assert lint_text(findings, 1, 0)
+        assert all(str(Finding.of(finding)) for finding in findings)
 
 
 # Mending
@@ -324,7 +324,7 @@ def test_mending_changes_nothing_of_what_is_read(tmp_path_factory: pytest.TempPa
     findings = lint([file])
     assert {finding.code for finding in findings} <= set(CATALOG)
     assert all(finding.severity is CATALOG[finding.code].severity for finding in findings)
-    assert lint_text(findings, 1, 0)
+    assert all(str(Finding.of(finding)) for finding in findings)
     content = mended(file.read_bytes(), findings)
     before = [unit[:3] for unit in FoonReader().units(file.read_bytes().decode().removeprefix("\ufeff"), "f")]
     file.write_bytes(content)
@@ -428,7 +428,7 @@ def test_the_exit_code_goes_by_severity(tmp_path: Path, cli: Cli) -> None:
                 "broken-chain",
                 "time-value",
                 "other-bracket",
-                "no-bracket",
+                "misread-line",
             },
         ),
         ("dialects", {"no-motion", "id-of-two-names"}),

@@ -104,16 +104,16 @@ def test_the_order_of_times(tmp_path: Path, units: list[tuple[str, str, str]], f
 @pytest.mark.parametrize(
     ("lines", "found"),
     [
-        ("O\tte\u200ba", "1:5 unseen-letter"),
-        ("O\ttea\xa0pot", "1:6 unseen-letter"),
-        ("O\tte\x07a\u200b", "1:5 unseen-letter"),  # once for each line
+        ("O\tte\u200ba", "1:5 ambiguous-letter"),
+        ("O\ttea\xa0pot", "1:6 ambiguous-letter"),
+        ("O\tte\x07a\u200b", "1:5 ambiguous-letter"),  # once for each line
         ("# te\u200ba\nO\ttea", ""),
-        ("O\tcake\nS\t\u0430\u0440ple", "2:3 foreign-letter"),  # two Cyrillic letters among three Latin
-        ("O\tcake\nS\tpie \u0430\u0440p", "2:9 foreign-letter"),
-        ("O\t\u03b1\u0430x", "1:3 foreign-letter"),
+        ("O\tcake\nS\t\u0430\u0440ple", "2:3 ambiguous-letter"),  # two Cyrillic letters among three Latin
+        ("O\tcake\nS\tpie \u0430\u0440p", "2:9 ambiguous-letter"),
+        ("O\t\u03b1\u0430x", "1:3 ambiguous-letter"),
         ("O\tna\u00efve", ""),
-        ("O\tpi\u00f1a\nS\tpin\u0303a", "2:3 accent"),  # as often: the usual form is right
-        ("O\tpi\u00f1a\nS\tpin\u0303a\nS\tpin\u0303a x", "1:3 accent"),
+        ("O\tpi\u00f1a\nS\tpin\u0303a", "2:3 ambiguous-letter"),  # as often: the usual form is right
+        ("O\tpi\u00f1a\nS\tpin\u0303a\nS\tpin\u0303a x", "1:3 ambiguous-letter"),
     ],
 )
 def test_letters(tmp_path: Path, lines: str, found: str) -> None:
@@ -141,7 +141,7 @@ WITH_ID = "O1\tmilk\nM1\theat\nO1\tmilk\nS1\thot\n//\n"
             WITH_ID
             + "".join(WITH_ID.replace("O1\tmilk", f"O{n}\tegg {n}") for n in range(2, 5))
             + "O\tmilk\nM1\theat\nO1\tmilk\nS1\thot\n//\n",
-            "21:1 duplicate-unit, 21:1 missing-id",
+            "21:1 duplicate-unit, 21:1 missing-field",
         ),
         (
             "".join(WITH_ID.replace("O1\tmilk", f"O{n}\tegg {n}") for n in range(2, 6))
@@ -149,10 +149,10 @@ WITH_ID = "O1\tmilk\nM1\theat\nO1\tmilk\nS1\thot\n//\n"
             "",
         ),
         # flags behind a space, and a few that are missing
-        ("O\tegg 1\nO\tmilk\t0\nM\tmix\nO\tmilk\t1\nS\tmixed\n//\n", "1:3 flag-space, 1:3 missing-flag"),
-        ("O\tegg 1\nO\tegg\nM\tmix\nO\tegg\nS\tmixed\n//\n", "1:3 flag-space"),
+        ("O\tegg 1\nO\tmilk\t0\nM\tmix\nO\tmilk\t1\nS\tmixed\n//\n", "1:3 missing-field, 1:3 space-for-tab"),
+        ("O\tegg 1\nO\tegg\nM\tmix\nO\tegg\nS\tmixed\n//\n", "1:3 space-for-tab"),
         ("O\tegg 1\nO\tmilk\nM\tmix\nO\tmilk\nS\tmixed\n//\n", ""),
-        ("O\tegg\t1\nO\tmilk\nM\tmix\nO\tmilk\t1\nS\tmixed\n//\n", "2:3 missing-flag"),
+        ("O\tegg\t1\nO\tmilk\nM\tmix\nO\tmilk\t1\nS\tmixed\n//\n", "2:3 missing-field"),
         ("O\tegg\t1\nO\tmilk\nM\tmix\nO\tmilk\t1\nS\tmixed\nO\tegg\n//\n", ""),  # as many with as without
         ("O\tegg\t0\nO\tmilk\t0\nO\tsalt\n", ""),  # a kitchen
     ],
@@ -187,10 +187,10 @@ BESIDE = "O\tegg\n{}\nO\tpan\nO\tbowl\nM\tmix\nO\tegg\nS\tmixed\nO\tpan\nO\tbowl
         ("S\tin\t[pan]\nS\ton\t[sink]", ""),  # of which one is no object here
         ("S\tattached to\t[pan]\nS\tin\t[bowl]", ""),
         ("S\tattached to\t[pan]\nS\tattached to\t[bowl]", "3:1 second-relation"),
-        ("S\tcontains\t{pan}\nS\tcontains\t{bowl}", "3:1 second-contents"),
+        ("S\tcontains\t{pan}\nS\tcontains\t{bowl}", "3:1 second-relation"),
         ("S\tcontains\t{pan}\nS\tcoated\t{pan}", ""),
-        ("S\twet\nS\thot\nS\twet", "4:1 repeated-state"),
-        ("S\tin\t[pan]\nS\tin\t[pan]", "3:1 repeated-state"),
+        ("S\twet\nS\thot\nS\twet", "4:1 repeated-object"),
+        ("S\tin\t[pan]\nS\tin\t[pan]", "3:1 repeated-object"),
         ("O\tsalt\nS\twet\nO\toil\nS\twet", ""),
     ],
 )
@@ -257,12 +257,12 @@ IN_BRACKETS = "O\tegg\n{}\nO\tpan\nM\tmix\nO\tegg\nS\tmixed\nO\tpan\n//\n"
         ("S\tholds\t{pan}", "relation [ ]\tholds\t1\nutensil\tpan", "2:9 other-bracket"),
         ("S\tholds\t{pan}", "relation [ ]\tholds\t1", ""),
         # none at all, behind a word that has them
-        ("S\tholds pan", "relation [ ]\tholds\t1", "2:3 no-bracket"),
-        ("S\theld up by pan", "relation [ ]\theld up by\t1", "2:3 no-bracket"),
-        ("S\tholds pan, egg", "relation { }\tholds\t1", "2:3 no-bracket"),
+        ("S\tholds pan", "relation [ ]\tholds\t1", "2:3 misread-line"),
+        ("S\theld up by pan", "relation [ ]\theld up by\t1", "2:3 misread-line"),
+        ("S\tholds pan, egg", "relation { }\tholds\t1", "2:3 misread-line"),
         ("S\tholds pan, joy", "relation { }\tholds\t1", ""),
         ("S\tholds joy", "relation [ ]\tholds\t1", ""),
-        ("S\tcontains joy", "relation { }\tcontains\t1", "2:3 no-bracket"),
+        ("S\tcontains joy", "relation { }\tcontains\t1", "2:3 misread-line"),
         ("S\tholds pan", "relation [ ]\tholds\t1\nstate\tpan", ""),  # a state that is known
     ],
 )
@@ -489,24 +489,8 @@ def test_a_state_that_is_missed_where_the_other_node_is_taken_too(tmp_path: Path
             ),
             "5:3 left-out",
         ),
-        (
-            unit("leek;cut;on [board], pan;hot;on [stove]", "cut", "leek;clean;in [sink], sink")
-            + unit("leek;cut;on [board], pan;hot;on [stove]", "eat", "board;dirty"),
-            "1:1 swapped-sides, 13:3 left-out",
-        ),
-        (
-            unit("leek;dirty;in [bag], bag", "wash", "leek;clean;in [sink], sink")
-            + unit("leek;cut;on [board], board", "cut", "leek;clean;in [sink], sink")
-            + unit("leek;cut;on [board], board", "eat", "board;dirty"),
-            "11:1 swapped-sides",
-        ),
-        (
-            unit("leek;clean;in [sink], sink", "cut", "leek;cut;on [board], board")
-            + unit("leek;cut;on [board], board", "eat", "board;dirty"),
-            "",
-        ),
     ],
 )
-def test_what_is_left_out_or_swapped(tmp_path: Path, text: str, found: str) -> None:
+def test_what_is_left_out(tmp_path: Path, text: str, found: str) -> None:
     told = findings(tmp_path, text).split(", ")
-    assert ", ".join(each for each in told if each.endswith(("swapped-sides", "left-out"))) == found
+    assert ", ".join(each for each in told if each.endswith("left-out")) == found

@@ -7,6 +7,7 @@ import pytest
 
 from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.certificate import certify_outcome
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.comparison.many import makeable
 from foon_asp.engines import Asked, cross_check
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
@@ -34,7 +35,7 @@ def certify_and_verify(problem: Problem, objective: Objective) -> Status:
     assert outcome.proof is Proof.CERTIFICATE
     assert found is not None
     content = read_certificate(found.text())
-    claim = verify(content, problem.network, problem.kitchen, problem.rates, problem.utensils)
+    claim = verify(content, subject_of(problem))
     assert claim.goals == problem.goals
     assert claim.containers == str(problem.containers)
     if outcome.status is Status.INFEASIBLE:

@@ -270,11 +270,11 @@ def test_pages_of_random_problems_have_what_their_data_have(
 
 def test_a_page_without_a_tree_says_so(chromium: Browser, tmp_path: Path) -> None:
     file = tmp_path / "none.html"
-    foon_asp.solve(foon_asp.load().problem("apple pie")).view().write(file)
+    foon_asp.view(foon_asp.solve(foon_asp.load().problem("apple pie"))).write(file)
     chromium.open(file)
     assert texts(chromium, ".claim strong") == ["No tree exists"]
     assert texts(chromium, "main p") == ["There is no tree to show."]
-    foon_asp.solve(foon_asp.load().problem("faucet; off")).view().write(file)
+    foon_asp.view(foon_asp.solve(foon_asp.load().problem("faucet; off"))).write(file)
     chromium.open(file)
     assert texts(chromium, "main p") == ["Nothing needs to be made: the kitchen has the goal."]
 
@@ -465,7 +465,7 @@ def test_colours_of_a_network_can_be_chosen(chromium: Browser, shown: Callable[.
 @pytest.mark.parametrize("name", ["</script><b>x</b>", "<img src=x onerror=boom()>", "a\u202eb"])
 def test_names_of_strangers_are_shown_as_text(chromium: Browser, tmp_path: Path, name: str) -> None:
     file = tmp_path / "strange.html"
-    foon_asp.solve(strange(name)).view().write(file)
+    foon_asp.view(foon_asp.solve(strange(name))).write(file)
     chromium.open(file)
     assert chromium.complaints == []
     assert chromium.run("document.querySelectorAll('b, img').length") == 0

@@ -14,7 +14,7 @@ import pytest
 import foon_asp
 from foon_asp import UserError
 from foon_asp.network import ObjectNode
-from foon_asp.pictures.page import WEB, Page
+from foon_asp.pictures.page import WEB
 from foon_asp.problem import reach
 from foon_asp.results.plain import plain
 from foon_asp.results.proof_cases import ProofCases
@@ -91,7 +91,7 @@ def test_nothing_is_asked_of_any_other_place(page: str) -> None:
 
 
 def test_names_of_strangers_are_text() -> None:
-    page = foon_asp.solve(strange(EVIL)).view().html()
+    page = foon_asp.view(foon_asp.solve(strange(EVIL))).html()
     assert "img" not in {tag for tag, _ in Parts(page).tags}
     assert page.count("</script>") == 2
     assert "\u202e" not in page.partition('id="data">')[0]
@@ -237,7 +237,7 @@ def test_a_network_has_no_tree_to_ask_for(cli: Cli, tmp_path: Path) -> None:
 
 
 def test_a_notebook_shows_the_page_in_a_frame() -> None:
-    shown: Page = foon_asp.solve(foon_asp.load().problem("ice")).view()
+    shown = foon_asp.view(foon_asp.solve(foon_asp.load().problem("ice")))
     (tag, frame), *_ = Parts(shown._repr_mimebundle_()["text/html"]).tags
     assert tag == "iframe"
     assert frame["sandbox"] == "allow-scripts allow-downloads allow-modals"

@@ -16,6 +16,7 @@ import pytest
 import foon_asp
 from foon_asp import Foon, FunctionalUnit, Problem, Source, UserError
 from foon_asp.engines import fast_downward
+from foon_asp.planning.name_map import Scale
 from foon_asp.planning.pddl_name import pddl_name
 from foon_asp.problem import Number
 from tests.conftest import Cli
@@ -80,8 +81,8 @@ def test_the_task_is_the_network(foon: Foon, containers: str, whole: bool) -> No
     exported = foon_asp.export(problem, every_unit=whole)
     domain, task = parsed(exported.domain_file), parsed(exported.problem_file)
     found = actions(domain)
-    names = {each["name"]: each["object"] for each in exported.name_map["objects"]}
-    units = {each["name"]: each["unit"]["id"] for each in exported.name_map["actions"]}
+    names = {each.name: each.object.id or 0 for each in exported.name_map.objects}
+    units = {each.name: each.unit.id for each in exported.name_map.actions if each.unit}
     network = problem.network
     assert len(found) == len(network) if whole else 0 < len(found) < len(network)
     constants = {each for each in part(domain, ":constants") if each not in {"-", "item"}}
@@ -90,19 +91,19 @@ def test_the_task_is_the_network(foon: Foon, containers: str, whole: bool) -> No
     for name, (needs, gives, _) in found.items():
         unit = units[name]
         assert name.startswith(f"u{unit}-")
-        assert {names[each]["id"] for each in needs} == {*problem.needs[unit]}
-        assert {names[each]["id"] for each in gives} == {*problem.gives[unit]}
+        assert {names[each] for each in needs} == {*problem.needs[unit or 0]}
+        assert {names[each] for each in gives} == {*problem.gives[unit or 0]}
     start = {each[1] for each in part(task, ":init")}
-    assert start == {each for each in constants if names[each]["id"] in problem.kitchen}
+    assert start == {each for each in constants if names[each] in problem.kitchen}
     ((_, *goals),) = part(task, ":goal")
-    assert [names[goal]["id"] for _, goal in goals] == list(problem.goals)
+    assert [names[goal] for _, goal in goals] == list(problem.goals)
 
 
 @pytest.mark.parametrize("objective", ADDING)
 def test_costs_are_those_of_trees_times_the_factor(foon: Foon, objective: str) -> None:
     problem = foon.problem("macaroni")
     exported = foon_asp.export(problem, objective)
-    (scale,) = exported.name_map["scales"]
+    (scale,) = exported.name_map.scales
     answer = foon_asp.solve(problem, objective)
     assert answer.costs is not None
     names = {action.unit: action.name for action in exported.task.actions if action.unit is not None}
@@ -110,8 +111,8 @@ def test_costs_are_those_of_trees_times_the_factor(foon: Foon, objective: str) -
     plan = [names[unit] for unit in answer.ids or ()]
     plan += [action.name for action in exported.task.actions if action.item in taken]
     found = actions(parsed(exported.domain_file))
-    assert not scale["rounded"]
-    least = answer.costs.measure(foon_asp.Objective(objective)) * Fraction(scale["factor"])
+    assert not scale.rounded
+    least = answer.costs.measure(foon_asp.Objective(objective)) * Fraction(scale.factor)
     assert sum(found[name][2] for name in plan) == least
     bought = {o for action in exported.task.actions if action.item is not None for o in found[action.name][1]}
     init = part(parsed(exported.problem_file), ":init")
@@ -121,7 +122,7 @@ def test_costs_are_those_of_trees_times_the_factor(foon: Foon, objective: str) -
 def test_of_several_objectives_the_first_counts_most(foon: Foon) -> None:
     problem = foon.problem("macaroni")
     exported = foon_asp.export(problem, "price,units")
-    price, units = (Fraction(scale["factor"]) for scale in exported.name_map["scales"])
+    price, units = (Fraction(scale.factor) for scale in exported.name_map.scales)
     assert units == 1
     assert price > len(exported.task.actions)
     for action in exported.task.actions:
@@ -131,7 +132,7 @@ def test_of_several_objectives_the_first_counts_most(foon: Foon) -> None:
 
 def test_success_is_rounded_and_said_to_be(foon: Foon, cli: Cli, tmp_path: Path) -> None:
     exported = foon_asp.export(foon_asp.load().problem("ice"), "success")
-    assert exported.name_map["scales"] == [{"objective": "success", "factor": "1000000", "rounded": True}]
+    assert exported.name_map.scales == (Scale(foon_asp.Objective.SUCCESS, "1000000", True),)
     assert "; " in exported.domain_file
     assert "rounded" in exported.domain_file
     assert {action.cost for action in exported.task.actions} >= {356675}  # -ln of 7/10

@@ -26,8 +26,7 @@ from foon_asp.proof.replay import replay_for, replayable
 from foon_asp.proof.timetable import Means, TimedStep, Tool, timetable_fault
 from foon_asp.text.clip_times import median_clips
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.duration_list import read_durations
-from foon_asp.text.tool_list import read_tools
+from foon_asp.text.tables import DURATIONS, TOOLS
 from tests.conftest import ROOT, Cli
 from tests.oracle.schedules import least_time
 from tests.oracle.used_up import random_problem
@@ -478,7 +477,7 @@ def test_a_tree_is_put_in_order_and_an_oven_works_alone(tmp_path: Path) -> None:
     problem = foon_asp.load().problem("apple crumble")
     tree = foon_asp.solve(problem).tree
     assert tree is not None
-    durations = read_durations(KITCHEN / "durations.txt")
+    durations = DURATIONS.read(KITCHEN / "durations.txt")
     found = foon_asp.schedule(problem, tree.units[::-1], durations=durations, items="lasting")
     assert found.status is foon_asp.Status.OPTIMAL
     assert [step.agent for step in found.timetable if step.motion == "bake"] == [None]
@@ -545,30 +544,30 @@ def test_without_or_tools_that_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_durations_and_tools_are_read(tmp_path: Path) -> None:
     file = tmp_path / "table.txt"
     file.write_text("# how long\nchop\t40\nbake\t1.5 h\tpassive\npour\t0.25 min\nwait\t3 s\n")
-    assert read_durations(file) == {
+    assert DURATIONS.read(file) == {
         "chop": Duration(40),
         "bake": Duration(5400, passive=True),
         "pour": Duration(15),
         "wait": Duration(3),
     }
     file.write_text("knife\t2\nstove\tfree\nspice jar; contains {salt}\t3\n")
-    assert read_tools(file) == {"knife": 2, "stove": None, parse_node("spice jar; contains {salt}"): 3}
-    assert set(read_durations(KITCHEN / "durations.txt")) == set(foon_asp.load().dataset.rates or ())
+    assert TOOLS.read(file) == {"knife": 2, "stove": None, parse_node("spice jar; contains {salt}"): 3}
+    assert set(DURATIONS.read(KITCHEN / "durations.txt")) == set(foon_asp.load().dataset.rates or ())
 
 
 @pytest.mark.parametrize(
     ("read", "line", "message"),
     [
-        (read_durations, "chop 40", "expected a tab and a number of seconds"),
-        (read_durations, "chop\t", "expected a number of seconds such as 90"),
-        (read_durations, "chop\t0", "expected one above 0"),
-        (read_durations, "chop\t5 days", "'days', expected s, min or h"),
-        (read_durations, "chop\t5\tactive", "'active', expected passive"),
-        (read_durations, "chop\t5\nchop\t6", "a second duration for 'chop'"),
-        (read_durations, "\t5", "the motion before it"),
-        (read_tools, "knife\t0", "'0', expected a number from 1 or free"),
-        (read_tools, "knife\tmany", "'many', expected"),
-        (read_tools, "knife\t1\nknife\tfree", "and something else above"),
+        (DURATIONS.read, "chop 40", "expected a tab and a number of seconds"),
+        (DURATIONS.read, "chop\t", "expected a number of seconds such as 90"),
+        (DURATIONS.read, "chop\t0", "expected one above 0"),
+        (DURATIONS.read, "chop\t5 days", "'days', expected s, min or h"),
+        (DURATIONS.read, "chop\t5\tactive", "'active', expected passive"),
+        (DURATIONS.read, "chop\t5\nchop\t6", "a second duration for 'chop'"),
+        (DURATIONS.read, "\t5", "the motion before it"),
+        (TOOLS.read, "knife\t0", "'0', expected a number from 1 or free"),
+        (TOOLS.read, "knife\tmany", "'many', expected"),
+        (TOOLS.read, "knife\t1\nknife\tfree", "and something else above"),
     ],
 )
 def test_a_wrong_line_is_an_error(read: Any, line: str, message: str, tmp_path: Path) -> None:

@@ -31,7 +31,7 @@ from foon_asp.network import (
 )
 from foon_asp.problem import ContainerRule, Objective, Problem, executable_order, first_tree, reach, relevant
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.proof.verify import VERSION, RefusedError, seal
+from foon_asp.proof.verify import TREE, RefusedError, seal
 from foon_asp.reduce import ALL, NONE
 from tests.conftest import Cli
 from tests.oracle import task_trees
@@ -164,9 +164,9 @@ def forged(problem: Problem) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("version", "words"),
     [
-        (VERSION, "the tree does not make every goal"),
+        (TREE.version, "the tree does not make every goal"),
         (1, "had skipped.*certify again"),
-        (VERSION + 1, f"version {VERSION}"),
+        (TREE.version + 1, f"version {TREE.version}"),
     ],
 )
 def test_a_certificate_of_the_old_rule_is_refused(version: int, words: str) -> None:
@@ -206,7 +206,7 @@ def test_version_1_holds_under_strict_containers() -> None:
     old = before_rules(found.content) | {"version": 1, "digests": older(problem)}
     old["seal"] = seal(old)
     assert check(old, problem).claim == "optimal"
-    for version in (0, VERSION + 1, True, "1", 1.0, None):
+    for version in (0, TREE.version + 1, True, "1", 1.0, None):
         other = old | {"version": version}
         other["seal"] = seal(other)
         with pytest.raises(RefusedError, match="version"):

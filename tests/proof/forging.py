@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.problem import Problem
 from foon_asp.proof.verify import RefusedError
 
@@ -98,7 +99,7 @@ def held(by: Any, forged: Forged, folder: Path) -> Any:
     if isinstance(forged.content, str | bytes):
         content["seal"] = by.seal(content)
     verify = getattr(by, "verify_plan", None) or by.verify
-    return verify(content, at.network, at.kitchen, at.rates, at.utensils, at.unit_prices)
+    return verify(content, subject_of(at))
 
 
 def require_its_check_alone(by: ModuleType, name: str, forged: Forged, folder: Path) -> None:

@@ -159,14 +159,16 @@ FORGED: dict[str, Forged] = {
         json.dumps(certificate(not_covered=["[" * 1_000_001])), PLAIN
     ),
     # --- the frame
-    "verify: expected an object with the keys of a certificate": Forged([], PLAIN, KIND),
-    "verify: expected the format …": plain(format="a song"),
-    "verify: expected version … of the format": plain(version=99),
-    "verify: expected the keys …": plain(more=1),
-    "verify: _VERSION_1": plain(version=1, digests=older(PLAIN), containers="implied"),
-    "verify: the seal does not match: something was changed": Forged(certificate() | {"seal": "0"}, PLAIN),
-    "verify: not a claim about level …": plain(level=2),
-    "verify: …: not the one that the certificate is about": plain(digests={**DIGESTS, "kitchen": "0"}),
+    "read_frame: expected an object with the keys of a certificate": Forged([], PLAIN, KIND),
+    "read_frame: expected the format …": plain(format="a song"),
+    "read_frame: expected version … of the format": plain(version=99, stays=KIND),
+    "read_frame: expected the keys …": plain(more=1),
+    "read_frame: _VERSION_1": plain(version=1, digests=older(PLAIN), containers="implied"),
+    "read_frame: the seal does not match: something was changed": Forged(
+        certificate() | {"seal": "0"}, PLAIN
+    ),
+    "read_frame: not a claim about level …": plain(level=2),
+    "read_frame: …: not the one that the certificate is about": plain(digests={**DIGESTS, "kitchen": "0"}),
     # --- kinds and order of values
     "read_object: expected an object": plain(proof=["weights"], stays=KIND),
     "read_object: expected the keys …": plain(digests={**DIGESTS, "more": ""}),
@@ -177,9 +179,11 @@ FORGED: dict[str, Forged] = {
     "read_numbers: expected ids of the network": plain(tree=[False]),
     "read_numbers: an id stands twice": plain(**ANY, tree=[0, 0], costs=[2]),
     "read_numbers: expected ids in order": plain(cuts=[BOTH[::-1]]),
-    "_pairs: expected a cut and its weight": plain(proof={"weights": [[0, ["1"], 2]]}, stays=KIND),
-    "_pairs: expected the number of a cut": plain(proof={"weights": [["0", ["1"]]]}, stays=WORDS),
-    "_pairs: expected cuts in order, each of them once": plain(proof={"weights": [[0, ["1/2"]]] * 2}),
+    "read_number: expected …": plain(at=LOST, **NO_TREE, cuts=[LOST_CUT], proof={"hopeless": False}),
+    "read_weights: …: expected what has a weight by its number, and the weight": plain(
+        proof={"weights": [[0, ["1"], 2]]}
+    ),
+    "read_weights: …: expected weights in order, each once": plain(proof={"weights": [[0, ["1/2"]]] * 2}),
     "read_rules: it has more than … rules": plain(rules=forbid(f"sing {number:03}" for number in range(101))),
     "read_rules: a rule is unknown": plain(rules=[{"rule": "sing"}], stays=KIND),
     "read_rules: a value of a rule is of another kind": plain(rules=at_most(True)),
@@ -187,8 +191,7 @@ FORGED: dict[str, Forged] = {
     "read_rules: rules of the user's own stand twice": plain(rules=[own([[[3], []]]), own()]),
     "_own: a file of rules has no printable name": plain(rules=[own(name="mine.lp\nverified")]),
     "_own: a text of rules does not have its digest": plain(rules=[own(sha256="0" * 64)]),
-    "_own: expected two sets of units in a claim": plain(rules=[own([[[3]]])], stays=KIND),
-    "_own: expected amounts and their limit": plain(rules=[own((), [[{"1": [3]}, 1, 1]])], stays=KIND),
+    "read_pair: expected …": plain(rules=[own([[[3]]])], stays=KIND),
     "_own: a limit is no whole number": plain(rules=[own((), [[{"1": [3]}, True]])]),
     "_own: a limit counts what is no whole number above zero": plain(
         **bound("3", cuts=[]),
@@ -254,9 +257,6 @@ FORGED: dict[str, Forged] = {
     "_prove: the weights do not add up to enough": plain(**BAKED),
     "_prove: a cut called hopeless is crossed": plain(**NO_TREE, proof=HOPELESS),
     "_prove: expected weights, a hopeless cut, a broken rule or a branch": plain(proof={**LEAF, "more": 1}),
-    "_prove: expected the number of a rule": plain(
-        **NO_TREE, rules=[SPOILED], cuts=[], proof={"broken": False}
-    ),
     "_prove: a rule called broken is kept": plain(**NO_TREE, rules=[BEFORE], cuts=[], proof={"broken": 0}),
     "_prove: a branch is taken twice": plain(proof=branch(branch(LEAF, LEAF, unit=POUR), weigh(), unit=POUR)),
     "_prove: expected a proof for what is without the dear": plain(
@@ -272,7 +272,7 @@ FORGED: dict[str, Forged] = {
         **bound("2"), proof=weigh("1", multiples={"units": "2"})
     ),
     # the two ends cost 2; with a weight below zero on the cut that both units cross they seem to cost 3
-    "_packed: a weight is not above zero": plain(
+    "read_weights: …: a weight is not above zero": plain(
         at=PAIR,
         tree=[0, 1, 2],
         costs=[3],
@@ -280,16 +280,10 @@ FORGED: dict[str, Forged] = {
         proof=weigh("2", "2", "-1"),
     ),
     # pouring and mixing count 5, of which the limit below zero gives more than it takes
-    "_packed: a weight of a limit is not above zero": plain(
-        rules=at_most(5), **BAKED, cuts=[], proof=weigh(limits=[[0, ["-1"]]])
-    ),
-    "_packed: a rule that limits nothing is given a weight": plain(
+    "limit_at: a rule that limits nothing is given a weight": plain(
         rules=[BEFORE], proof=weigh("1", limits=[[0, ["1"]]]), stays=KIND
     ),
     "_packed: unit or item … carries more than it costs": plain(**BAKED, proof=weigh("2")),
-    "_crossing: expected the number of a cut": plain(
-        at=LOST, **NO_TREE, cuts=[LOST_CUT], proof={"hopeless": False}
-    ),
     "_crossing: cut … holds neither a goal nor what a used unit needs": plain(
         **NO_TREE, cuts=[[RARE]], proof=HOPELESS
     ),
@@ -298,18 +292,6 @@ FORGED: dict[str, Forged] = {
         cuts=[[START, END]],
     ),
     "_branch: a branch on an item where items cost nothing": plain(proof=branch(LEAF, LEAF, item=START)),
-    "_branch: expected the id of a kitchen item": plain(
-        **bound("1/2", objective=["kitchen"]),
-        cuts=[[START, END, MIDDLE]],
-        proof=branch(weigh("1/2"), weigh(), item=END),
-    ),
-    "_branch: expected the id of a unit": plain(proof=branch(LEAF, weigh(), unit=False)),
-    "_branch: expected the number of a step": plain(
-        rules=[INTERMEDIATE],
-        **BAKED,
-        cuts=[[PASSED], [MADE], [TAKEN]],
-        proof=branch(HOPELESS, weigh(None, "1", "1"), step=False),
-    ),
     "_read: expected one part of a weight for each objective": plain(proof=weigh(["1", "1"])),
     "_read: expected rates of motions in a weight, and none of 0 or 1": plain(
         **LIKELY, cuts=[BOTH], proof=weigh({"99/100": "1"})
@@ -345,6 +327,28 @@ FORGED: dict[str, Forged] = {
         "it is the work that is refused; in the end, these cuts would be, as nothing uses them",
         MANY,
         cuts=[[END]] * 2700,
+    ),
+}
+
+# What one function refuses, in other places of a certificate.
+PLACES: dict[str, Forged] = {
+    "expected amounts and their limit": plain(rules=[own((), [[{"1": [3]}, 1, 1]])]),
+    "weights: expected what has a weight by its number": plain(proof={"weights": [["0", ["1"]]]}),
+    "expected the number of a rule": plain(**NO_TREE, rules=[SPOILED], cuts=[], proof={"broken": False}),
+    "limits: a weight is not above zero": plain(
+        rules=at_most(5), **BAKED, cuts=[], proof=weigh(limits=[[0, ["-1"]]])
+    ),
+    "expected the id of a kitchen item": plain(
+        **bound("1/2", objective=["kitchen"]),
+        cuts=[[START, END, MIDDLE]],
+        proof=branch(weigh("1/2"), weigh(), item=END),
+    ),
+    "expected the id of a unit": plain(proof=branch(LEAF, weigh(), unit=False)),
+    "expected the number of a step": plain(
+        rules=[INTERMEDIATE],
+        **BAKED,
+        cuts=[[PASSED], [MADE], [TAKEN]],
+        proof=branch(HOPELESS, weigh(None, "1", "1"), step=False),
     ),
 }
 
@@ -385,6 +389,12 @@ def test_an_objective_that_has_no_cost_yet_is_refused(
 )
 def test_a_forged_certificate_is_refused_by_its_check_alone(name: str, tmp_path: Path) -> None:
     require_its_check_alone(verify, name, FORGED[name], tmp_path)
+
+
+@pytest.mark.parametrize("said", PLACES)
+def test_each_place_is_read(said: str, tmp_path: Path) -> None:
+    with pytest.raises(verify.RefusedError, match=said):
+        held(verify, PLACES[said], tmp_path)
 
 
 # --- what refuses by what it computes
@@ -480,8 +490,8 @@ PARTS = {
         ),
     ),
     "where nothing is to be bounded, a bound is above nothing": Part(
-        "self._sign(self._sum(bound)) > 0",
-        "self._sign(self._sum(bound)) >= 0",
+        "self.sign(self.sum(bound)) > 0",
+        "self.sign(self.sum(bound)) >= 0",
         plain(**NO_TREE, **UNPROVED),
     ),
     "what a rule removes is no member": Part(

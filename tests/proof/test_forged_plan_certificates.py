@@ -71,7 +71,11 @@ BREAD_OFTEN = {"balance": [[BREAD, "9"]]}
 
 def certificate(at: Problem = PLAIN, **values: Any) -> Content:
     """Return a right certificate of a plan of the plain data with other values, sealed so that they fit."""
-    frame = {"format": verify_plan.FORMAT, "version": verify_plan.VERSION, "items": items([[SALT, 1]])}
+    frame = {
+        "format": verify_plan.PLAN.name,
+        "version": verify_plan.PLAN.version,
+        "items": items([[SALT, 1]]),
+    }
     right = {"tree": [0, 1], "costs": [2], "unreached": [RARE, GOLD], "proof": [PROOF]}
     content = {**handmade(at), **frame, **right, **values}
     return {**content, "seal": verify.seal(content)}
@@ -130,19 +134,9 @@ def branch(most: int, up_to: Any, above: Any) -> Content:
 
 FORGED: dict[str, Forged] = {
     # --- the frame
-    "verify_plan: expected the format …": plain(format="a song"),
-    "verify_plan: expected version … of the format": plain(version=99),
-    "verify_plan: expected the keys …": plain(more=1),
-    "verify_plan: the seal does not match: something was changed": Forged(
-        certificate() | {"seal": "0"}, PLAIN
-    ),
-    "verify_plan: not a claim about level …": plain(level=3.0),
     "verify_plan: below level 3 nothing says what is used up: contents decide": plain(level=2, at=LEVEL),
     "verify_plan: a rule that plans are not held against": plain(
         rules=[{"rule": "not_both_motions", "one_motion": "dig", "other_motion": "melt"}]
-    ),
-    "verify_plan: …: not the one that the certificate is about": plain(
-        digests={**certificate()["digests"], "kitchen": "0"}
     ),
     # --- what is never reached
     "idle: what is there at first is called unreached": plain(
@@ -158,7 +152,6 @@ FORGED: dict[str, Forged] = {
         stays="an item is a member that brings what the cut does, and costs nothing",
     ),
     # --- the plan
-    "_tree: expected ids of units in a plan": plain(tree=[False, 1]),
     "_tree: unit … of the plan lacks a copy of an input at step …": plain(
         tree=[1], costs=[1], proof=[BREAD_ONCE]
     ),
@@ -177,46 +170,27 @@ FORGED: dict[str, Forged] = {
         proof=[5],
     ),
     # --- the proof
-    "_divided: expected the most executions of a branch": plain(proof=[branch(True, PROOF, PROOF)]),
     "_prove_part: expected weights of conditions or a branch": plain(proof=[proving(more=[])]),
     "_cheapest: member … brings more than it costs, without end": plain(**NO_TREE, **MEAL, proof=[fed(1)]),
     "kept: a unit that never succeeds is not compared": at_least(
         {"3/4": "1"}, {"balance": [[BREAD, {"3/4": "1"}]]}, objective=["success"], at=NEVER, stays=KIND
     ),
     "_require_enough: the weights do not add up to enough": plain(proof=[BREAD_ONCE]),
-    "cut: expected the number of a cut": at_least("1", {"weights": [[-1, "1"]]}, cuts=[[BREAD]]),
-    "__init__: expected the id of a unit that a cut is before": plain(
-        cuts=[[GOLD]], proof=[proving(before=[[0, -1, "1"]])]
-    ),
-    "__init__: a rule that limits nothing is given a weight": plain(
-        proof=[proving(limits=[[0, "1"]])], stays=KIND
-    ),
     "__init__: an objective that is not before this one is given a weight": at_least(
         "0", {"levels": [[0, "1"]]}
     ),
-    "_weighed: expected what has a weight by its number, and the weight": plain(
-        proof=[{"balance": [[float(DOUGH), "1"], [BREAD, "2"]]}], stays=KIND
-    ),
-    "_weighed: expected weights in order, each once": plain(
-        proof=[{"balance": [[BREAD, "2"], [DOUGH, "1"]]}]
-    ),
-    "_weighed: a weight is not above zero": at_least("1", {"balance": [[SALT, "-1"]]}),
     "_cross: cut … holds neither a goal nor what the unit asks for": at_least(
         "3", proving(weights=[[0, "1"]]), cuts=[[RARE, GOLD]]
-    ),
-    "_balance: expected the id of a node in a balance": plain(
-        proof=[{"balance": [[-1, "1"], *PROOF["balance"]]}]
     ),
     "_balance: what never runs out has no balance": plain(
         proof=[{"balance": [[FLOUR, "1"], *PROOF["balance"]]}]
     ),
     # --- items
-    "_stock: expected items and their copies in stock": plain(items=items([[SALT, True]])),
     "_stock: expected items of the stock in order, each of them once": plain(
         items=items([[SALT, 0], [SALT, 1]])
     ),
     "_stock: expected kitchen items in stock": plain(items=items([[SALT, 1], [DOUGH, 0]])),
-    "_told: expected labels and nodes, and whether they stay": plain(items=items([[SALT, 1]], [["salt", 0]])),
+    "_told: expected …": plain(items=items([[SALT, 1]], [["salt", 0]])),
     "_told: expected labels, and then nodes": plain(
         items=items([[SALT, 1]], [[SALT, False], ["salt", False]])
     ),
@@ -227,6 +201,32 @@ FORGED: dict[str, Forged] = {
     "_told: a label has letters that cannot be printed": plain(
         items=items([[SALT, 1]], [["salt\nverified: all of it", False]])
     ),
+}
+
+# What is read as in certificates of trees.
+PLACES: dict[str, Forged] = {
+    "expected items and their copies in stock": plain(items=items([[SALT, True]])),
+    "expected the format": plain(format="a song"),
+    "expected version 1 of the format": plain(version=99),
+    "expected the keys": plain(more=1),
+    "not a claim about level 3": plain(level=3.0),
+    "the seal does not match: something was changed": Forged(certificate() | {"seal": "0"}, PLAIN),
+    "kitchen: not the one that the certificate is about": plain(
+        digests={**certificate()["digests"], "kitchen": "0"}
+    ),
+    "expected ids of units in a plan": plain(tree=[False, 1]),
+    "expected the most executions of a branch": plain(proof=[branch(True, PROOF, PROOF)]),
+    "expected the number of a cut": at_least("1", {"weights": [[-1, "1"]]}, cuts=[[BREAD]]),
+    "expected the id of a unit that a cut is before": plain(
+        cuts=[[GOLD]], proof=[proving(before=[[0, -1, "1"]])]
+    ),
+    "a rule that limits nothing is given a weight": plain(proof=[proving(limits=[[0, "1"]])]),
+    "balance: expected what has a weight by its number, and the weight": plain(
+        proof=[{"balance": [[float(DOUGH), "1"], [BREAD, "2"]]}]
+    ),
+    "balance: expected weights in order, each once": plain(proof=[{"balance": [[BREAD, "2"], [DOUGH, "1"]]}]),
+    "balance: a weight is not above zero": at_least("1", {"balance": [[SALT, "-1"]]}),
+    "expected the id of a node in a balance": plain(proof=[{"balance": [[-1, "1"], *PROOF["balance"]]}]),
 }
 
 
@@ -289,6 +289,12 @@ def test_every_check_has_a_forged_certificate() -> None:
 @pytest.mark.parametrize("name", FORGED)
 def test_a_forged_certificate_is_refused_by_its_check_alone(name: str, tmp_path: Path) -> None:
     require_its_check_alone(verify_plan, name, FORGED[name], tmp_path)
+
+
+@pytest.mark.parametrize("said", PLACES)
+def test_each_place_is_read(said: str, tmp_path: Path) -> None:
+    with pytest.raises(verify.RefusedError, match=said):
+        held(verify_plan, PLACES[said], tmp_path)
 
 
 def test_what_is_nested_too_deeply_is_refused(tmp_path: Path) -> None:
@@ -370,7 +376,7 @@ PARTS = {
         ),
     ),
     "a unit may bring the most": Part(
-        "found.append(self._sum([self._times(each, Fraction(most or 0)), once]))",
+        "found.append(self.sum([self.times(each, Fraction(most or 0)), once]))",
         "pass",
         at_least("6", fed(5), **MEAL),
     ),
@@ -395,15 +401,15 @@ PARTS = {
         at_least("3", PROOF),
     ),
     "where there is nothing to be bounded, a bound is above nothing": Part(
-        "enough = self._sign(bound) > 0", "enough = self._sign(bound) >= 0", plain(**NO_TREE, proof=[{}])
+        "enough = self.sign(bound) > 0", "enough = self.sign(bound) >= 0", plain(**NO_TREE, proof=[{}])
     ),
     "a cut before a unit says nothing where it is not executed": Part(
-        "self.constant = check.sum_of(self.constant, weight, -1)\n",
-        "pass\n",
+        "            self._demand(weight, -1)\n",
+        "            pass\n",
         at_least("3", proving(before=[[0, 4, "1"]]), cuts=[[GOLD]]),
     ),
     "a member of a cut may cross it": Part(
-        "self._come(self.used if member < len(check.network) else self.executed, member, weight, -1)",
+        "self._bring(self.used if member < len(check.network) else self.executed, member, weight, -1)",
         "pass",
         at_least("9", {"weights": [[0, "9"]]}, cuts=[[BREAD]]),
     ),
@@ -413,7 +419,7 @@ PARTS = {
         at_least("9", BREAD_OFTEN),
     ),
     "what is left of a limit is taken from the bound": Part(
-        "-ruled.limits[place].most",
+        "-limit.most",
         "0",
         at_least(
             "3",

@@ -15,7 +15,7 @@ from foon_asp.network import FunctionalUnit, UnitPrices, network_at_level
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.proof import verify
 from foon_asp.proof.constraint import OWN
-from foon_asp.proof.verify import LimitError, RefusedError, digests, load_certificate, read_certificate
+from foon_asp.proof.verify import LimitError, RefusedError, Subject, load_certificate, read_certificate
 from foon_asp.text.line_parser import parse_node
 from tests.proof.by_hand import (
     BAKE,
@@ -294,7 +294,8 @@ NO_CUT, NO_UNIT, NO_ITEM = (
 )
 NUMBER, PARTS = "expected a number such as 3/2", "expected one part of a weight for each objective"
 LOWEST, NO_GOALS = "expected a fraction in lowest terms", "expected goals, each of them once"
-IN_ORDER, ORDERED = "expected ids in order", "expected cuts in order, each of them once"
+IN_ORDER, ORDERED = "expected ids in order", "weights: expected weights in order, each once"
+WEIGHED = "weights: expected what has a weight by its number, and the weight"
 NAMES, NAMES_ORDERED = "expected names", "expected names in order, each of them once"
 RULES_ORDERED = "expected rules in order, each of them once"
 COUNTS = "a limit counts what is no whole number above zero"
@@ -338,11 +339,21 @@ FILE = {"name": "mine.lp", "sha256": sha(":- use(1)."), "text": ":- use(1)."}
         ("an id stands twice", [{"tree": [POUR, POUR]}, {"cuts": [[1, 1]]}, ruled(claiming([[0, 0], []]))]),
         (IN_ORDER, [{"cuts": [each]} for each in ([], [3, 1])]),
         (IN_ORDER, [ruled(claiming(limits=[[{"1": []}, 1]]))]),
-        (NO_CUT, [weights([each, ["1"]]) for each in KINDS]),
-        (NO_CUT, [weights([0, ["1"]], ["1", ["1"]]), {"proof": HOPELESS}, {"proof": {"hopeless": -1}}]),
+        (WEIGHED, [weights([each, ["1"]]) for each in KINDS if type(each) is not int]),
+        (
+            NO_CUT,
+            [
+                *(weights([each, ["1"]]) for each in (0, -1)),
+                *({"proof": {"hopeless": each}} for each in KINDS),
+            ],
+        ),
+        (WEIGHED, [weights([0, ["1"]], ["1", ["1"]]), weights([0])]),
         (ORDERED, [weights([place, ["1"]], [0, ["1"]]) for place in (0, 1)]),
-        ("a weight is not above zero", [{"cuts": [[END]], "proof": weigh(each)} for each in ("0", "-1")]),
-        ("expected a cut and its weight", [weights([0]), weights("ab")]),
+        (
+            "weights: a weight is not above zero",
+            [{"cuts": [[END]], "proof": weigh(each)} for each in ("0", "-1")],
+        ),
+        ("expected a list", [weights("ab")]),
         (PARTS, [{"bound": []}, {"bound": ["0", "0"]}]),
         (NUMBER, [{"bound": [each]} for each in (0, "1.5", "+1", "\u0661")]),
         (LOWEST, [{"bound": [each]} for each in ("-0", "2/4", "1/1")]),
@@ -515,7 +526,7 @@ def test_digests_are_those_of_canonical_json() -> None:
         '["pour","mix"],[[0,1],[2]],[[2],[1]]]'
     )
     rates = {"pour": Fraction(1, 2), "mix": Fraction(3)}
-    assert digests(small, {2, 0}, rates, {"cup", "bowl"}) == {
+    assert Subject(small, {2, 0}, rates, frozenset(("cup", "bowl"))).digests() == {
         "network": sha(written),
         "kitchen": sha("[0,2]"),
         "rates": sha('[["mix","3"],["pour","1/2"]]'),
@@ -528,10 +539,10 @@ def test_digests_are_those_of_canonical_json() -> None:
     prices = UnitPrices(rates, {small.unit(1): Fraction(0), elsewhere: Fraction(1)})
     level_1 = network_at_level(small, 1)
     for network in (small, level_1):
-        found = digests(network, (), None, (), prices)
+        found = Subject(network, (), None, frozenset(), prices).digests()
         assert found["prices"] == sha('[[["mix","3"],["pour","1/2"]],[[1,"0"]]]')
-    assert digests(small, (), None, (), UnitPrices({}, {}))["prices"] == sha("[[],[]]")
-    assert digests(level_1, (), {}, ())["network"] == sha(
+    assert Subject(small, (), None, frozenset(), UnitPrices({}, {})).digests()["prices"] == sha("[[],[]]")
+    assert Subject(level_1, (), {}, frozenset()).digests()["network"] == sha(
         '[1,[["bowl",[],[],[]],["plat\\u00e9",[],[],[]],["end",[],[],[]]],'
         f'["pour","mix"],[[0,1],[2]],[[2],[1]],{written},[[0],[1]]]'
     )
@@ -702,7 +713,7 @@ def test_what_a_limit_does_not_speak_of_carries_what_it_costs() -> None:
     assert refusal(**bound("1", **values), proof=weigh("1", **half)) == LESS
     assert refusal(**bound("1/2", **values), proof=weigh("3/2", **half)) == carries(POUR)
     for weight in ("0", "-1"):
-        said = "a weight of a limit is not above zero"
+        said = "limits: a weight is not above zero"
         assert refusal(**bound("0", **values), proof=weigh("1", limits=[[0, [weight]]])) == said
     no_pouring = sorted([*rules, *forbid(["pour"])], key=verify.canonical)
     baked: Content = {"rules": no_pouring, "cuts": [[END]], "proof": weigh("3/2", limits=[[1, ["1/2"]]])}

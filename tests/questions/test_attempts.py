@@ -7,6 +7,7 @@ import pytest
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.certificate import certify
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.proof import verify
@@ -55,8 +56,7 @@ def test_the_best_are_those_of_brute_force_and_proved(rule: ContainerRule) -> No
         assert (found.costs.measure(Objective.ATTEMPTS), found.costs.units) == least
         certificate = certify(problem, (*BY, Objective.UNITS), found.units)
         if certificate is not None:
-            given = problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
-            verified = verify.verify(certificate.content, *given)
+            verified = verify.verify(certificate.content, subject_of(problem))
             assert verified.costs is not None
             assert verified.costs[0] == least[0]
             proved += 1

@@ -5,7 +5,7 @@ import inspect
 import subprocess
 import sys
 from collections.abc import Callable
-from typing import Any, get_args
+from typing import Any
 
 import pytest
 
@@ -57,7 +57,7 @@ def test_options_are_parameters(verb: str) -> None:
     posed = {each.name for each in options if each.part is Part.PROBLEM and each.positional}
     taken = {name for name in parameters(verb) if name not in PYTHON_ONLY}
     taken -= posed  # what is read to pose the problem comes before the options
-    assert set(asked_for(verb)) in (taken, taken - {"time_limit"})  # which every function takes in Python
+    assert set(asked_for(verb)) == taken
 
 
 @pytest.mark.parametrize("verb", INDEX)
@@ -78,7 +78,7 @@ def test_defaults_are_the_same(verb: str) -> None:
 @pytest.mark.parametrize("verb", INDEX)
 def test_a_command_has_what_python_has(verb: str) -> None:
     theirs = inspect.signature(function_of(verb)).parameters
-    only = PYTHON_ONLY | ({"time_limit", "goal", "containers"} - parameters(verb).keys())
+    only = PYTHON_ONLY | ({"goal", "containers"} - parameters(verb).keys())
     for name in theirs.keys() - only:
         assert parameters(verb)[name].default == theirs[name].default, name
 
@@ -90,15 +90,6 @@ def test_help_begins_with_the_line_of_the_index(verb: str, cli: Cli) -> None:
     assert INDEX[verb].line in " ".join(ran.out.split())
     assert f"foon-asp {verb}" in ran.out
     assert "xits with 0" in ran.out
-
-
-@pytest.mark.parametrize("verb", INDEX)
-def test_text_parameters_are_those_of_the_text(verb: str) -> None:
-    text = [option.name for option in question_of(verb).options if option.part & Part.TEXT]
-    result = inspect.signature(function_of(verb)).return_annotation
-    for kind in get_args(result) or (result,):
-        shown = inspect.signature(getattr(kind, "show", kind.text))
-        assert text == [name for name in shown.parameters if name != "self"]
 
 
 def test_help_of_all_imports_no_question() -> None:

@@ -15,7 +15,7 @@ import foon_asp
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.questions.pareto import Front, pareto
-from foon_asp.report.answer import success_text, success_texts
+from foon_asp.results.figure_text import success_text, success_texts
 from tests.conftest import STRUCK_WHILE_READING, Cli
 from tests.oracle import task_trees
 from tests.questions.test_alternatives import choosing

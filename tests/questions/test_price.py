@@ -12,6 +12,7 @@ import pytest
 import foon_asp
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.certificate import certify
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.engines import Asked, cross_check
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, UnitPrices
@@ -106,8 +107,7 @@ def test_the_best_are_those_of_brute_force_in_every_room(
             continue
         certificate = certify(problem, (*BY, Objective.UNITS), found.units)
         assert certificate is not None
-        given = problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
-        proved = verify.verify(verify.read_certificate(certificate.text()), *given)
+        proved = verify.verify(verify.read_certificate(certificate.text()), subject_of(problem))
         assert (proved.claim, proved.costs) == ("optimal", task_trees.best(trees, problem, ["price"]))
         if seed % 4 == 0:
             clingo, *_ = cross_check(Asked(found))
@@ -172,16 +172,16 @@ def test_certificates_by_wrong_prices_are_refused() -> None:
     problem = priced_ways(["0.1", "0.2"], ["0.5"])
     prices = problem.unit_prices
     assert prices is not None
-    given = problem.network, problem.kitchen, problem.rates, problem.utensils
+    given = subject_of(problem)
     right = forged(problem)
     for costs in (["1/5", 2], ["3/10", 3], [0, 2], ["0.3", 2]):
         with pytest.raises(verify.RefusedError, match="the tree costs"):
-            verify.verify(forged(problem, costs=costs), *given, prices)
+            verify.verify(forged(problem, costs=costs), given)
     digests = {name: digest for name, digest in right["digests"].items() if name != "prices"}
     old = before_rules(forged(problem, version=2, digests=digests))
     old["seal"] = verify.seal(old)
     with pytest.raises(verify.RefusedError, match="a claim needs prices, but none are given"):
-        verify.verify(old, *given, prices)
+        verify.verify(old, given)
     one, two, other = problem.network.motions
     unit = problem.network.unit
     for wrong, said in (
@@ -191,11 +191,13 @@ def test_certificates_by_wrong_prices_are_refused() -> None:
         (UnitPrices(prices.motions, {unit(2): Fraction(1, 5)}), "carries more than it costs|do not add up"),
         (UnitPrices(prices.motions, {unit(0): Fraction(0)}), "the tree costs"),
     ):
-        content = forged(problem, digests=verify.digests(*given, wrong))
+        priced = given._replace(prices=wrong)
+        content = forged(problem, digests=priced.digests())
         with pytest.raises(verify.RefusedError, match=said):
-            verify.verify(content, *given, wrong)
+            verify.verify(content, priced)
     # of a unit that is not here, and so of no account
     free = FunctionalUnit("go 0 0", unit(0).inputs, unit(0).inputs)
     also = UnitPrices(prices.motions, {free: Fraction(0), unit(2): Fraction(1, 2)})
-    content = forged(problem, digests=verify.digests(*given, also))
-    assert verify.verify(content, *given, also).claim == "optimal"
+    priced = given._replace(prices=also)
+    content = forged(problem, digests=priced.digests())
+    assert verify.verify(content, priced).claim == "optimal"

@@ -16,7 +16,7 @@ from foon_asp.network import ObjectNode
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.problem.shop import Offer
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.price_list import read_prices
+from foon_asp.text.tables import PRICES
 from tests.conftest import STRUCK_WHILE_READING, Cli
 from tests.oracle import task_trees
 from tests.questions.recipes import posed
@@ -180,7 +180,7 @@ def test_a_price_list_decides(cli: Cli, tmp_path: Path) -> None:
         ("flour\n", "prices.txt:1:6: error: found the end of the line"),
         ("flour\tcheap\n", "prices.txt:1:7: error: found 'cheap', expected a price"),
         ("flour\t-1\n", "found '-1'"),
-        ("\nflour\t1\nflour\t2\n", "prices.txt:3:1: error: found a second price"),
+        ("\nflour\t1\nflour\t2\n", "prices.txt:3:7: error: found a second price"),
         ("flour; in [\t2\n", "error"),
     ],
 )
@@ -188,7 +188,7 @@ def test_faults_of_a_price_list_have_places(tmp_path: Path, text: str, message: 
     file = tmp_path / "prices.txt"
     file.write_text(text)
     with pytest.raises(InputError) as caught:
-        read_prices(file)
+        PRICES.read(file)
     assert message in str(caught.value)
 
 

@@ -23,7 +23,7 @@ from foon_asp.problem.items import fate
 from foon_asp.proof.replay import replay_for
 from foon_asp.rules.constraint import given_constraint
 from foon_asp.rules.measure import read_measures
-from foon_asp.text.item_list import read_stays, read_stock
+from foon_asp.text.tables import STAYS, read_stock
 from tests.conftest import Cli
 from tests.oracle.used_up import UTENSILS, key, plans, random_problem, stays
 from tests.questions.recipes import posed
@@ -84,10 +84,10 @@ def test_plans_of_the_real_network(universal: Path) -> None:
 def test_what_stays_is_read_from_a_file(tmp_path: Path, text: str, message: str) -> None:
     file = tmp_path / "stays.txt"
     file.write_text("# mine\nbowl\tstays\negg; raw\tused-up\negg;\tstays\n", encoding="utf-8")
-    assert read_stays(file) == {"bowl": True, parse_node("egg; raw"): False, parse_node("egg"): True}
+    assert STAYS.read(file) == {"bowl": True, parse_node("egg; raw"): False, parse_node("egg"): True}
     file.write_text(text, encoding="utf-8")
     with pytest.raises(UserError, match=message):
-        read_stays(file)
+        STAYS.read(file)
 
 
 def test_a_stock_is_a_table_or_a_list_of_copies(tmp_path: Path) -> None:
@@ -359,7 +359,8 @@ def test_a_plan_without_steps_keeps_to_the_rules() -> None:
 @pytest.mark.slow
 def test_other_questions_answer_for_plans_too(cli: Cli, tmp_path: Path) -> None:
     asked = ("--goal", "greek salad", "--items", "used-up", "--format", "json")
-    answers = cli("solve", "--all-goals", *asked).json
+    each = [word for name in ("units", "inputs", "success") for word in ("--objective", name)]
+    answers = cli("solve", "--all-goals", *asked, *each).json
     assert answers["items"] == "used-up"
     assert [answer["costs"]["units"] for answer in answers["answers"]] == [33, 33, 36]
     (row,) = cli("compare", *asked, "--search", "bfs").json["comparisons"]

@@ -7,11 +7,10 @@ from pathlib import Path
 import pytest
 
 import foon_asp
+from foon_asp.questions.constraint_list import list_constraints
 from foon_asp.questions.result import Result
-from foon_asp.report.constraint_list import constraint_lines
 from foon_asp.results.plain import csv_text, flat_row, markdown_text
 from foon_asp.results.table import rendered
-from foon_asp.rules.constraint_library import library_constraints
 from tests.conftest import Cli
 from tests.questions.recipes import posed
 
@@ -111,7 +110,7 @@ def test_a_narrow_terminal_shows_a_block_for_each_row() -> None:
 
 
 def test_tables_of_commands_are_as_narrow_as_the_terminal() -> None:
-    parts = [*foon_asp.stats(foon_asp.load()).show(), *constraint_lines(library_constraints())]
+    parts = [*foon_asp.stats(foon_asp.load()).show(), *list_constraints().show()]
     assert max(map(len, rendered(parts, 60).splitlines())) <= 60
 
 
@@ -119,7 +118,7 @@ def test_lists_are_folded_to_the_terminal() -> None:
     foon = foon_asp.load()
     for result in (foon_asp.solve(foon.problem("ice", "tea")), foon_asp.search(foon.problem("ice"), "bfs")):
         text = result.text()
-        lines = rendered([text], 40).splitlines()
+        lines = rendered(text.split("\n"), 40).splitlines()
         assert len(lines) > len(text.splitlines())
         assert [line for line in lines if len(line) > 40 and " " in line.strip()] == []  # a path may be long
         assert " ".join("\n".join(lines).split()) == " ".join(text.split())

@@ -10,6 +10,7 @@ import pytest
 
 from foon_asp.certificate import Coverage, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.arrays import Arrays
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.certificate.coverage import needed
 from foon_asp.certificate.own_rules import check_with_clingo
 from foon_asp.deadline import Deadline
@@ -221,8 +222,7 @@ def test_items_are_counted_under_rules_that_have_steps() -> None:
         for objectives in ((Objective.KITCHEN, Objective.UNITS), (Objective.UNITS,)):
             found = certify(kitchen, objectives, units, Coverage(given))
             assert found is not None
-            asked = kitchen.network, kitchen.kitchen, kitchen.rates, kitchen.utensils
-            costs = verify(read_certificate(found.text()), *asked).costs
+            costs = verify(read_certificate(found.text()), subject_of(kitchen)).costs
             assert costs == ((1, len(units)) if len(objectives) > 1 else (len(units),))
 
 
@@ -245,7 +245,6 @@ def test_what_is_best_under_each_constraint_is_certified_without_a_search(seed: 
     problem, rules, _ = drawn(seed)
     found = [*trees(problem)]
     objective = (Objective.UNITS, Objective.KITCHEN, Objective.INPUTS, Objective.PRICE)[seed % 4]
-    given = problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
     for rule in rules:
         covered = Coverage((rule,))
         costs = {
@@ -263,7 +262,7 @@ def test_what_is_best_under_each_constraint_is_certified_without_a_search(seed: 
         certificate = certify(problem, (objective,), in_order(problem, best), covered)
         assert certificate is not None, rule
         assert certificate.claim == "optimal"
-        verified = verify(read_certificate(certificate.text()), *given)
+        verified = verify(read_certificate(certificate.text()), subject_of(problem))
         assert (verified.tree, verified.costs) == (tuple(in_order(problem, best)), (costs[best],))
         assert verified.rules == (rule,)
         worst = max(costs, key=lambda units: (costs[units], sorted(units)))

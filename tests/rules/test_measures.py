@@ -24,7 +24,7 @@ from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem, needed_inputs, parse_objectives, reach
 from foon_asp.proof import verify
 from foon_asp.reduce import ALL, NONE
-from foon_asp.report.answer import figure_text
+from foon_asp.results.figure_text import figure_text
 from foon_asp.rules.measure import read_measures
 from foon_asp.text.diagnostics import InputError
 from tests.conftest import CORPUS, ROOT, Cli

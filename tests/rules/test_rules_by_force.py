@@ -6,7 +6,6 @@ from functools import cache
 import pytest
 from clingo import Control
 
-import foon_asp
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
 from foon_asp.encoding.facts import write_facts
@@ -14,9 +13,7 @@ from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, reach
-from foon_asp.reduce import ALL, NONE
 from foon_asp.resources import encodings_folder
-from foon_asp.rules import flat_answers
 from foon_asp.rules.constraint import RuleText
 from tests.rules.test_explained_rules import WRITTEN
 from tests.support.random_problems import random_problem, random_steps
@@ -121,25 +118,6 @@ def test_rules_of_every_kind(text: str) -> None:
         text = text.replace(f'"{word}"', f'"{motion}"')
     for seed in range(3):
         check(problem_of(seed), text)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        ':- use(U), motion(U,"pour").',
-        ':- use(U), input(U,O), label(O,"bowl").',
-        ':- use(U), output(U,O), ingredient(O,"butter").',
-        ':- not use(U) : motion(U,"chop").',
-    ],
-)
-@pytest.mark.parametrize("goal", ["ice", "macaroni"])
-def test_rules_over_a_larger_network(goal: str, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of units that are asked about often, what rules remove is found at once."""
-    monkeypatch.setattr(flat_answers, "_OFTEN", 3)
-    problem = foon_asp.load().problem(goal)
-    found = [solve(problem, UNITS, Settings((RuleText(text),), reductions=each)) for each in (ALL, NONE)]
-    assert found[0].status is found[1].status
-    assert found[0].bounds == found[1].bounds
 
 
 def test_objects_related_to_one_thing_in_two_ways() -> None:

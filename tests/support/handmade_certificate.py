@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.problem import Problem
 from foon_asp.proof import verify
 
@@ -12,14 +13,14 @@ Content = dict[str, Any]
 def handmade(problem: Problem, **values: Any) -> Content:
     """Give a sealed certificate of a problem with these values, and those of no claim for the others."""
     content: Content = {
-        "format": verify.FORMAT,
-        "version": verify.VERSION,
+        "format": verify.TREE.name,
+        "version": verify.TREE.version,
         "claim": "optimal",
         "goals": [{"id": goal, "node": str(problem.network.objects[goal])} for goal in problem.goals],
         "containers": str(problem.containers),
         "level": problem.network.level,
         "objective": ["units"],
-        "digests": verify.digests(*_data(problem)),
+        "digests": subject_of(problem).digests(),
         "rules": [],
         "measures": {},
         "not_covered": [],
@@ -44,12 +45,12 @@ def before_rules(content: Content) -> Content:
 
 def check(content: Any, problem: Problem) -> verify.Verified:
     """Verify a certificate against the data of a problem."""
-    return verify.verify(content, *_data(problem))
+    return verify.verify(content, subject_of(problem))
 
 
 def older(problem: Problem) -> dict[str, str]:
     """Give the digests that certificates had before there were prices, and sources."""
-    digests = verify.digests(*_data(problem))
+    digests = subject_of(problem).digests()
     return {name: digest for name, digest in digests.items() if name not in ("prices", "sources")}
 
 
@@ -58,7 +59,3 @@ def forbid(motions: Iterable[str] = (), labels: Iterable[str] = ()) -> list[dict
     rules = [{"rule": "forbid_motion", "forbidden_motion": motion} for motion in motions]
     rules += [{"rule": "forbid_object", "forbidden_object": label} for label in labels]
     return sorted(rules, key=verify.canonical)
-
-
-def _data(problem: Problem) -> tuple[Any, ...]:
-    return problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices

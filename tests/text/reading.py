@@ -1,7 +1,8 @@
 """How these tests read FOON text: when the readers change, this module does."""
 
 from foon_asp.network import FunctionalUnit
-from foon_asp.text.reader import FoonReader, ReadUnit
+from foon_asp.text.listed_unit import ReadUnit
+from foon_asp.text.reader import FoonReader
 
 MIX = "O\ta\nM\tmix\nO\tb\n//\n"
 

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from foon_asp.network import ObjectNode
 from foon_asp.text.conversion import Converter
 from foon_asp.text.conversion_loss import Loss
-from foon_asp.text.conversion_times import in_two_fields
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.dialect import Dialect, dialect_of, is_object_list
+from foon_asp.text.format import Dialect
+from foon_asp.text.formats import format_of, format_with
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
-from foon_asp.text.motion_times import MotionFields
+from foon_asp.text.motion_times import MotionFields, in_two_fields
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reader import FoonReader
@@ -414,7 +414,7 @@ def test_whatever_is_lost_is_listed_and_nothing_else(text: str, target: Dialect)
     except InputError as error:
         # Names that JSON keeps for something else, or a bare "contains" beside contents.
         assert "cannot hold" in str(error)  # noqa: PT017
-        assert target.is_json
+        assert not format_with(target).has_comments
         assert "None" in text or "\tcontains" in text
         return
     after = read(result)
@@ -466,15 +466,15 @@ def patterns(text: str, file: Path) -> list[object]:
 @settings(steady, max_examples=50)
 @given(text=LISTS, target=st.sampled_from(Dialect))
 def test_kitchens_and_goals(tmp_path_factory: pytest.TempPathFactory, text: str, target: Dialect) -> None:
-    assert is_object_list(text)
+    assert format_of(text).lists_objects(text)
     file = tmp_path_factory.getbasetemp() / "list"
     try:
         result, lost = convert(text, target)
     except InputError:
-        assert target.is_json
+        assert not format_with(target).has_comments
         assert "None" in text or "\tcontains" in text
         return
-    assert is_object_list(result)
+    assert format_of(result).lists_objects(result)
     same = patterns(text, file) == patterns(result, file)
     only_words = {Loss.CONTENTS_WORDS, Loss.CONTENTS_LISTS, Loss.NO_CONTENTS}  # no part of a pattern
     assert same == (not (MEANING - only_words) & set(lost))
@@ -532,7 +532,7 @@ def test_json_holds_half_a_character_and_is_laid_out(target: Dialect) -> None:
     ],
 )
 def test_the_dialect_is_found_out(text: str, dialect: Dialect) -> None:
-    assert dialect_of(text, FoonReader()) is dialect
+    assert format_of(text).dialect(text) is dialect
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ from foon_asp.network import Source, starting_nodes
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import DataFiles, find_data, read_data
 from foon_asp.text.diagnostics import InputError, Severity
-from foon_asp.text.label_list import read_labels
+from foon_asp.text.tables import read_utensils
 
 MIX = "O\ta\nM\tmix\nO\tb\n//\n"
 CUT = "O\ta\nM\tcut\nO\ta\nS\tcut\nS\tin\t[bowl]\n//\n"
@@ -242,6 +242,6 @@ def test_labels_stand_one_on_each_line(tmp_path: Path) -> None:
     file.write_text(
         "\N{BYTE ORDER MARK}bowl\r\n# tools\n\n  cutting board \r\t\nbowl\rwok 中", "utf-8", newline=""
     )
-    assert read_labels(file) == {"bowl", "cutting board", "wok 中"}
+    assert read_utensils(file) == {"bowl", "cutting board", "wok 中"}
     file.write_text("")
-    assert read_labels(file) == frozenset()
+    assert read_utensils(file) == frozenset()

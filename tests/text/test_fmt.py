@@ -9,10 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.formatter import format_text
+from foon_asp.text.formats import format_of
 from foon_asp.text.json_layout import lay_out
+from foon_asp.text.listed_unit import ReadUnit
 from foon_asp.text.plain_file import read_plain_text
-from foon_asp.text.reader import FoonReader, ReadUnit
+from foon_asp.text.reader import FoonReader
 from tests.conftest import CORPUS, Cli
 from tests.text.foon_strategies import steady, texts
 
@@ -35,6 +36,10 @@ LEFT_ALONE = [
     "O tea",
     "M\tpour\t3:0s7",
 ]
+
+
+def format_text(text: str, file: str, lenient: bool = False) -> str:
+    return format_of(text, file).normalised(text, file, lenient)
 
 
 def network(text: str) -> list[ReadUnit]:

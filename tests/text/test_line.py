@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from foon_asp.network import ObjectNode
-from foon_asp.text.formatter import format_text
+from foon_asp.text.formats import format_of
 from foon_asp.text.line import Line, LineError, ObjectLine
 from foon_asp.text.line_parser import parse_node
 from foon_asp.text.reader import FoonReader
@@ -51,7 +51,7 @@ def test_a_line_as_it_should_be_is_understood_and_stays(line: str, meaning: str)
     (unit,), reader = read(text)
     assert reader.diagnostics == []
     assert (unit.motion if line[0] == "M" else str(unit.inputs[0])) == meaning
-    assert format_text(text, "f.txt") == text
+    assert format_of(text).normalised(text, "f.txt") == text
 
 
 @pytest.mark.parametrize(

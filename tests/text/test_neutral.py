@@ -13,7 +13,7 @@ from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles, network_files, read_data
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.folder_files import foon_files
-from foon_asp.text.formatter import format_text
+from foon_asp.text.formats import format_of
 from foon_asp.text.reader import FoonReader
 from tests.conftest import Cli
 
@@ -125,8 +125,9 @@ def test_it_is_written_and_read_back(cli: Cli, tmp_path: Path) -> None:
     assert "2  states, relations and contents: in the name of their object" in there.err
     assert "1  times" in there.err
     file = written(tmp_path)
-    assert cli("convert", str(file), "--to", "neutral").out == format_text(TEXT, "net.jsonl") == TEXT
-    assert format_text(TEXT.replace(", ", " ,"), "net.jsonl") == TEXT
+    lines = format_of(TEXT, "net.jsonl")
+    assert cli("convert", str(file), "--to", "neutral").out == lines.normalised(TEXT, "net.jsonl") == TEXT
+    assert lines.normalised(TEXT.replace(", ", " ,"), "net.jsonl") == TEXT
     priced = written(
         tmp_path, '[{"input_nodes": [{"label": "a"}], "motion_node": "m", "output_nodes": [], "price": ".5"}]'
     )

@@ -14,17 +14,19 @@ import foon_asp
 from foon_asp.batch.question_file import read_questions
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
-from foon_asp.network import FunctionalUnit, NodePattern, ObjectNode, Source, UnitPrices
+from foon_asp.network import FunctionalUnit, NetworkBuilder, NodePattern, ObjectNode, Source, UnitPrices
+from foon_asp.results.plain import plain
+from foon_asp.results.values_of import named_node
 from foon_asp.text.goal_name import find_goal, nodes_beginning
-from foon_asp.text.item_list import read_stays, read_stock
-from foon_asp.text.json_node import node_json
 from foon_asp.text.line_parser import parse_name, parse_node
 from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.price_list import read_prices
 from foon_asp.text.reader import FoonReader
+from foon_asp.text.tables import PRICES, STAYS, read_stock
 from foon_asp.text.unit_price_list import read_unit_prices, write_unit_prices
 from tests.conftest import Cli
 from tests.text.foon_strategies import steady
+
+NOTHING = NetworkBuilder().build()
 
 _letters = st.one_of(st.sampled_from("ab;,[]{}()\"\\'\t\n\r #@:->→\u2028\u200b"), st.characters())
 _names = st.text(_letters, max_size=5) | st.sampled_from(
@@ -82,11 +84,11 @@ def test_a_printed_node_is_read_from_files(node: ObjectNode) -> None:
             file.write_text(text, "utf-8", newline="")
             return file
 
-        entries = read_object_list(written(json.dumps([printed, node_json(node)])))
+        entries = read_object_list(written(json.dumps([printed, plain(named_node(NOTHING, node))])))
         assert [entry.pattern for entry in entries] == [NodePattern.of(node)] * 2
-        assert read_prices(written(f"{printed}\t2\n"))[0].node == node
+        assert PRICES.read(written(f"{printed}\t2\n")) == {parse_name(printed): 2}
         assert read_stock(written(f"{printed}\t3\n")) == {node: 3}
-        assert read_stays(written(f"{printed}\tstays\n")) == {parse_name(printed): True}
+        assert STAYS.read(written(f"{printed}\tstays\n")) == {parse_name(printed): True}
         unit = FunctionalUnit.of("mix", [node], [ObjectNode("->")])
         prices = UnitPrices({}, {unit: Fraction(1)})
         assert read_unit_prices(written(write_unit_prices(prices))).units == prices.units

@@ -7,13 +7,13 @@ import pytest
 
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError
-from foon_asp.text.rate_table import read_rates
+from foon_asp.text.tables import RATES
 
 
 def rates(folder: Path, text: str) -> dict[str, Fraction]:
     file = folder / "motion.txt"
     file.write_text(text, "utf-8", newline="")
-    return read_rates(file)
+    return RATES.read(file)
 
 
 def errors(folder: Path, text: str) -> tuple[Diagnostic, ...]:
@@ -22,7 +22,7 @@ def errors(folder: Path, text: str) -> tuple[Diagnostic, ...]:
     return caught.value.diagnostics
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 @pytest.mark.parametrize("start", ["", "\N{BYTE ORDER MARK}"])
 def test_a_table_has_exact_decimals_comments_and_blank_lines(tmp_path: Path, end: str, start: str) -> None:
     text = (

@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+from foon_asp.text.listed_unit import ReadUnit
 from foon_asp.text.plain_file import read_plain_text
-from foon_asp.text.reader import FoonReader, ReadUnit
+from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_units
 from tests.conftest import CORPUS
 from tests.text.foon_strategies import steady, texts

@@ -11,9 +11,10 @@ from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.text.conversion import Converter
 from foon_asp.text.diagnostics import Rename
-from foon_asp.text.dialect import Dialect
+from foon_asp.text.format import Dialect
+from foon_asp.text.formats import format_of
 from foon_asp.text.reader import FoonReader
-from foon_asp.text.renaming import Renaming, mentioned
+from foon_asp.text.renaming import Renaming
 from foon_asp.text.writer import write_units
 from tests.conftest import Cli
 from tests.text.foon_strategies import steady, units
@@ -26,8 +27,9 @@ IDS = (
 
 def renamed(text: str, kind: str, old: str, new: str, file: str = "a.txt") -> str:
     renaming = Renaming(Rename(kind, old, new))
-    renaming.learn(text, file)
-    return renaming.renamed(text, file)
+    format_ = format_of(text, file)
+    renaming.learn(format_.names(text, file))
+    return format_.renamed(text, file, renaming)
 
 
 def test_lines_keep_everything_else() -> None:
@@ -79,7 +81,7 @@ def test_what_is_read_is_what_was_read_with_another_name(
         text = plain
     reader = FoonReader()
     before = [unit for unit, _ in reader.tree_units(text, "a.txt")]
-    names = sorted({(str(kind), name) for kind, name, _ in mentioned(text, "a.txt", reader)})
+    names = sorted({(str(kind), name) for kind, name, _ in format_of(text).names(text, "a.txt")})
     if not names:
         return
     kind, old = data.draw(st.sampled_from(names))
@@ -118,6 +120,14 @@ def test_json_of_both_forms_with_its_ids() -> None:
     assert renamed(text, "motion", "bowl", "cup", "a.json") == text.replace('"bowl*"', '"cup*"')
     assert renamed(text, "relation", "in", "inside", "a.json") == text.replace('"in"', '"inside"')
     assert '"clean"' in renamed(text, "state", "empty", "clean", "a.json")
+
+
+def test_broken_json_is_refused_in_place(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "a.json"
+    for text in ('[{"label": "pot"}]]', '[{"label" "pot"}]', '[O "label": "pot"}]'):
+        file.write_text(text)
+        ran = cli("rename", "pot", "pan", file)
+        assert (ran.code, "not JSON" in ran.err) == (2, True), ran.err
 
 
 def folder_of_data(folder: Path) -> dict[str, str]:

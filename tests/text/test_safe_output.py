@@ -203,7 +203,15 @@ def test_a_name_of_two_lines_stays_on_one(cli: Cli, tmp_path: Path) -> None:
     (tmp_path / "goal_nodes.json").write_text(json.dumps([{"label": "b"}]))
     store = tmp_path / "a.foon"
     assert cli("merge", "--data", tmp_path, "--store", store).code == 0
-    for words in (("solve", "--data", tmp_path), ("alternatives", "--network", store)):
+    answer = tmp_path / "answers" / "answer.json"
+    answer.parent.mkdir()
+    answer.write_text(cli("solve", "--data", tmp_path, "--format", "json").out)
+    for words in (
+        ("solve", "--data", tmp_path),
+        ("alternatives", "--network", store),
+        ("view", "--data", tmp_path),
+        ("schedule", answer, "--data", tmp_path, "--default-duration", "5"),
+    ):
         ran = cli(*words)
         assert (ran.code, "forged" in ran.out) == (0, True)
         assert "\noptimal: 0 units" not in ran.out + ran.err

@@ -98,7 +98,7 @@ def test_two_prices_for_one_are_an_error_and_all_errors_are_told(tmp_path: Path)
     text = f"chop\t1\n{LINE}2\nchop\t1.0\nchop\t2\n{LINE}2.5\nmix\tx\n"
     assert [(line, said) for line, _, said in faults(tmp_path, text)] == [
         (4, "found a second price for 'chop', expected one"),
-        (5, "found a second price for this unit, expected one"),
+        (5, f"found a second price for {str(BAKE)!r}, expected one"),
         (6, f"found 'x', {EXPECTED}"),
     ]
 

@@ -13,13 +13,12 @@ from foon_asp.foon import Foon, load
 from foon_asp.network import LEVELS, Network, NetworkBuilder, ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer
-from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
 from foon_asp.questions.diff.networks import NetworkDifference as NetworkDifference
 from foon_asp.questions.diff.networks import compare_networks
 from foon_asp.questions.diff.trees import TreeDifference as TreeDifference
 from foon_asp.questions.diff.trees import compare_trees
-from foon_asp.questions.how import Limits
+from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import listed_tree, own_networks, settle_data
@@ -142,7 +141,7 @@ def diff(
     a: _Given,
     b: _Given,
     level: int = 3,
-    **limits: Unpack[Limits],
+    **limits: Unpack[Posed],
 ) -> TreeDifference | NetworkDifference:
     """Compare two task trees or two networks: the units of both, of only one, and those that nearly agree.
 
@@ -174,7 +173,7 @@ def diff(
     """
     if level not in LEVELS:
         raise UserError(f"found level={level}, expected 1, 2 or 3")
-    with begin(limits.get("time_limit"), limits.get("memory_limit")).watched("comparing"):
+    with begin(limits).watched("comparing"):
         if isinstance(a, str | PathLike) and isinstance(b, str | PathLike):
             goal = limits.get("goal", ())
             goals = [goal] if isinstance(goal, str | ObjectNode) else [*goal]

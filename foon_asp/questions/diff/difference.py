@@ -6,7 +6,7 @@ from typing import Any
 from foon_asp.network import FunctionalUnit, counted
 from foon_asp.network.near_units import nearest_units
 from foon_asp.pictures.two_columns import Pair, two_columns
-from foon_asp.questions.result import Document
+from foon_asp.questions.result import Result
 from foon_asp.results.plain import flat_row, plain
 from foon_asp.results.values import Unit, UnitDifference, Value
 from foon_asp.results.values_of import differences_of
@@ -21,7 +21,7 @@ class NearUnits(Value, frozen=True):
     differences: tuple[UnitDifference, ...]
 
 
-class Difference(Document, frozen=True, kw_only=True):
+class Difference(Result, frozen=True, kw_only=True):
     """The units that only one of two has, those of one that the other nearly has, and those of both.
 
     Attributes:

@@ -10,8 +10,9 @@ from foon_asp.network import FunctionalUnit, ObjectNode, counted
 from foon_asp.problem import ContainerRule, Costs, Objective, given_outputs, needed_inputs
 from foon_asp.questions.diff.difference import Difference, compared
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text
-from foon_asp.report.used_up_note import used_up_note
+from foon_asp.questions.used_up_note import used_up_note
+from foon_asp.results.document import Known
+from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Part
 from foon_asp.results.values import Node, Unit, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, listed_unit, named_node, used_up_of
@@ -96,11 +97,8 @@ class TreeDifference(Difference, frozen=True, kw_only=True, tag=schema_name("dif
     same_order: bool
     they_part_at: tuple[Parting, ...]
 
-    @property
-    def trees(self) -> tuple[Tree, Tree]:
-        """The two trees."""
-        found: tuple[Tree, Tree] = self.__dict__["trees"]
-        return found
+    trees = Known[tuple[Tree, Tree]]()
+    """The two trees."""
 
     def figures(self) -> Sequence[Sequence[str]]:
         """Return what each tree costs."""
@@ -142,8 +140,7 @@ def compare_trees(names: Sequence[str], trees: tuple[Tree, Tree]) -> TreeDiffere
         ),
         **compared(units_a, units_b),
     )
-    found.__dict__["trees"] = trees
-    return found
+    return found.knowing(trees=trees)
 
 
 def _side(name: str, tree: Tree) -> Side:

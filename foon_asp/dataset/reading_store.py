@@ -1,0 +1,83 @@
+"""Opening a store as data."""
+
+import time
+
+from foon_asp.dataset.dataset import Dataset, left_out
+from foon_asp.dataset.kitchen import Kitchen
+from foon_asp.dataset.prices import DataPrices
+from foon_asp.dataset.store_source import StoreSource
+from foon_asp.errors import UserError
+from foon_asp.network import network_at_level, pattern_at_level, starting_kitchen
+from foon_asp.problem import unrated_remarks
+from foon_asp.store.store import Store
+from foon_asp.text.data_folder import (
+    STARTING,
+    Data,
+    DataFiles,
+    kitchen_item_warning,
+    kitchen_nodes,
+    unit_price_warning,
+)
+from foon_asp.text.diagnostics import Diagnostic, in_brief, summarize
+from foon_asp.text.object_list import read_object_list
+from foon_asp.text.repeated_node import repeated_note
+from foon_asp.text.tables import RATES, read_utensils
+from foon_asp.text.unit_price_list import read_unit_prices
+
+
+def read_stored(files: DataFiles, level: int) -> Dataset:
+    """Open the store that is named instead of networks; what is named beside it replaces what is in it.
+
+    Below level 3 it is read whole, since its nodes become others there.
+    """
+    if len(files.network) > 1:
+        raise UserError(
+            f"{files.network[0]} and {files.network[1]}: a store is read alone; import "
+            "the files together into one"
+        )
+    began = time.perf_counter()
+    store = Store(files.network[0])
+    source = StoreSource(store)
+    warnings: list[Diagnostic] = []
+    prices = source.prices
+    if files.unit_prices:
+        read = read_unit_prices(files.unit_prices)
+        units = {unit: price for unit, price in read.units.items() if store.unit_id(unit) is not None}
+        warnings += [
+            unit_price_warning(unit, read.sources[unit]) for unit in read.units.keys() - units.keys()
+        ]
+        prices = DataPrices(read.motions, units)
+    dataset = Dataset(
+        source,
+        Kitchen(source.kitchen),
+        read_object_list(files.goals, warnings) if files.goals else store.goals,
+        RATES.read(files.rates) if files.rates else store.rates,
+        read_utensils(files.utensils) if files.utensils else store.utensils,
+        prices,
+        kitchen_items=None,
+        goals_from="" if files.goals else store.goals_from,
+    )
+    if files.kitchen == STARTING or (files.kitchen is None and not store.has_kitchen):
+        dataset = dataset.with_starting_kitchen()
+    elif files.kitchen:
+        kitchen = read_object_list(files.kitchen, warnings)
+        warnings += [kitchen_item_warning(item) for item in kitchen if not store.find(item.pattern)]
+        dataset = dataset.with_kitchen(kitchen)
+    remarks = [] if dataset.rates is None else [*unrated_remarks(store.motion_sources(), dataset.rates)]
+    if store.left_out:
+        remarks.append(f"{left_out(store.left_out)} when the store was made")
+    remarks += repeated_note(store.repeated)
+    if level < 3:
+        dataset = Dataset.of(_at_level(dataset.data, level))
+        store.close()
+    dataset.source.seconds = time.perf_counter() - began
+    return dataset.remarked(
+        summarize(warnings), in_brief(warnings), remarks, files.kitchen is not None or store.has_kitchen
+    )
+
+
+def _at_level(data: Data, level: int) -> Data:
+    network = network_at_level(data.network, level)
+    goals = tuple(entry._replace(pattern=pattern_at_level(entry.pattern, level)) for entry in data.goals)
+    kitchen = starting_kitchen(network).nodes if data.starting else kitchen_nodes(network, data.kitchen_items)
+    return data._replace(network=network, kitchen=kitchen, goals=goals)

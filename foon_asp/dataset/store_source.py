@@ -1,0 +1,141 @@
+"""A store as what data are read from: as far as each question goes."""
+
+import time
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from foon_asp.dataset.prices import DataPrices
+from foon_asp.dataset.source import Source
+from foon_asp.errors import UserError
+from foon_asp.network import FunctionalUnit, Network, UnitPrices
+from foon_asp.network import Source as Place
+from foon_asp.problem import ContainerRule, Objective, Unpriced
+from foon_asp.store.cone import Cone
+from foon_asp.store.starting_kitchen import StoredStartingKitchen
+from foon_asp.store.store import Store
+from foon_asp.store.stored_ids import StoredIds
+from foon_asp.store.touched_network import TouchedNetwork
+from foon_asp.text.object_list import ListedObject
+
+if TYPE_CHECKING:  # few answers need numpy
+    from foon_asp.store.elsewhere import Elsewhere
+
+
+class StoreSource(Source):
+    """A store, of which all that vary the same data share what was read."""
+
+    names: Store
+    kitchen: StoredIds
+    prices: DataPrices
+
+    def __init__(self, store: Store) -> None:
+        self.names, self.seconds = store, 0.0
+        self.unit_count, self.left_out, self.repeated = store.units, store.left_out, store.repeated
+        self.kitchen = StoredIds(store, "kitchen")
+        self.prices = DataPrices(store.motion_prices, {}, from_file=True)
+        self._starting = StoredStartingKitchen(store)
+
+    @property
+    def starting(self) -> StoredStartingKitchen:
+        """The starting kitchen."""
+        return self._starting
+
+    @property
+    def motions(self) -> Collection[str]:
+        """The motions of the network, each once."""
+        return [motion for motion, _ in self.names.motion_sources()]
+
+    @property
+    def digests(self) -> Mapping[str, str]:
+        """The digests of network, kitchen and prices that the store states."""
+        return self.names.digests
+
+    @contextmanager
+    def _timed(self) -> Iterator[None]:
+        began = time.perf_counter()
+        yield
+        self.seconds += time.perf_counter() - began
+
+    @cached_property
+    def _whole(self) -> tuple[Network, frozenset[int]]:
+        with self._timed():
+            return self.names.whole()
+
+    def whole(self) -> Network:
+        """Read the whole network."""
+        return self._whole[0]
+
+    def touched(self) -> Network:
+        """Return the whole network, read when it is looked at unless it was before."""
+        return self._whole[0] if "_whole" in vars(self) else TouchedNetwork.of(self.names)
+
+    def cone(
+        self,
+        goals: Sequence[int],
+        containers: ContainerRule,
+        utensils: frozenset[str],
+        at_hand: Container[int],
+        most: int | None,
+    ) -> Cone:
+        """Read what goals can need, or about ``most`` units of it."""
+        with self._timed():
+            return self.names.cone(goals, containers, utensils, at_hand, most)
+
+    def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
+        """Read some units, the nodes in them, and some further nodes."""
+        with self._timed():
+            return self.names.part(units, objects)
+
+    def elsewhere(
+        self,
+        kitchen: Collection[int],
+        utensils: Collection[str],
+        rates: Mapping[str, Fraction] | None,
+        objective: Objective,
+    ) -> "Elsewhere":
+        """Look at all units; they skip the ``utensils``."""
+        from foon_asp.store.elsewhere import Elsewhere  # noqa: PLC0415 (few answers need numpy)
+
+        outline = self.names.outline
+        at_hand, skipped = outline.nodes(kitchen), outline.labelled(utensils)
+        return Elsewhere(outline, at_hand, skipped, rates, objective)
+
+    def true_digests(self) -> dict[str, str]:
+        """Compute the digests that the store states, of all that is in it; refuse those that are not true."""
+        from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
+
+        store, (network, kitchen) = self.names, self._whole
+        single = self.unit_prices(network, self.prices.from_file)
+        known = self.prices.motions is not None or single is not None
+        prices = UnitPrices(self.prices.motions or {}, single or {}) if known else None
+        found = Subject(network, kitchen, None, frozenset(), prices).digests()
+        for name, stated in store.digests.items():
+            if stated != found[name]:
+                raise UserError(
+                    f"{store.name}: the digest of the {name} that the store states is not that of what is in "
+                    "it, so it was changed after the import; import its source files again"
+                )
+        return {name: found[name] for name in store.digests}
+
+    def motion_places(self) -> Iterable[tuple[str, Place]]:
+        """Read the motions of the network, with the place of the first unit that has each."""
+        return self.names.motion_sources()
+
+    def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
+        """Read the prices of single units of a network; ``None`` where the store has none."""
+        return self.names.unit_prices(network, from_file) if self.names.has_unit_prices else None
+
+    def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
+        """Return the units that have no price, by motion."""
+        return self.names.unpriced(prices.motions or {}, prices.units, prices.from_file)
+
+    def kitchen_items(self) -> tuple[ListedObject, ...]:
+        """Read the entries of the kitchen that was imported."""
+        return self.names.kitchen_items()
+
+    def close(self) -> None:
+        """Close the store; to read more of it raises :class:`UserError`."""
+        self.names.close()

@@ -1,0 +1,22 @@
+"""The example of each rule: files with the slip that it finds."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.linting.finding import Finding
+from foon_asp.linting.linter import lint
+
+_EXAMPLES = Path(__file__).parent / "examples"
+
+
+class Example(NamedTuple):
+    """The content of files by name, and what the rule finds in them."""
+
+    files: dict[Path, bytes]
+    findings: list[Finding]
+
+
+def example(code: str) -> Example:
+    """Return the example of the rule of a code."""
+    files = {Path(file.name): file.read_bytes() for file in sorted((_EXAMPLES / code).iterdir())}
+    return Example(files, [Finding.of(found) for found in lint(files, files) if found.code == code])

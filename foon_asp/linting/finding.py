@@ -1,0 +1,55 @@
+"""A finding of linting as a value, as people and programs get it."""
+
+from foon_asp.escapes import escaped
+from foon_asp.linting.mending import is_mendable
+from foon_asp.results.values import Value
+from foon_asp.text.diagnostics import Diagnostic, Severity, excerpt_with_caret
+
+
+class Finding(Value, frozen=True):
+    """Something that is wrong or doubtful at one place.
+
+    Attributes:
+        line: From 1; 0 where the file as a whole is meant.
+        column: From 1.
+        severity: An error says something else than is meant, or nothing; a warning probably does; a note
+            points at what may be intended.
+        text: The line; null where there is none, or in JSON where it is longer than a thousand letters.
+        fix: The line as it should be, where it can be mended.
+        mendable: Whether --fix mends it.
+        unsafe: Whether only --fix --unsafe-fixes mends it, which changes what is read.
+    """
+
+    file: str
+    line: int
+    column: int
+    severity: Severity
+    code: str
+    message: str
+    text: str | None
+    fix: str | None
+    mendable: bool
+    unsafe: bool
+
+    @classmethod
+    def of(cls, found: Diagnostic) -> "Finding":
+        """Return what a rule yielded as a value."""
+        mendable = is_mendable(found)
+        return cls(
+            found.source.file,
+            found.source.line,
+            found.source.column,
+            found.severity,
+            found.code,
+            found.message,
+            found.excerpt,
+            found.fix,
+            mendable,
+            is_mendable(found, unsafe=True) and not mendable,
+        )
+
+    def __str__(self) -> str:
+        """Return ``file:line:column: severity: message [code]`` and the line with a caret."""
+        head = f"{escaped(self.file)}:{self.line}:{self.column}: {self.severity}: {escaped(self.message)}"
+        excerpt = f"\n{excerpt_with_caret(self.text, self.column)}" if self.text else ""
+        return f"{head} [{self.code}]{excerpt}"

@@ -1,0 +1,49 @@
+"""What the reader remarked on, with the fixes that are beyond doubt."""
+
+from foon_asp.linting.linted_files import LintedFiles
+from foon_asp.linting.vocabulary import Vocabulary
+from foon_asp.network import Contents
+from foon_asp.text.diagnostics import Diagnostic
+from foon_asp.text.line import LineError, StateLine
+from foon_asp.text.reader import FoonReader
+
+
+def remarks_by_code(files: LintedFiles, known: Vocabulary) -> dict[str, list[Diagnostic]]:
+    """Return the remarks of the reader by code, only with fixes that mend, and none that is doubtful.
+
+    A line is written anew as a whole; where its brackets are of two kinds, the other may be meant.
+    """
+    doubtful = {remark.source[:2] for remark in files.remarks if _is_doubtful(remark, known, files.reader)}
+    by_code: dict[str, list[Diagnostic]] = {}
+    for remark in files.remarks:
+        fix = None if remark.source[:2] in doubtful else _mending_fix(remark, files.reader)
+        by_code.setdefault(remark.code, []).append(remark._replace(fix=fix))
+    return by_code
+
+
+def _is_doubtful(remark: Diagnostic, known: Vocabulary, reader: FoonReader) -> bool:
+    """Whether a remark is about brackets of two kinds, and the reader may have taken the wrong one.
+
+    What is a list, or what a word ``contains``, is in braces; else the word has to stand with that kind of
+    bracket elsewhere.
+    """
+    if remark.code != "bracket" or "wrong bracket" not in remark.message:
+        return False
+    line = reader.parse(remark.excerpt)
+    attribute = line.attribute if isinstance(line, StateLine) else ""
+    if isinstance(attribute, str):
+        return False
+    if isinstance(attribute, Contents) and (len(attribute.ingredients) > 1 or attribute.word == "contains"):
+        return False
+    return known.usual_bracket(attribute.word) is not type(attribute)
+
+
+def _mending_fix(remark: Diagnostic, reader: FoonReader) -> str | None:
+    """Return the mended line, unless the remark would be made on that, too."""
+    if remark.code == "missing-separator":
+        return f"{remark.excerpt}\n//"
+    if remark.fix is None or remark.fix == "//":
+        return remark.fix
+    mended = reader.parse(remark.fix)
+    remaining = [] if isinstance(mended, LineError) else [message for _, _, message in mended.remarks]
+    return remark.fix if remark.message not in remaining else None

@@ -1,0 +1,66 @@
+"""A whole network as a page shows it, with coordinates for each unit and object node."""
+
+from typing import Self
+
+from foon_asp.pictures.graphviz import coordinates
+from foon_asp.pictures.tree_drawing import network_drawing
+from foon_asp.problem import Problem, reach
+from foon_asp.results.values import Mention, Node, Value
+from foon_asp.results.values_of import mention_of, nodes_of
+
+
+class PlacedUnit(Mention, frozen=True):
+    """A unit of a whole network.
+
+    Attributes:
+        inputs: The positions of its inputs in the objects.
+        outputs: The positions of its outputs in the objects.
+    """
+
+    inputs: tuple[int, ...]
+    outputs: tuple[int, ...]
+
+
+class WholeNetwork(Value, frozen=True):
+    """A whole network.
+
+    Attributes:
+        places: Of units, then of objects: x and y of each.
+        kitchen: The positions of objects at hand.
+        reachable: The positions of objects at hand or that can be made.
+        possible: The positions of units that can be done with these.
+    """
+
+    objects: tuple[Node, ...]
+    units: tuple[PlacedUnit, ...]
+    places: tuple[int, ...]
+    kitchen: tuple[int, ...]
+    reachable: tuple[int, ...]
+    possible: tuple[int, ...]
+
+    @classmethod
+    def of(cls, problem: Problem) -> Self:
+        """Return the network of a problem, laid out by Graphviz.
+
+        Raises :class:`UserError` for a network that is too large for a layout, and without Graphviz.
+        """
+        network = problem.network
+        reached = reach(problem)
+        objects, units = range(len(network.objects)), range(len(network))
+        drawing = network_drawing(network, units, (), (), ())
+        by_name = coordinates(drawing)
+        positions = {box.unit if box.node is None else box.node: by_name[box.name] for box in drawing.boxes}
+        pairs = [positions[network.unit_number(u)] for u in units]
+        pairs += [positions.get(node, (0, 0)) for node in network.objects]  # some nodes are in no unit
+        mentions = (mention_of(network, u) for u in units)
+        return cls(
+            nodes_of(network, objects),
+            tuple(
+                PlacedUnit(each.id, each.motion, each.source, tuple(inputs), tuple(outputs))
+                for each, inputs, outputs in zip(mentions, network.inputs, network.outputs, strict=True)
+            ),
+            tuple(round(number) for pair in pairs for number in pair),
+            tuple(sorted(problem.kitchen)),
+            tuple(o for o in objects if reached.available[o]),
+            tuple(sorted(reached.units)),
+        )

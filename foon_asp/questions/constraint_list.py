@@ -1,0 +1,68 @@
+"""The ready-made constraints: what each demands, and how it is called."""
+
+import shlex
+from collections.abc import Iterator
+
+from foon_asp.results.document import Document
+from foon_asp.results.table import Part
+from foon_asp.results.values import Value
+from foon_asp.rules.constraint_library import library_constraints
+from foon_asp.text.json_value import schema_name
+
+_NOT_SET = frozenset({'""', "#sup", "#inf"})
+
+
+class ConstraintParameter(Value, frozen=True):
+    """A constant of a constraint.
+
+    Attributes:
+        own_value: What the file sets it to; null where it does not.
+        example: A value, as it is written in a command.
+    """
+
+    name: str
+    own_value: str | None
+    example: str
+
+
+class ReadyMadeConstraint(Value, frozen=True):
+    """A constraint that comes with the program.
+
+    Attributes:
+        purpose: What it demands.
+    """
+
+    name: str
+    file: str
+    title: str
+    purpose: str
+    parameters: tuple[ConstraintParameter, ...]
+
+
+class ConstraintList(Document, frozen=True, kw_only=True, tag=schema_name("constraints")):
+    """The ready-made constraints."""
+
+    ROWS = "constraints"
+
+    constraints: tuple[ReadyMadeConstraint, ...]
+
+    def show(self) -> Iterator[Part]:
+        """Return for each constraint its name, what it demands, and how it is called."""
+        for number, constraint in enumerate(self.constraints):
+            call = f"--constraint {constraint.name}"
+            for parameter in constraint.parameters:
+                call += f" -c {parameter.name}={shlex.quote(parameter.example)}"
+            yield from ([""] if number else [])
+            yield from (constraint.name, f"    {constraint.purpose}", f"  {call}")
+
+
+def list_constraints() -> ConstraintList:
+    """Return the ready-made constraints, in order of name."""
+    listed = []
+    for name, file, title, purpose, parameters in library_constraints():
+        own = tuple(
+            ConstraintParameter(each, None if value in _NOT_SET else value, example)
+            for each, value, example in parameters
+        )
+        listed.append(ReadyMadeConstraint(name, str(file), title, purpose, own))
+    return ConstraintList(constraints=tuple(listed))

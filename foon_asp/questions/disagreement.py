@@ -1,0 +1,126 @@
+"""A disagreement between engines as one file, with all that it takes to ask the question again."""
+
+import platform
+from collections.abc import Iterable
+from importlib.metadata import version
+from pathlib import Path
+
+from foon_asp.asp import Outcome
+from foon_asp.asp.bare_program import bare_program
+from foon_asp.encoding.encoding import read_encoding
+from foon_asp.engines import Asked, DisagreementError
+from foon_asp.engines.bare_clingo import OPTIONS
+from foon_asp.errors import UserError
+from foon_asp.problem import Problem
+from foon_asp.proof.verify import Subject
+from foon_asp.results.plain import exact_measures, plain
+from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint
+from foon_asp.text.exact_number import decimal_text
+from foon_asp.text.json_value import Json, json_text
+from foon_asp.text.unit_price_list import write_unit_prices
+from foon_asp.text.writer import write_units
+from foon_asp.whole_file import write_whole
+
+_DISTRIBUTIONS = ("foon-asp", "clingo", "highspy")
+
+
+def write_disagreement(asked: Asked, found: DisagreementError) -> str:
+    """Write all that is needed to look into a disagreement to a new file; return what to tell the user."""
+    name = disagreement_name(asked.outcome)
+    try:
+        write_whole(Path(name), json_text(disagreement_json(asked, found)).encode("utf-8", "surrogatepass"))
+    except UserError as error:  # what was found counts more than where it is written
+        return f"{found}; the report could not be written: {error}"
+    return f"{found}; question, data and answers are in {name}: attach it to your report"
+
+
+def disagreement_name(outcome: Outcome) -> str:
+    """Return the name of the file, which is made of the data and the question."""
+    problem = outcome.problem
+    return (
+        f"foon-asp-disagreement-{_digests(problem)['network'][:8]}-{'-'.join(map(str, problem.goals))}.json"
+    )
+
+
+def disagreement_json(asked: Asked, found: DisagreementError) -> Json:
+    """Return a disagreement in plain values: question, data and rules as text, and both answers.
+
+    Rules have in them what they include. ``bare_clingo`` has the program that clingo was given, and its
+    arguments.
+    """
+    outcome, settings = asked.outcome, asked.settings
+    problem, answer = outcome.problem, found.answer
+    program = bare_program(problem, outcome.objectives, settings, asked.soft)
+    encodings = (f"#program base.\n{read_encoding(file).text}\n" for file in program.files)
+    return {
+        "message": str(found),
+        "question": {
+            "goals": [str(problem.network.objects[o]) for o in problem.goals],
+            "containers": str(problem.containers),
+            "items": "lasting" if problem.items is None else "used-up",
+            "level": problem.network.level,
+            "objectives": list(map(str, outcome.objectives)),
+            "constraints": list(_texts(settings.constraints).values()),
+            "soft": [
+                {"rules": text, "weight": asked.soft[each]} for each, text in _texts(asked.soft).items()
+            ],
+            "constants": list(settings.constants),
+        },
+        "data": _data(problem),
+        "digests": _digests(problem),
+        "answers": {
+            "foon-asp": {
+                "objectives": list(map(str, outcome.objectives)),
+                "status": str(outcome.status),
+                "units": None if outcome.units is None else list(outcome.units),
+                "costs": plain(outcome.costs),
+                "lower_bound": plain(exact_measures(outcome.bounds)),
+                **({"penalty": asked.penalty} if asked.soft else {}),
+            },
+            answer.engine: {
+                "objectives": list(map(str, answer.objectives)),
+                "units": None if answer.units is None else list(answer.units),
+                "costs": None if answer.units is None else plain(problem.costs(answer.units)),
+            },
+        },
+        "bare_clingo": {
+            "arguments": [*program.constants, *OPTIONS],
+            "program": "".join(encodings) + program.text,
+        },
+        "versions": {name: version(name) for name in _DISTRIBUTIONS},
+        "python": f"{platform.python_version()} on {platform.platform()}",
+    }
+
+
+def _texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
+    """Return the texts of constraints."""
+    texts: dict[Constraint, str] = {}
+    for each in constraints:
+        named = find_constraint(each)
+        file = named.file if isinstance(named, LibraryUse) else named
+        texts[each] = file.text if isinstance(file, RuleText) else read_encoding(file).text
+    return texts
+
+
+def _data(problem: Problem) -> dict[str, str]:
+    """Return the files of a data folder by name; below level 3 they are what the network was made from."""
+    network = problem.network
+    whole = network.detailed or network
+    kitchen = sorted(problem.kitchen)
+    if network.detailed is not None:
+        kitchen = sorted(detail for o in kitchen for detail in network.objects_stand_for[o])
+    files = {
+        "FOON.txt": write_units(map(whole.unit, range(len(whole)))),
+        "kitchen.json": json_text([str(whole.objects[o]) for o in kitchen]),
+        "utensils.txt": "".join(f"{label}\n" for label in sorted(problem.utensils)),
+    }
+    if problem.rates is not None:
+        files["motion.txt"] = "".join(f"{motion}\t{decimal_text(r)}\n" for motion, r in problem.rates.items())
+    if problem.unit_prices is not None:
+        files["unit_prices.txt"] = write_unit_prices(problem.unit_prices)
+    return files
+
+
+def _digests(problem: Problem) -> dict[str, str]:
+    subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
+    return subject.digests()

@@ -1,0 +1,154 @@
+"""What rules do, one by one, and what that means together."""
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from foon_asp.asp import Settings
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.reporter import Reporter
+from foon_asp.errors import UserError
+from foon_asp.network import Source
+from foon_asp.results.document import Document
+from foon_asp.results.table import Part
+from foon_asp.results.values import Value
+from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.rule_kind import Kind
+from foon_asp.rules.rules import Together, Told
+from foon_asp.text.json_value import schema_name
+
+_KINDS = {
+    Kind.FACT: "no unit decides it: it holds for every tree, or for none",
+    Kind.DELETING: "it removes the units that match it, whatever else the tree has",
+    Kind.SHRINKING: "a tree that keeps to it still does without some of its units",
+    Kind.REQUIRING: "a tree that keeps to it still does with more units",
+    Kind.OTHER: "nothing more is known of it",
+    Kind.HELPER: "other rules look at what it derives",
+}
+_ASKS_FOR_ONE = "it asks for a unit of a set"
+
+_TOGETHER = {
+    Together.REDUCED: "what rules remove is left out before the search; all reductions stay",
+    Together.REQUIRED: "what rules remove is left out before the search, and what is required is one more "
+    "goal; all reductions stay",
+    Together.CUT: "the relevance cut stays, and bounds leave out what no better tree can have",
+    Together.BOUNDED: "bounds leave out what no better tree can have; the relevance cut does not hold, since "
+    "a rule may ask for units that lead to no goal",
+    Together.PLAIN: "plain search over all units that can be made, since a rule looks beyond the tree: {}",
+}
+
+
+class Remark(Value, frozen=True):
+    """What is said of a rule, and the place that it is about."""
+
+    text: str
+    file: str
+    line: int
+
+
+class ExplainedRule(Value, frozen=True):
+    """A rule, and what it does.
+
+    Attributes:
+        constraint: How a ready-made constraint was named that has constants of its own; null for others.
+        kind: What it does to trees.
+        one_of_a_set: Whether it requires no more than a unit of a set, or of each of several.
+        reason: Why nothing more is known of it, or why it has no effect.
+        local: Whether it looks at nothing beyond the tree.
+        looks_beyond: What it looks at beyond the tree, if it is not local.
+    """
+
+    text: str
+    file: str
+    line: int
+    constraint: str | None
+    kind: Kind
+    one_of_a_set: bool
+    reason: Remark | None
+    local: bool
+    looks_beyond: Remark | None
+
+    @classmethod
+    def of(cls, told: Told) -> "ExplainedRule":
+        """Return what is known of a rule as a value."""
+        rule, (file, line, *_) = told.rule, told.source
+        reason = _remark(rule.reason, told.reason_source)
+        beyond = _remark(rule.further, told.further_source)
+        named = told.use or None
+        return cls(told.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
+
+    def lines(self, more: int) -> Iterator[str]:
+        """Return its place and text, what it does and how far it sees; ``more`` facts are like it."""
+        yield str(Source(self.file, self.line))
+        if self.constraint:
+            yield f"  {self.constraint}"
+        yield f"    {self.text}"
+        if more:
+            yield f"    ... and {more} more of these facts"
+        if self.one_of_a_set:
+            yield f"  {self.kind}: {_ASKS_FOR_ONE}"
+        else:
+            yield f"  {self.kind}: {_KINDS[self.kind] if self.reason is None else self._said(self.reason)}"
+        if self.kind is Kind.HELPER or (self.reason is not None and self.kind is not Kind.OTHER):
+            return
+        if self.looks_beyond is None:
+            yield "  local: it looks at nothing beyond the tree"
+        else:
+            yield f"  not local: {self._said(self.looks_beyond)}"
+
+    def _said(self, remark: Remark) -> str:
+        here = (remark.file, remark.line) == (self.file, self.line)
+        return remark.text + ("" if here else f" ({Source(remark.file, remark.line)})")
+
+    @property
+    def likeness(self) -> tuple[bool, str]:
+        """Whether it is a fact, and what other facts have to share to be listed with it."""
+        is_fact = self.kind is Kind.HELPER and ":-" not in self.text
+        return is_fact, f"{self.file} {self.text.partition('(')[0]}" if is_fact else ""
+
+
+class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules")):
+    """What rules do, and what that means together.
+
+    Attributes:
+        rules: Each rule, in order.
+        together: What stays of the reductions under all of them.
+        meaning: The same in words.
+    """
+
+    ROWS = "rules"
+
+    rules: tuple[ExplainedRule, ...]
+    together: Together
+    meaning: str
+
+    def show(self) -> Iterator[Part]:
+        """Return what each rule does, of facts of one predicate the first, and then what follows."""
+        for (alike, _), group in groupby(self.rules, lambda rule: rule.likeness):
+            together = list(group)
+            shown = [(together[0], len(together) - 1)] if alike else [(rule, 0) for rule in together]
+            for rule, more in shown:
+                yield from (*rule.lines(more), "")
+        yield f"together: {self.meaning}"
+
+
+def explain_rules(
+    constraints: Sequence[Constraint], constants: Sequence[str], reporter: Reporter
+) -> ExplainedRules:
+    """Return what rules do, each and together.
+
+    Raises :class:`UserError` where the built-in encodings were changed, so that nothing is known of rules.
+    """
+    settings = Settings(tuple(constraints), constants=tuple(constants))
+    rules = assemble(settings, reporter.warning).understood
+    if rules is None:
+        raise UserError("the built-in encodings were changed, so nothing is known of rules beside them")
+    far = next((str(told.source) for told in rules.told if not told.rule.local), "")
+    return ExplainedRules(
+        rules=tuple(map(ExplainedRule.of, rules.told)),
+        together=rules.together,
+        meaning=_TOGETHER[rules.together].format(far),
+    )
+
+
+def _remark(text: str, source: Source | None) -> Remark | None:
+    return None if source is None else Remark(text, source.file, source.line)

@@ -1,0 +1,35 @@
+"""What the solver is given for a goal, for bare clingo."""
+
+from collections.abc import Mapping, Sequence
+
+from foon_asp.asp import Settings
+from foon_asp.asp.bare_program import printed_program
+from foon_asp.problem import Objective, Problem
+from foon_asp.results.document import AboutGoals
+from foon_asp.results.values_of import head_of
+from foon_asp.rules.constraint import Constraint
+from foon_asp.text.json_value import schema_name
+
+
+class Facts(AboutGoals, frozen=True, kw_only=True, tag=schema_name("facts")):
+    """What the solver is given.
+
+    Attributes:
+        facts: Facts of clingo, some on a line, and with soft constraints rules.
+    """
+
+    facts: tuple[str, ...]
+
+    @property
+    def program(self) -> str:
+        """The facts as a program."""
+        return "".join(f"{line}\n" for line in self.facts)
+
+
+def facts_of(
+    problem: Problem, objectives: Sequence[Objective], how: Settings, soft: Mapping[Constraint, int]
+) -> Facts:
+    """Return what the solver is given for a problem under rules; ``soft`` ones have a weight each."""
+    program = printed_program(problem, objectives, how, soft).text
+    lines = program.rstrip("\n").split("\n")  # a name may hold what other letters end a line
+    return Facts(**head_of(problem, objectives), facts=tuple(lines))

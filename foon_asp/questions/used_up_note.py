@@ -1,0 +1,42 @@
+"""A note where a tree would not run if items were used up."""
+
+from collections.abc import Iterable, Sequence
+
+from foon_asp.network import FunctionalUnit
+from foon_asp.problem import Problem, UsedUp
+from foon_asp.proof.replay import Shortage
+from foon_asp.proof.used_up_run import used_up_run
+
+
+def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
+    """Return one line where items last, and the tree would not run if each were used once; else none.
+
+    Nor is there one where what is missing never was there.
+    """
+    units = tuple(tree)
+    if problem.items is not None:
+        return []
+    run = used_up_run(problem, units)
+    if run.shortage is None or not run.shortage.taken:
+        return []
+    said = _lack_text(problem, units, run.shortage)
+    said += "" if run.proved else ", and no other order was found"
+    return [f"note: {said}: with each item used once, see --items used-up"]
+
+
+def _lack_text(problem: Problem, units: Sequence[FunctionalUnit], lack: Shortage) -> str:
+    node, before = lack.node, [position + 1 for position in lack.taken]
+    used = f"{_steps_text(before)} use{'s' if len(before) == 1 else ''} up"
+    if lack.step is None:
+        return f"{used} the goal {node}"
+    step = lack.step + 1
+    if UsedUp().fate(units[lack.step], node, problem.utensils).stays:
+        return f"step {step} needs {node}, which {used}"
+    if len(before) == 1:
+        return f"{_steps_text(sorted([*before, step]))} both take {node}"
+    return f"{_steps_text(sorted([*before, step]))} all take {node}, of which there are {len(before)}"
+
+
+def _steps_text(steps: Sequence[int]) -> str:
+    *first, last = map(str, steps)
+    return f"steps {', '.join(first)} and {last}" if first else f"step {last}"

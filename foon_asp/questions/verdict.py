@@ -1,0 +1,117 @@
+"""Whether a tree executes, in which order, and what stops it: as values, and in words."""
+
+from collections.abc import Iterator
+from typing import TypedDict
+
+from msgspec import UNSET, UnsetType
+
+from foon_asp.network import FunctionalUnit, ObjectNode
+from foon_asp.problem import Problem, given_outputs
+from foon_asp.proof.simulation import Obstacle, Simulation, Verdict
+from foon_asp.questions.tree import Tree
+from foon_asp.questions.used_up_note import used_up_note
+from foon_asp.results.figure_text import costs_text
+from foon_asp.results.values import Node, Unit, UsedUpRun, Value
+from foon_asp.results.values_of import named_node, used_up_of
+
+
+class Stop(Value, frozen=True):
+    """What stops the steps of a tree.
+
+    Attributes:
+        position: The first step that cannot be done, from 1; null where a goal is missing in the end.
+        unit: The unit of that step, or null.
+        missing: What the step lacks, or the goal.
+        cycle: The steps that wait for each other, from 1; none where no cycle is to blame.
+        used_up_by: Where items are used up: the steps that use up the copies there are.
+    """
+
+    position: int | None
+    unit: Unit | None
+    missing: Node
+    cycle: tuple[int, ...]
+    used_up_by: tuple[int, ...] | UnsetType = UNSET
+
+    @classmethod
+    def of(cls, tree: Tree, obstacle: Obstacle | None) -> "Stop | None":
+        """Return what stops a tree as a value, if anything does."""
+        if obstacle is None:
+            return None
+        position = None if obstacle.unit is None else obstacle.unit + 1
+        return cls(
+            position,
+            None if position is None else tree.step_unit(position),
+            named_node(tree.problem.network, obstacle.missing),
+            tuple(place + 1 for place in obstacle.cycle),
+            tuple(place + 1 for place in obstacle.used_up_by) or UNSET,
+        )
+
+
+class Found(TypedDict):
+    """What a simulation found; ``None`` where there is no tree."""
+
+    verdict: Verdict
+    as_listed: Stop | None
+    in_any_order: Stop | None
+    order: tuple[int, ...]
+    used_up: UsedUpRun | None
+
+
+def found_of(tree: Tree, simulation: Simulation) -> Found:
+    """Return what the simulation of a tree found, as fields of a result."""
+    return {
+        "verdict": simulation.verdict,
+        "as_listed": Stop.of(tree, simulation.as_listed),
+        "in_any_order": Stop.of(tree, simulation.obstacle),
+        "order": tuple(position + 1 for position in simulation.order),
+        "used_up": used_up_of(tree.problem, tree),
+    }
+
+
+def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
+    """Return lines that say whether a tree executes, in which order, and what stops it."""
+    problem, verdict = tree.problem, simulation.verdict
+    yield f"{verdict} ({problem.conditions})"
+    for order, obstacle in (("as listed", simulation.as_listed), ("in any order", simulation.obstacle)):
+        if obstacle is not None:
+            yield f"{order}: {_obstacle_text(tree, obstacle)}"
+    ids = [problem.network.unit_id(unit) for unit in tree]
+    foreign = [n for n, unit in enumerate(ids, 1) if unit is None]
+    yield from (f"unit {n} is not in the network: {tree.step_text(n)}" for n in foreign)
+    if not foreign:
+        yield costs_text(problem.costs(unit for unit in ids if unit is not None))
+    if verdict is not Verdict.NEVER:
+        yield from used_up_note(problem, tree)
+    repeated = len(tree) - len(set(tree))
+    if repeated and problem.items is None:
+        count = "is repeated and counts" if repeated == 1 else "are repeated and count"
+        yield f"{repeated} of the {len(tree)} listed units {count} once"
+    if verdict is Verdict.REORDERED:
+        yield "an order that executes:"
+        yield from (f"  {place + 1:>3}  {tree.step_text(place + 1)}" for place in simulation.order)
+
+
+def _obstacle_text(tree: Tree, obstacle: Obstacle) -> str:
+    if obstacle.unit is None:
+        text = f"every unit runs, but the goal is not made: {obstacle.missing}"
+    else:
+        position = obstacle.unit + 1
+        text = f"unit {position}, {tree.step_text(position)}, lacks {obstacle.missing}"
+    skipping = [n for n, unit in enumerate(tree, 1) if _skips(tree.problem, unit, obstacle.missing)]
+    if skipping:
+        first = f"unit {skipping[0]}, {tree.step_text(skipping[0])}"
+        text += f"; {first}, took it as given, and so did not make it"
+    if obstacle.used_up_by:
+        steps = ", ".join(f"unit {n + 1} ({tree.units[n].motion})" for n in obstacle.used_up_by)
+        text += f"; used up by {steps}"
+    if obstacle.cycle:
+        waits = " → ".join(str(position + 1) for position in (*obstacle.cycle, obstacle.cycle[0]))
+        text += f"; a cycle is to blame, units that wait for each other: {waits}"
+    return text
+
+
+def _skips(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
+    """Return whether a unit has a node among its outputs and does not make it."""
+    if node not in unit.outputs:
+        return False
+    return node not in given_outputs(unit, problem.containers, problem.utensils, problem.network)

@@ -1,0 +1,77 @@
+"""Why there is no tree, in a few lines beside an answer that says so."""
+
+from collections.abc import Iterator
+
+from foon_asp.deadline import Deadline
+from foon_asp.network import counted
+from foon_asp.problem import Problem, reach
+
+_CIRCLE = 3  # object nodes of a cycle that are named after the first
+
+
+def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterator[str]:
+    """Return lines that say why there is no tree, if that is found by the deadline."""
+    try:
+        with (deadline or Deadline()).watched("looking for the reason", late=True, grace=True):
+            lines = list(_reasons(problem))
+    except KeyboardInterrupt:
+        lines = ["foon-asp why-not explains why; there was no time left for it here"]
+    yield from lines
+
+
+def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
+    """Yield for each goal that cannot be made which units would make it, and what the first of them lack.
+
+    Where every goal can be made, it is the constraints that leave no tree.
+    """
+    available = reach(problem).available
+    network = problem.network
+    if all(available[goal] for goal in problem.goals) and problem.items is not None:
+        yield (
+            "if items lasted, every goal could be made: each plan would use up more than there is, or break "
+            "a constraint"
+        )
+        return
+    if all(available[goal] for goal in problem.goals):
+        yield "without the constraints there is one: together they rule out every tree"
+        yield "foon-asp why-not finds those that do, and which to drop"
+        return
+    for goal in problem.goals:
+        if available[goal]:
+            continue
+        makers = problem.makers[goal]
+        skipping = len(network.producers[goal]) - len(makers)
+        if makers:
+            yield f"no unit that makes {network.objects[goal]} can run:"
+        else:
+            yield f"no unit makes {network.objects[goal]}, and it is not in the kitchen"
+        if skipping:
+            yield f"  {counted(skipping, 'unit')} took it as given, and so did not make it"
+        for unit in makers[:shown]:
+            yield f"  {network.motions[unit]}    [{network.sources[unit][0].short}] lacks"
+            yield from (f"       {network.objects[o]}" for o in problem.needs[unit] if not available[o])
+        if len(makers) > shown:
+            yield f"  ... and {counted(len(makers) - shown, 'more unit')}"
+    yield from _cause_lines(problem)
+    yield "foon-asp why-not explains why, and foon-asp shopping-list finds what would help"
+
+
+def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
+    """Yield a sentence on each cause, those on the way that takes the fewest things first."""
+    from foon_asp.problem.dead_ends import dead_ends  # noqa: PLC0415 (only where there is no tree)
+
+    objects = problem.network.objects
+    roots = [root for root in dead_ends(problem).roots if root.on_the_way]
+    for root in roots[:shown]:
+        if root.cycle is None:
+            if root.object not in problem.goals:
+                yield f"the cause: {objects[root.object]} is not in the kitchen, and no unit makes it"
+            continue
+        first, *others = [str(objects[o]) for o, _ in reversed(root.cycle.steps)]
+        back = (*others, first)
+        circle = "".join(f", and that only from {other}" for other in back[1:_CIRCLE])
+        if len(back) > _CIRCLE:
+            circle += f", and so on: {len(back)} object nodes wait for each other"
+        yield f"the cause: {first} can only be made from {back[0]}{circle}"
+    if len(roots) > shown:
+        yield f"  ... and {len(roots) - shown} more"

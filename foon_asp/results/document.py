@@ -1,0 +1,129 @@
+"""Documents: values that are JSON of their own, with a schema, rows for tables, and lines for people."""
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Generic, Literal, Self, TypeVar
+
+from msgspec import Struct
+
+from foon_asp.network import counted
+from foon_asp.problem import ContainerRule, Objective, conditions
+from foon_asp.results.plain import csv_text, flat_row, frame, markdown_text, plain
+from foon_asp.results.table import Part, rendered
+from foon_asp.results.values import Node
+from foon_asp.text.json_value import Json, json_text, read_json
+
+T = TypeVar("T")
+
+
+class Known(Generic[T]):
+    """What a document knows besides its JSON, as :meth:`Document.knowing` says it; else the ``default``."""
+
+    def __init__(self, *default: T) -> None:
+        self._default = default
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, document: object, owner: type | None = None) -> T:
+        if not self._default:
+            raise AttributeError(f"{self._name} is not known")
+        return self._default[0]
+
+
+class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema"):
+    """A value whose fields are its JSON, in their order.
+
+    A class names the field that lists its rows as ``ROWS``; without one, and where it is ``None``, the
+    document itself is one row.
+    """
+
+    ROWS: ClassVar[str] = ""
+
+    def knowing(self, **known: object) -> Self:
+        """Return the document itself, which from now on knows more besides its JSON, see :class:`Known`."""
+        self.__dict__.update(known)
+        return self
+
+    def show(self) -> Iterator[Part]:
+        """Return the lines and tables that the document is for people."""
+        raise NotImplementedError
+
+    def text(self) -> str:
+        """Return the document in words, as the command line does."""
+        return rendered(self.show())
+
+    def json_dict(self) -> Json:
+        """Return the document as plain values, in the order in which JSON has them."""
+        found: Json = plain(self)
+        return found
+
+    def json_text(self) -> str:
+        """Return the document as JSON, as the command line does with ``--format json``."""
+        return json_text(self.json_dict())
+
+    def json(self) -> Any:
+        """Return the document as lists, dictionaries, strings and numbers (docs/json.md)."""
+        return read_json(self.json_text())
+
+    def table_rows(self) -> Iterator[Json]:
+        """Return a row for each thing that is listed, or one where nothing is.
+
+        What is inside another value has a name with a dot (``costs.units``); numbers are decimals, with the
+        exact one beside it where it is another (``costs.success_exact``).
+        """
+        rows = getattr(self, self.ROWS) if self.ROWS else None
+        yield from map(flat_row, [self.json_dict()] if rows is None else map(plain, rows))
+
+    def to_frame(self) -> Any:
+        """Return a data frame of pandas with the rows and columns of :meth:`csv`.
+
+        Raises:
+            UserError: if pandas is not installed.
+        """
+        return frame(self.table_rows())
+
+    def csv(self) -> str:
+        """Return a line for each thing that is listed, under headings, for a spreadsheet."""
+        return csv_text(self.table_rows())
+
+    def markdown(self) -> str:
+        """Return the same as a table in Markdown, for people: without empty columns and exact numbers."""
+        return markdown_text(self.table_rows())
+
+
+class AboutGoals(Document, frozen=True, kw_only=True):
+    """A document about goals, which begins with the question.
+
+    Attributes:
+        goals: What is to be made.
+        containers: Whether a unit needs every input (strict), or takes as given a utensil whose only
+            ingredient is an input too (implied).
+        items: Whether what is at hand or was made can be used again (lasting), or is used up (used-up).
+        level: What counts of an object node: 3 all, 2 no contents, 1 the label alone.
+        objectives: The objectives, the first counting most; units decides last in any case.
+        starting_kitchen: Where no kitchen was given, the items that are assumed to be available and can be
+            needed for the goals; null where a kitchen was given.
+    """
+
+    goals: tuple[Node, ...]
+    containers: ContainerRule
+    items: Literal["lasting", "used-up"]
+    level: int
+    objectives: tuple[Objective, ...]
+    starting_kitchen: tuple[Node, ...] | None
+
+    @property
+    def conditions(self) -> str:
+        """What every claim holds under, in a few words: ``strict containers``."""
+        said = conditions(self.containers, self.level, self.starting_kitchen is not None)
+        return said if self.items == "lasting" else f"{said}, items used up"
+
+    def goal_lines(self, shown: int = 5) -> Iterator[str]:
+        """Return a line for each goal; below level 3 with level-3 nodes that it stands for."""
+        for goal in self.goals:
+            yield f"goal: {goal}"
+            if isinstance(goal.stands_for, tuple):
+                yield f"  stands for {counted(len(goal.stands_for), 'object node')} at level 3:"
+                yield from (f"    {node}" for node in goal.stands_for[:shown])
+                if len(goal.stands_for) > shown:
+                    yield f"    ... and {len(goal.stands_for) - shown} more; --format json lists all"

@@ -1,0 +1,77 @@
+"""Figures in words: what trees cost, bounds, and success rates in a few digits."""
+
+from collections.abc import Iterable, Sequence
+from decimal import Context, Decimal, Inexact
+from fractions import Fraction
+
+from foon_asp.network import counted
+from foon_asp.problem import Costs, Objective, multiplies
+from foon_asp.results.plain import nearest_float
+
+_DIGITS = 4  # of a success, if these tell several apart
+_MOST_DIGITS = 40
+_SUM_DIGITS = 15  # of a sum of costs, if it has no more
+
+
+def figure_text(objective: Objective, figure: int | Fraction) -> str:
+    """Write a value by an objective: exactly, or four digits after ``≈`` where that takes too many."""
+    if multiplies(objective):
+        return success_text(Fraction(figure))
+    if objective.row.whole:
+        return str(figure)
+    context = Context(prec=_SUM_DIGITS)
+    exact = context.divide(*map(Decimal, Fraction(figure).as_integer_ratio()))
+    if context.flags[Inexact]:
+        return f"≈ {_four_digits(Fraction(figure))}"
+    return f"{exact if exact.adjusted() < _SUM_DIGITS else exact.normalize(context):g}"
+
+
+def bound_text(objective: Objective, bound: int | Fraction) -> str:
+    """Return a bound in words: ``units at least 3``, ``success at most 0.5``."""
+    side = "at most" if multiplies(objective) else "at least"
+    return f"{objective} {side} {figure_text(objective, bound)}"
+
+
+def costs_text(costs: Costs, objectives: Iterable[Objective] = ()) -> str:
+    """Return the measures of a tree in a few words, those by some objectives among them."""
+    text = f"{counted(costs.units, 'unit')}, {counted(costs.inputs, 'input')}"
+    shown = {Objective.UNITS, Objective.INPUTS}
+    others = [Objective.SUCCESS] if costs.success is not None else []
+    for objective in dict.fromkeys((*others, *objectives)):
+        if objective not in shown:
+            text += f", {objective} {figure_text(objective, costs.measure(objective))}"
+    return text
+
+
+def success_text(success: Fraction) -> str:
+    """Return a success rate to four significant digits, with ``≈`` where that is rounded.
+
+    A rate that is rounded to 1 is shown by what it lacks of 1.
+    """
+    shown = _four_digits(success)
+    if success < 1 and Fraction(shown) == 1:
+        return f"≈ 1 - {_four_digits(1 - success)}"
+    return shown if Fraction(shown) == success else f"≈ {shown}"
+
+
+def _four_digits(value: Fraction) -> str:
+    approx = nearest_float(value)
+    if approx is None or (value and not approx):  # there are numbers below the least float, and above all
+        return f"{Decimal(value.numerator) / Decimal(value.denominator):.4g}"
+    return f"{approx:.4g}"
+
+
+def success_texts(values: Sequence[Fraction]) -> list[str]:
+    """Write successes with enough significant digits that different ones look different, at least four.
+
+    ``≈`` stands before what is rounded.
+    """
+    digits = _DIGITS
+    while digits < _MOST_DIGITS and len({_rounded(v, digits) for v in values}) < len(set(values)):
+        digits += 1
+    shown = {value: _rounded(value, digits) for value in values}
+    return [f"{shown[v]:g}" if Fraction(shown[v]) == v else f"≈ {shown[v]:g}" for v in values]
+
+
+def _rounded(value: Fraction, digits: int) -> Decimal:
+    return Context(prec=digits).divide(Decimal(value.numerator), Decimal(value.denominator))

@@ -1,0 +1,18 @@
+"""The JSON Schemas of documents, as ``python -m tests.results`` writes them from the fields of these."""
+
+from pathlib import Path
+
+from foon_asp.text.json_value import Json, read_json
+
+SCHEMAS = Path(__file__).resolve().parent / "schemas"
+
+
+def schema_kinds() -> tuple[str, ...]:
+    """Return the kinds of documents: what stands in their names, ``answer`` for ``foon-asp/answer/1``."""
+    return tuple(sorted(file.stem for file in SCHEMAS.glob("*.json")))
+
+
+def schema(kind: str) -> Json:
+    """Return the schema of a kind, complete in itself."""
+    found: Json = read_json((SCHEMAS / f"{kind}.json").read_text(encoding="utf-8"))
+    return found

@@ -1,0 +1,85 @@
+"""The digests of a store: of the whole file, and those of its content that certificates name."""
+
+import hashlib
+import sqlite3
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from pathlib import Path
+
+from foon_asp.store.columns import decoded_label, encode, quoted
+
+FILE_DIGEST = hashlib.sha256().digest_size  # bytes behind the last page, which SQLite does not look at
+
+
+def append_digest(file: Path) -> None:
+    """Write the SHA-256 digest of a database behind it."""
+    with file.open("rb+") as database:
+        digest = hashlib.file_digest(database, "sha256").digest()
+        database.seek(0, 2)
+        database.write(digest)
+
+
+def has_true_digest(file: Path) -> bool:
+    """Whether a store is what was written when it was imported, to the last bit."""
+    found, size, piece = hashlib.sha256(), file.stat().st_size - FILE_DIGEST, 1 << 20
+    with file.open("rb") as database:
+        while size > 0 and (read := database.read(min(piece, size))):
+            found.update(read)
+            size -= len(read)
+        return database.read() == found.digest()
+
+
+def content_digests(
+    database: sqlite3.Connection,
+    motions: Mapping[str, Fraction] | None,
+    priced: Mapping[int, Fraction] | None,
+) -> dict[str, str]:
+    """Return the digests of network, kitchen and prices; :func:`foon_asp.proof.verify.digests` has the same.
+
+    ``motions`` are prices by motion, ``priced`` those of single units by id; ``None`` where none are known.
+    """
+
+    def column(statement: str) -> Iterable[str]:
+        return (text for (text,) in database.execute(statement))
+
+    labels = [
+        quoted(decoded_label(name)) for (name,) in database.execute("SELECT name FROM label ORDER BY id")
+    ]
+    rows = database.execute("SELECT label, states, relations, contents FROM node ORDER BY id")
+    nodes = (
+        f"[{labels[label]},{states},{relations},{contents}]" for label, states, relations, contents in rows
+    )
+    units = "FROM unit ORDER BY unit.id"
+    network: tuple[Iterable[str], ...] = (
+        nodes,
+        column("SELECT name FROM unit JOIN motion ON motion.id = unit.motion ORDER BY unit.id"),
+        column(f"SELECT inputs {units}"),
+        column(f"SELECT outputs {units}"),
+    )
+    prices = "null"
+    if motions is not None or priced is not None:
+        single = ([unit, str(price)] for unit, price in sorted((priced or {}).items()))
+        prices = encode(
+            [sorted([motion, str(price)] for motion, price in (motions or {}).items()), [*single]]
+        )
+    return {
+        "network": _digest("3", *network),
+        "kitchen": hashlib.sha256(
+            f"[{','.join(map(str, column('SELECT id FROM node WHERE kitchen ORDER BY id')))}]".encode()
+        ).hexdigest(),
+        "prices": hashlib.sha256(prices.encode()).hexdigest(),
+    }
+
+
+def _digest(level: str, *lists: Iterable[str]) -> str:
+    """Return the digest of a list in JSON of a number and lists, of which each member is JSON."""
+    found = hashlib.sha256(f"[{level}".encode())
+    for members in lists:
+        found.update(b",[")
+        comma = b""
+        for member in members:
+            found.update(comma + member.encode("ascii"))
+            comma = b","
+        found.update(b"]")
+    found.update(b"]")
+    return found.hexdigest()

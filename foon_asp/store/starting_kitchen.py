@@ -1,0 +1,48 @@
+"""The starting kitchen of a store, which is read as far as goals ask for it."""
+
+from collections.abc import Iterable, Sequence
+
+from foon_asp.network.starting import StartingKitchen
+from foon_asp.store.columns import ids_of
+from foon_asp.store.schema import UNITS_OF_FILE
+from foon_asp.store.store import Store
+from foon_asp.store.store_file import reporting_damage
+from foon_asp.store.stored_ids import StoredIds
+
+
+class StoredStartingKitchen(StartingKitchen[int]):
+    """Files are those of the store, by number."""
+
+    def __init__(self, store: Store) -> None:
+        self.file, self._nodes = store.file, StoredIds(store, "starting")
+
+    @property
+    def nodes(self) -> StoredIds:
+        """The object nodes that are available, whatever the goals are."""
+        return self._nodes
+
+    @reporting_damage
+    def makers(self, o: int) -> Sequence[int]:
+        """Return the units that make a node out of others."""
+        rows = self.file.database.execute(
+            "SELECT id, inputs FROM producer JOIN unit ON id = unit WHERE node = ? ORDER BY id", (o,)
+        )
+        return [unit for unit, inputs in rows if o not in ids_of(inputs)]
+
+    @reporting_damage
+    def granting(self, o: int) -> Iterable[int]:
+        """Return the files that a node is granted though one of their units makes it."""
+        rows = self.file.database.execute("SELECT file FROM granted WHERE node = ?", (o,))
+        return [file for (file,) in rows]
+
+    @reporting_damage
+    def files_of(self, units: Iterable[int]) -> Iterable[int]:
+        """Return the files that units are from."""
+        rows = self.file.rows("SELECT file FROM source JOIN origin ON id = origin WHERE unit IN ids", units)
+        return [file for (file,) in rows]
+
+    @reporting_damage
+    def units_of(self, file: int) -> Iterable[tuple[Sequence[int], Sequence[int]]]:
+        """Return the inputs and outputs of the units of a file, in its order."""
+        rows = self.file.database.execute(UNITS_OF_FILE, (file,))
+        return {unit: (ids_of(inputs), ids_of(outputs)) for unit, inputs, outputs in rows}.values()

@@ -1,0 +1,109 @@
+"""FOON units in JSON as a format, in both of the forms that are about, and lists of objects in JSON."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from foon_asp.network import FunctionalUnit, NodePattern
+from foon_asp.text.diagnostics import InputError
+from foon_asp.text.exact_number import read_price
+from foon_asp.text.format import Dialect, Format, Writer
+from foon_asp.text.json_layout import check_json, lay_out
+from foon_asp.text.json_list import JsonList, begins_json
+from foon_asp.text.json_names import json_mentions, renamed_json
+from foon_asp.text.json_object import read_json_objects
+from foon_asp.text.json_units import read_json_units
+from foon_asp.text.line import Line, Mention
+from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
+from foon_asp.text.plain_file import usual_line_end
+from foon_asp.text.reading import Reading
+
+if TYPE_CHECKING:
+    from foon_asp.text.conversion_ids import Numbering
+    from foon_asp.text.renaming import Renaming
+
+
+class FoonJson(Format):
+    """JSON, whose form is told by its keys."""
+
+    dialects: tuple[Dialect, ...] = (Dialect.JSON, Dialect.JSON_LIST)
+    suffix = list_suffix = ".json"
+    machine_written = True
+
+    def recognises(self, text: str, file: str) -> bool:
+        """Whether it begins with a bracket."""
+        return begins_json(text)
+
+    def dialect(self, text: str) -> Dialect:
+        """Return the form: that of an object, or of a list of objects with ``object_label``."""
+        by_its_name = any("object_label" in value for value in _first_objects(text))
+        return Dialect.JSON if by_its_name or text.lstrip(" \t\r\n")[0] == "{" else Dialect.JSON_LIST
+
+    def lists_objects(self, text: str) -> bool:
+        """Whether it is a list whose first element is no unit."""
+        first = next(iter(JsonList(text, Path())), None) if text.lstrip(" \t\r\n")[0] == "[" else None
+        if first is None or not isinstance(first.value, dict | str):
+            return False
+        return isinstance(first.value, str) or "input_nodes" not in first.value
+
+    def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
+        """Give the units of a text in order, with the lines that they would have."""
+        for unit in read_json_units(text, file, reading):
+            if unit.price:
+                copy = FunctionalUnit.of(unit.motion.motion, *unit.sides)
+                reading.prices.add(copy, read_price(unit.price), unit.motion_source)
+            yield unit
+
+    def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
+        """Give the objects of a kitchen or of goals; a ``container`` is in what they stand for alone."""
+        return read_json_objects(text, file, reading)
+
+    def lines(self, text: str) -> Iterator[Line]:
+        """Give the lines that its objects and motions would have."""
+        reading = Reading(lenient=True)
+        if self.lists_objects(text):
+            for block, _ in self.objects(text, "", reading):
+                yield from block.lines
+            return
+        for unit in self.listed_units(text, "", reading):
+            yield unit.motion
+            for block in unit.inputs + unit.outputs:
+                yield from block.lines
+
+    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
+        """Return JSON laid out anew; the line end behind the last bracket is there or not, as before."""
+        try:
+            check_json(text, file)
+        except InputError:
+            if not lenient:
+                raise
+            return text
+        laid_out = lay_out(text) + ("\n" if text.rstrip(" \t")[-1:] in {"\r", "\n"} else "")
+        return laid_out.replace("\n", usual_line_end(text))
+
+    def names(self, text: str, file: str) -> Iterator[Mention]:
+        """Give every mention of a name; raises :class:`InputError` for what is not JSON."""
+        check_json(text, file)
+        return json_mentions(text)
+
+    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
+        """Return a text with the new name."""
+        return renamed_json(text, renaming)
+
+    def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
+        """Return what writes a network, or a list of objects, in one of the forms."""
+        from foon_asp.text.json_writer import JsonWriter  # noqa: PLC0415 (for conversions alone)
+
+        return JsonWriter(target)
+
+
+def _first_objects(text: str) -> Iterator[dict[str, object]]:
+    """Give the first object of a list of objects, or the objects of the first unit."""
+    first = next(iter(JsonList(text, Path(), "functional_units")), None)
+    value = first.value if first else None
+    if not isinstance(value, dict):
+        return
+    nodes = value.get("input_nodes")
+    for node in nodes if isinstance(nodes, list) else [value]:
+        if isinstance(node, dict):
+            yield node

@@ -1,0 +1,167 @@
+"""FOON text as a format: object, state and motion lines, with ``//`` between units."""
+
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from foon_asp.network import NodePattern, Source
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+from foon_asp.text.format import Dialect, Format, Writer
+from foon_asp.text.line import Line, LineError, Mention, MotionLine, ObjectLine, line_names
+from foon_asp.text.line_parser import read_line
+from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
+from foon_asp.text.plain_file import each_line, split_lines, text_pieces, usual_line_end
+from foon_asp.text.reading import Reading
+from foon_asp.text.text_units import TextUnits
+from foon_asp.text.writer import write_line
+
+if TYPE_CHECKING:
+    from foon_asp.text.conversion_ids import Numbering
+    from foon_asp.text.renaming import Renaming
+
+_PIECE = 1_000_000  # letters of a file read at a time
+_BLANKS = {"outer-space", "space-for-tab"}
+
+Rewrite = Callable[[Line, str], str]
+"""What becomes of a line, given what it says and how it is written."""
+
+
+class FoonText(Format):
+    """FOON text in any of its dialects; what is in no other format is in this one."""
+
+    dialects: tuple[Dialect, ...] = (Dialect.PLAIN, Dialect.NO_IDS, Dialect.IDS)
+    suffix = list_suffix = ".txt"
+    has_comments = True
+
+    def recognises(self, text: str, file: str) -> bool:
+        """Return true."""
+        return True
+
+    def dialect(self, text: str) -> Dialect:
+        """Return the dialect: one line with an id, flag or time is enough."""
+        found = Dialect.PLAIN
+        for line in self.lines(text):
+            if line.id:
+                return Dialect.IDS
+            if isinstance(line, ObjectLine | MotionLine) and line.fields:
+                found = Dialect.NO_IDS
+        return found
+
+    def lists_objects(self, text: str) -> bool:
+        """Whether there are object lines and no motion lines."""
+        starts = {line[:1] for line in split_lines(text)}
+        return "O" in starts and "M" not in starts
+
+    def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
+        """Give the units of a file, of which some pieces at a time are in memory."""
+        return TextUnits(text_pieces(file, _PIECE), str(file), reading).units()
+
+    def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
+        """Give the units of a text in order."""
+        return _units(text, file, reading).units()
+
+    def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
+        """Give the units of a text in order, with their lines as written."""
+        return _units(text, file, reading).listed_units()
+
+    def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
+        """Give the objects of a kitchen or of goals."""
+        for block in _units(text, file, reading).objects():
+            yield block, NodePattern.of(block.node)
+
+    def lines(self, text: str) -> Iterator[Line]:
+        """Give the lines that can be understood."""
+        for written in split_lines(text):
+            if written[:1] in {"O", "S", "M"} and not isinstance(line := read_line(written), LineError):
+                yield line
+
+    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
+        """Return a text in canonical form, line by line, as :func:`rewritten` does."""
+        return rewritten(text, file, lenient, _mended)
+
+    def names(self, text: str, file: str) -> Iterator[Mention]:
+        """Give every mention of a name."""
+        for line in self.lines(text):
+            yield from line_names(line)
+
+    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
+        """Return a text with the new name."""
+        return each_line(text, renaming.line)
+
+    def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
+        """Return what writes a network, or a list of objects, as lines."""
+        from foon_asp.text.text_writer import TextWriter  # noqa: PLC0415 (for conversions alone)
+
+        return TextWriter(target, numbering)
+
+
+def _units(text: str, file: str, reading: Reading) -> TextUnits:
+    return TextUnits([text.replace("\r\n", "\n").replace("\r", "\n")], file, reading)
+
+
+def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
+    """Write a text anew, line by line; ``rewrite`` says what becomes of those that say something.
+
+    Blanks at the end of lines go, every line ends in the way that most do, a last unit is closed by ``//``.
+    Comments, blank lines and the order of everything stay, whether or not the lines make up units. Raises
+    :class:`InputError` with every line that cannot be understood; with ``lenient`` those stay as they are.
+    """
+    lines = split_lines(text)
+    errors: list[Diagnostic] = []
+    written: dict[str, str] = {}
+    new: list[str] = []
+    for number, line in enumerate(lines, 1):
+        found = written.get(line)
+        if found is None:
+            found, error = _rewritten_line(line, rewrite)
+            if error and not lenient:
+                place = Source(file, number, error.column)
+                errors.append(Diagnostic(Severity.ERROR, "syntax", str(error), place, line))
+            else:
+                written[line] = found
+        new.append(found)
+    if errors:
+        raise InputError(errors)
+    last = len(new) - 1
+    while last >= 0 and not new[last]:
+        last -= 1
+    if _is_open_unit(lines):
+        new.insert(last + 1, "//")
+    if new[-1]:
+        new.append("")
+    return usual_line_end(text).join(new)
+
+
+def _mended(line: Line, written: str) -> str:
+    """Return the canonical form of a line: itself, unless there is a remark on more than blanks in it.
+
+    Blanks within a line stay, as the published universal FOON has them: ``{jelly, peanut butter}``, and a
+    space for the tab before a bracket. Linting remarks on them.
+    """
+    if all(remark.code in _BLANKS for remark in line.remarks):
+        return written.rstrip(" \t")
+    return write_line(line)
+
+
+def _rewritten_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
+    if line[:1] == "#":
+        return line, None
+    if not line or line.isspace():
+        return "", None
+    if line.rstrip(" \t") == "//":
+        return "//", None
+    parsed = read_line(line)
+    if isinstance(parsed, LineError):
+        return line, parsed
+    return rewrite(parsed, line), None
+
+
+def _is_open_unit(lines: list[str]) -> bool:
+    """Whether the lines after the last separator are a whole unit: inputs, and one motion."""
+    start = len(lines)
+    while start > 0 and not re.fullmatch(r"//[ \t]*", lines[start - 1]):
+        start -= 1
+    rest = [read_line(line) for line in lines[start:] if line[:1] in {"O", "M"}]
+    motions = [index for index, line in enumerate(rest) if isinstance(line, MotionLine)]
+    return len(motions) == 1 and any(isinstance(line, ObjectLine) for line in rest[: motions[0]])

@@ -1,0 +1,127 @@
+"""What there is to know of a way in which FOONs are written."""
+
+from collections.abc import Iterator, Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from foon_asp.network import NodePattern
+from foon_asp.text.line import Line, Mention, MotionLine
+from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
+from foon_asp.text.plain_file import read_plain_text
+from foon_asp.text.reading import Reading
+
+if TYPE_CHECKING:
+    from foon_asp.text.conversion_ids import Numbering
+    from foon_asp.text.conversion_loss import Loss
+    from foon_asp.text.renaming import Renaming
+
+
+class Dialect(StrEnum):
+    """A way in which FOON files are written; ``docs/formats.md`` has an example of each."""
+
+    PLAIN = "plain"
+    """``O⇥onion``, ``M⇥chop``: names only, as in a universal FOON."""
+    NO_IDS = "no-ids"
+    """``O⇥onion⇥1``, ``M⇥chop⇥<0:14,0:20>``: motion flags and times in one field."""
+    IDS = "ids"
+    """``O294⇥onion⇥1``, ``M12⇥chop⇥0:14⇥0:20``: ids, motion flags, and times in two fields."""
+    JSON = "json"
+    """``{"functional_units": [...]}`` with ``object_label``, ids, motion flags and times."""
+    JSON_LIST = "json-list"
+    """A list of units whose objects have ``label``, ``states``, ``ingredients`` and ``container``."""
+
+    NEUTRAL = "neutral"
+    """``{"id": "chop", "inputs": ["onion"], "outputs": ["chopped onion"]}``: a unit a line, plain names."""
+
+
+class Format(Protocol):
+    """A format of files: what the reader, ``fmt``, ``convert``, ``rename`` and ``lint`` ask of it.
+
+    ``dialects`` are those that it has; ``suffix`` and ``list_suffix`` are how the names of its networks
+    and of its lists of objects end. ``has_comments`` says whether it has comments, and ``machine_written``
+    whether a node that a unit lists twice means two of it.
+    A ``file`` is named in places and messages.
+    """
+
+    dialects: tuple[Dialect, ...] = ()
+    suffix: str
+    list_suffix: str
+    has_comments: bool = False
+    machine_written: bool = False
+
+    def recognises(self, text: str, file: str) -> bool:
+        """Whether a text is in this format; of a long one, its beginning is enough."""
+
+    def dialect(self, text: str) -> Dialect:
+        """Return the dialect of a text, whatever of it cannot be understood."""
+
+    def lists_objects(self, text: str) -> bool:
+        """Whether a text lists object nodes, as a kitchen or goals do, and has no functional units."""
+
+    def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
+        """Give the units of a file in order; raises :class:`InputError` for one that is no text."""
+        yield from self.units(read_plain_text(file), str(file), reading)
+
+    def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
+        """Give the units of a text in order; what there is to say about it is noted in ``reading``."""
+        return (unit.identity for unit in self.listed_units(text, file, reading))
+
+    def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
+        """Give the units of a text in order, with their lines as written."""
+
+    def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
+        """Give the objects of a kitchen or of goals, each with what it stands for."""
+
+    def lines(self, text: str) -> Iterator[Line]:
+        """Give all that can be understood of a text as the lines that FOON text has for it."""
+
+    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
+        """Return a text in canonical form, which means the same.
+
+        Raises :class:`InputError` with all that cannot be understood; with ``lenient`` it stays as it is.
+        """
+
+    def names(self, text: str, file: str) -> Iterator[Mention]:
+        """Give every mention of a name; raises :class:`InputError` for a text that is broken."""
+
+    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
+        """Return a text with a new name for an old one; everything else stays as it is written."""
+
+    def writer(self, target: Dialect, numbering: "Numbering") -> "Writer":
+        """Return what writes a network, or a list of objects, in a dialect of this format."""
+
+
+Part = tuple[str, "list[Loss]"]
+"""How a part of a unit is written, and what of it is lost."""
+
+
+class Writer(Protocol):
+    """Writes one file in a dialect, part by part.
+
+    ``holds_prices`` says whether it can hold prices of units, ``holds_no_inputs`` units without inputs.
+    """
+
+    holds_prices: bool
+    holds_no_inputs: bool
+
+    def block(self, block: ObjectBlock, in_list: bool) -> Part:
+        """Write an object, of a unit or of a list.
+
+        Raises :class:`CannotHoldError` where it would be read as another.
+        """
+
+    def motion(self, line: MotionLine) -> Part:
+        """Write a motion; raises :class:`CannotHoldError` where it would be read as another."""
+
+    def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
+        """Put a unit together; ``price`` is empty where it has none."""
+
+    def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
+        """Put a file together from its units and its source videos."""
+
+    def objects(self, parts: Sequence[str]) -> str:
+        """Put a file together from its objects."""
+
+    def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
+        """Return those of the videos of a file, beside its comment lines, that the result can name."""

@@ -1,0 +1,63 @@
+"""Writing units and objects in the neutral form."""
+
+from collections.abc import Iterable, Sequence
+from decimal import Decimal
+
+from foon_asp.network import ObjectNode
+from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line
+from foon_asp.text.format import Part
+from foon_asp.text.json_value import json_line
+from foon_asp.text.json_writer import written_list
+from foon_asp.text.line import MotionLine, ObjectLine
+from foon_asp.text.listed_unit import ObjectBlock
+from foon_asp.text.text_writer import with_word
+
+
+def write_neutral_unit(id_: str, inputs: Iterable[str], outputs: Iterable[str], price: str) -> str:
+    """Write a unit as one line of plain names."""
+    needs, gives = (", ".join(map(json_line, side)) for side in (inputs, outputs))
+    last = f', "price": {Decimal(price):f}' if price else ""
+    return f'{{"id": {json_line(id_)}, "inputs": [{needs}], "outputs": [{gives}]{last}}}\n'
+
+
+class NeutralWriter:
+    """Writes a unit with the motion as its id, and each object node as one name, in one-line notation."""
+
+    holds_prices = holds_no_inputs = True
+
+    def __init__(self) -> None:
+        self._names: dict[str, ObjectNode] = {}
+
+    def block(self, block: ObjectBlock, in_list: bool) -> Part:
+        """Return the plain name of an object node, which no other node has."""
+        states = tuple(map(with_word, block.states))
+        node = block._replace(states=states).node
+        name = str(node) if states else node.label
+        if not name or name != name.strip(" "):
+            raise CannotHoldError(f"{name!r} is no name, or has blanks around it")
+        if self._names.setdefault(name, node) != node:
+            raise CannotHoldError(f"{name!r} would be the name of two object nodes")
+        losses = lost_in_line(block.object, ObjectLine(block.object.label))
+        losses += [Loss.IDS] * sum(bool(state.id) for state in states) + [Loss.PARTS] * bool(states)
+        losses += [Loss.CONTAINERS] * (states != block.states)
+        return name, losses
+
+    def motion(self, line: MotionLine) -> Part:
+        """Return the id of a unit."""
+        return line.motion, lost_in_line(line, MotionLine(line.motion))
+
+    def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
+        """Write a unit."""
+        return write_neutral_unit(motion, inputs, outputs, price)
+
+    def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
+        """Put a file together."""
+        return "".join(units)
+
+    def objects(self, parts: Sequence[str]) -> str:
+        """Put a JSON list of names together."""
+        return written_list([f'{{"label": {json_line(name)}}}' for name in parts], 0) + "\n"
+
+    def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
+        """Return none."""
+        return ()

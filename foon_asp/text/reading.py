@@ -1,0 +1,80 @@
+"""What is found in files while they are read, and how far their reading has come."""
+
+import contextlib
+from collections.abc import Callable, Iterable, Iterator
+from contextvars import ContextVar
+from pathlib import Path
+
+from foon_asp.network import ObjectNode, Source
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+from foon_asp.text.repeated_node import RepeatedNode
+from foon_asp.text.stated_prices import StatedPrices
+
+Tell = Callable[[int], None]
+"""Is called with the number of bytes that were read since it was called last."""
+
+_tell: ContextVar[Tell | None] = ContextVar("_tell", default=None)
+
+
+class Reading:
+    """What files say beside their units, and what there is to say about them.
+
+    With ``lenient``, what is not understood is left out with a warning; otherwise it is an error.
+    ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that are in no
+    unit because they were not understood or make none; ``prices`` are those that copies of units state.
+    ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``repeated`` are the nodes
+    that a copy of a unit lists twice.
+    """
+
+    def __init__(self, lenient: bool = False) -> None:
+        self.lenient = lenient
+        self.diagnostics: list[Diagnostic] = []
+        self.left_out = 0
+        self.prices = StatedPrices()
+        self.marked: dict[ObjectNode, Source] = {}
+        self.repeated: list[RepeatedNode] = []
+
+    def reject(self, code: str, message: str, source: Source, excerpt: str = "") -> None:
+        """Note what is not understood: an error, or with ``lenient`` a warning that it was left out."""
+        severity = Severity.WARNING if self.lenient else Severity.ERROR
+        message += "; left out" if self.lenient else ""
+        self.diagnostics.append(Diagnostic(severity, code, message, source, excerpt))
+
+    def warn(
+        self, code: str, message: str, source: Source, excerpt: str = "", fix: str | None = None
+    ) -> None:
+        """Note what was assumed."""
+        self.diagnostics.append(Diagnostic(Severity.WARNING, code, message, source, excerpt, fix))
+
+    def raise_errors(self, earlier: int = 0) -> None:
+        """Raise the errors found, if any.
+
+        Parameters:
+            earlier: The number of diagnostics, from the first on, to ignore.
+
+        Raises:
+            InputError: if another diagnostic is an error.
+        """
+        errors = [d for d in self.diagnostics[earlier:] if d.severity is Severity.ERROR]
+        if errors:
+            raise InputError(errors)
+
+
+@contextlib.contextmanager
+def telling(tell: Tell) -> Iterator[None]:
+    """Call a function now and then, as networks are read in a ``with`` block."""
+    token = _tell.set(tell)
+    try:
+        yield
+    finally:
+        _tell.reset(token)
+
+
+def told() -> Tell | None:
+    """Return the function to call, if there is one."""
+    return _tell.get()
+
+
+def size_of(files: Iterable[Path]) -> int:
+    """Return how many bytes there are to read."""
+    return sum(file.stat().st_size for file in files if file.is_file())

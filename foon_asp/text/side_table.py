@@ -1,0 +1,69 @@
+"""The tables beside a network as a format: they are known by the names of their files."""
+
+from collections.abc import Iterator
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, Any
+
+from foon_asp.errors import UserError
+from foon_asp.text.foon_text import FoonText
+from foon_asp.text.line import Mention
+from foon_asp.text.plain_file import each_line, split_lines
+from foon_asp.text.table import Table
+from foon_asp.text.tables import DURATIONS, RATES, TOOLS, UTENSILS
+from foon_asp.text.unit_price_list import UNIT_PRICES
+
+if TYPE_CHECKING:
+    from foon_asp.text.renaming import Renaming
+
+TABLES: dict[str, Table[Any, Any]] = {
+    "motion.txt": RATES,
+    "durations.txt": DURATIONS,
+    "unit_prices.txt": UNIT_PRICES,
+    "utensils.txt": UTENSILS,
+    "tools.txt": TOOLS,
+}
+"""By the name of the file."""
+
+
+class SideTable(FoonText):
+    """A table, as the files of a folder are renamed together; as FOON text, it has no units."""
+
+    dialects = ()
+
+    def recognises(self, text: str, file: str) -> bool:
+        """Whether the file has the name of a table."""
+        return PurePath(file).name in TABLES
+
+    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
+        """Return a table as it is; raises :class:`InputError` with the rows that cannot be understood."""
+        if not lenient:
+            TABLES[PurePath(file).name].rows(Path(file), text)
+        return text
+
+    def names(self, text: str, file: str) -> Iterator[Mention]:
+        """Give the names in the first column."""
+        for line in split_lines(text):
+            if line.strip() and line[:1] != "#":
+                yield Mention(TABLES[PurePath(file).name].names, line.partition("\t")[0].strip())
+
+    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
+        """Return a table with the new name; raises :class:`UserError` where that has two rows then."""
+        new = each_line(text, lambda line: _renamed_row(line, PurePath(file).name, renaming))
+        rows = (line.split("\t") for line in split_lines(new))
+        name = renaming.rename.new
+        if len({"\t".join(row) for row in rows if len(row) == 2 and row[0].strip() == name}) > 1:
+            raise UserError(f"{file} would have two different rows for {name!r}; take one of them out before")
+        return new
+
+
+def _renamed_row(line: str, table: str, renaming: "Renaming") -> str:
+    if not line.strip() or line[:1] == "#":
+        return line
+    first, *fields = line.split("\t")
+    if table == "tools.txt" and ";" in first:
+        first = renaming.node(first)
+    elif renaming.name(TABLES[table].names, first.strip()) != first.strip():
+        first = first.replace(renaming.rename.old, renaming.rename.new)
+    if table == "unit_prices.txt":
+        fields = [*map(renaming.node, fields[:-1]), *fields[-1:]]
+    return "\t".join((first, *fields))

@@ -1,0 +1,181 @@
+"""The tables that there are beside a network, column by column."""
+
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.errors import UserError
+from foon_asp.network import ObjectNode
+from foon_asp.text.exact_number import decimal_text, read_decimal
+from foon_asp.text.line import LineError, NameKind
+from foon_asp.text.line_parser import parse_name, parse_node
+from foon_asp.text.plain_file import read_plain_text, split_lines
+from foon_asp.text.reading import Reading
+from foon_asp.text.table import Table
+from foon_asp.text.text_units import TextUnits
+
+_TIME_UNITS = {"": 1, "s": 1, "min": 60, "h": 3600}
+_DURATION = "a number of seconds such as 90 or 1.5, or of minutes or hours such as 25 min"
+_PRICE = re.compile(r"\d{1,9}(\.\d{1,6})?", re.ASCII)
+_TOOLS = re.compile(r"[1-9]\d{0,5}", re.ASCII)
+_COPIES = re.compile(r"\d+", re.ASCII)
+_MAX_COPIES = 1_000_000  # of a node: clingo's numbers are not without end
+_STAYS = {"stays": True, "used-up": False}
+_OBJECT_LINE = re.compile(r"^(?:\ufeff)?O\d*[\t ]", re.MULTILINE)
+
+
+class Duration(NamedTuple):
+    """How many ``seconds`` a motion takes; a ``passive`` one needs nobody to stand by, as baking does.
+
+    Example:
+        >>> foon_asp.Duration(1500, passive=True).seconds
+        1500
+    """
+
+    seconds: Fraction | int
+    passive: bool = False
+
+
+def motion_column(name: str, what: str) -> str:
+    """Read the motion of which something is said; raises :class:`LineError` where there is none."""
+    if not name:
+        raise LineError(1, what, ("the motion before it",))
+    return name
+
+
+def stated_name(name: str) -> str | ObjectNode:
+    """Read what something is said of: a label, which stands for all of its nodes, or a node.
+
+    A semicolon behind a label alone makes it the node that has nothing else. Raises :class:`LineError`.
+    """
+    name = name.strip()
+    if not name:
+        raise LineError(1, "nothing", ("a label or an object node",))
+    try:
+        return parse_name(name)
+    except LineError:
+        if ";" in name or name.startswith('"'):
+            raise
+        return name  # a label as it is
+
+
+def _rate(name: str, value: str, column: int) -> tuple[str, Fraction]:
+    motion = motion_column(name, "a success rate")
+    rate = read_decimal(value, column, "a success rate as a decimal such as 0.85")
+    if not 0 < rate <= 1:
+        raise LineError(column, f"the success rate {value}", ("a rate above 0 and at most 1",))
+    return motion, rate
+
+
+def _duration(name: str, value: str, column: int) -> tuple[str, Duration]:
+    motion = motion_column(name, "a duration")
+    written, tab, word = value.partition("\t")
+    if tab and word.strip() != "passive":
+        raise LineError(column + len(written) + 1, repr(word), ("passive", "the end of the line"))
+    return motion, Duration(_seconds(written.strip(), column), bool(tab))
+
+
+def _seconds(written: str, column: int) -> Fraction:
+    number, _, unit = written.partition(" ")
+    unit = unit.strip()
+    if unit not in _TIME_UNITS:
+        raise LineError(column + len(number) + 1, repr(unit), tuple(filter(None, _TIME_UNITS)))
+    seconds = read_decimal(number, column, _DURATION) * _TIME_UNITS[unit]
+    if not seconds:
+        raise LineError(column, f"the duration {written}", ("one above 0",))
+    return seconds
+
+
+def _tool(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | None]:
+    if value != "free" and not _TOOLS.fullmatch(value):
+        raise LineError(column, repr(value), ("a number from 1", "free"))
+    return stated_name(name), None if value == "free" else int(value)
+
+
+def _stays(name: str, value: str, column: int) -> tuple[str | ObjectNode, bool]:
+    if value not in _STAYS:
+        raise LineError(column, repr(value), tuple(_STAYS))
+    return stated_name(name), _STAYS[value]
+
+
+def _copies(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
+    if not _COPIES.fullmatch(value) or len(value) > len(str(_MAX_COPIES)) or int(value) > _MAX_COPIES:
+        raise LineError(column, repr(value), (f"a number of copies, from 0 to {_MAX_COPIES}",))
+    return parse_node(name), int(value)
+
+
+def _price(name: str, value: str, column: int) -> tuple[str | ObjectNode, Fraction]:
+    if not _PRICE.fullmatch(value):
+        raise LineError(column, repr(value[:40]), ("a price as a decimal such as 1.99",))
+    return parse_name(name), Fraction(value)
+
+
+def _label(name: str, _: str, __: int) -> tuple[str, None]:
+    return name, None
+
+
+RATES = Table("rate", NameKind.MOTION, "a success rate", _rate, "a second success rate for {name!r}")
+"""``motion⇥0.85``: success rates of motions, decimals above 0 and at most 1, kept exactly."""
+
+DURATIONS = Table(
+    "duration", NameKind.MOTION, "a number of seconds", _duration, "a second duration for {name!r}"
+)
+"""``motion⇥90`` and ``motion⇥25 min⇥passive``: durations of motions, above 0, kept exactly."""
+
+TOOLS = Table(
+    "tool", NameKind.OBJECT, "a number from 1, or free,", _tool, "{value}, and something else above"
+)
+"""``NAME⇥2`` and ``NAME⇥free``: how many there are of tools and vessels; ``None`` is for what is free."""
+
+STAYS = Table("stays", NameKind.OBJECT, "stays or used-up", _stays, "{value}, and the opposite above")
+"""``NAME⇥stays`` and ``NAME⇥used-up``: of items that are used up, which of them stay."""
+
+STOCK = Table("stock", NameKind.OBJECT, "a number of copies", _copies, "a second count for {name!r}")
+"""``NODE⇥12``: how many copies of an object node there are."""
+
+PRICES = Table("price", NameKind.OBJECT, "a price", _price, "a second price for {name!r}")
+"""``NAME⇥1.99``: prices of things to buy, with up to nine digits before the point and six behind it."""
+
+UTENSILS = Table("utensil", NameKind.OBJECT, "", _label)
+"""``LABEL``: labels of utensils, one on each line."""
+
+
+def read_utensils(file: Path) -> frozenset[str]:
+    """Read labels of utensils, one on each line."""
+    return frozenset(UTENSILS.read(file))
+
+
+def read_stock(file: Path) -> dict[ObjectNode, int]:
+    """Read a table of copies; or FOON text, in which each object block is one copy.
+
+    Raises :class:`InputError` for a line of another form, and for a node with two different counts.
+    """
+    text = "\n".join(split_lines(read_plain_text(file)))
+    if not _OBJECT_LINE.search(text):
+        return STOCK.read(file)
+    reading = Reading()
+    blocks = TextUnits([text], str(file), reading).objects()
+    reading.raise_errors()
+    found: dict[ObjectNode, int] = {}
+    for block in blocks:
+        found[block.node] = found.get(block.node, 0) + 1
+    return found
+
+
+def read_default_duration(written: str) -> Fraction:
+    """Read the default duration, as files have durations; raises :class:`UserError` for another form."""
+    try:
+        return _seconds(written.strip(), 1)
+    except LineError as error:
+        raise UserError(f"the default duration: {error}") from None
+
+
+def template_text(motions: Mapping[str, Duration | None]) -> str:
+    """Return a file of durations in which the word SECONDS stands for those that are not known."""
+    lines = ["# motion, tab, seconds (or 25 min, 1.5 h); behind another tab passive, if nobody stands by"]
+    for motion, known in motions.items():
+        seconds = "SECONDS" if known is None else decimal_text(Fraction(known.seconds))
+        lines.append(f"{motion}\t{seconds}" + ("\tpassive" if known is not None and known.passive else ""))
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,301 @@
+"""The units of FOON text, and the objects of one that lists them without motions.
+
+A unit that is written as it should be is read by its object blocks, each distinct one once; every other one
+is read line by line, with all that there is to remark on.
+"""
+
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from itertools import chain
+from typing import cast
+
+from foon_asp.network import ObjectNode, Source
+from foon_asp.text.json_list import before_json
+from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
+from foon_asp.text.line_parser import read_line
+from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit, node_of
+from foon_asp.text.plain_file import split_lines
+from foon_asp.text.provenance import is_video, read_copy, read_video
+from foon_asp.text.reading import Reading, told
+from foon_asp.text.writer import write_line
+
+_SEPARATOR = "\n//\n"
+_TOLD = 65_536  # bytes from one report of progress to the next
+
+_Open = tuple[ObjectLine, list[StateLine], Source]  # an object block, while lines may still be added
+
+
+@lru_cache(50_000)  # of the 11,625 object blocks of the universal FOON, 4,361 are different
+def _clean_node(block: str) -> ObjectNode | None:
+    """Return the node of an object block, given without its first letter.
+
+    It is ``None`` where there is anything to remark on, and for a goal, whose place has to be noted.
+    """
+    first, *others = map(read_line, f"O{block}".split("\n"))
+    if not isinstance(first, ObjectLine) or first.remarks or first.is_goal:
+        return None
+    attributes = [line.attribute for line in others if isinstance(line, StateLine) and not line.remarks]
+    return node_of(first.label, attributes) if len(attributes) == len(others) else None
+
+
+def _clean_nodes(blocks: str) -> list[ObjectNode] | None:
+    """Return the nodes of the object blocks on one side of a unit; ``None`` where one is not clean."""
+    nodes = list(map(_clean_node, blocks.split("\nO")))
+    return cast(list[ObjectNode], nodes) if all(nodes) else None
+
+
+class TextUnits:
+    """One pass over the text of a file, which may come in pieces whose lines end with a line feed."""
+
+    def __init__(self, pieces: Iterable[str], file: str, reading: Reading) -> None:
+        self.reading = reading
+        self.file = file
+        self._pieces = iter(pieces)
+        self._videos: tuple[str, ...] = ()
+        self._header_open = True  # further "# Source:" lines add to the videos until a unit comes between
+        self._lines: list[str] = []  # of the chunk that is read line by line
+        self._number = 1  # of the first line of the chunk
+        self._objects: list[ObjectBlock] | None = None  # a list without motions is read
+        self._sections = 0  # between separators, with anything in them, so far
+
+    def units(self) -> Iterator[ReadUnit]:
+        """Give the units in order."""
+        for chunk, last in self._chunks():
+            unit = None if last else self._clean_unit(chunk)
+            if unit:
+                self._header_open = False
+                self._sections += 1
+                yield unit
+            else:
+                yield from (unit.identity for unit in self._line_by_line(chunk, last))
+
+    def listed_units(self) -> Iterator[ListedUnit]:
+        """Give the units in order, with their lines as written."""
+        for chunk, last in self._chunks():
+            yield from self._line_by_line(chunk, last)
+
+    def objects(self) -> list[ObjectBlock]:
+        """Return the objects of a kitchen or of goals."""
+        self._objects = []
+        for _ in self.listed_units():
+            pass
+        return self._objects
+
+    def _chunks(self) -> Iterator[tuple[str, bool]]:
+        """Cut the text at its separators; give each chunk, and whether it is the last."""
+        tell, untold = told(), 0
+        waiting = [next(self._pieces, "")]
+        if message := before_json(waiting[0]):
+            self._reject_json(message, waiting[0])
+            return
+        for piece in chain(self._pieces, [""]):
+            waiting.append(piece)
+            # the more is left, the more is added: the time for a text without separators stays linear
+            if piece and sum(map(len, waiting)) < 2 * len(waiting[0]):
+                continue
+            *chunks, rest = "".join(waiting).split(_SEPARATOR)
+            waiting = [rest]
+            for chunk in chunks:
+                yield chunk, False
+                self._number += chunk.count("\n") + 2
+                if tell:
+                    untold += len(chunk.encode()) + len(_SEPARATOR)
+                    if untold >= _TOLD:
+                        tell(untold)
+                        untold = 0
+        yield waiting[0], True
+        if tell:
+            tell(untold + len(waiting[0].encode()))
+
+    def _reject_json(self, message: str, text: str) -> None:
+        """Note what stands before JSON, as the only fault of the file."""
+        begins = text.lstrip()
+        line = text[: len(text) - len(begins)].count("\n") + 1
+        self.reading.reject("json", message, Source(self.file, line, 1), split_lines(begins)[0])
+
+    def _clean_unit(self, chunk: str) -> ReadUnit | None:
+        """Read a unit by its object blocks; ``None`` where it has to be read line by line."""
+        first, copies = self._number, []
+        while chunk[:1] == "#":
+            comment, line_end, chunk = chunk.partition("\n")
+            copy = read_copy(comment)
+            if not copy or not line_end:
+                return None
+            copies.append(copy)
+            first += 1
+        if chunk[:1] != "O":
+            return None
+        head, _, tail = chunk.partition("\nM")
+        motion_line, _, tail = tail.partition("\nO")
+        if not (motion_line and tail) or "\n" in motion_line:
+            return None
+        motion = read_line(f"M{motion_line}")
+        if not isinstance(motion, MotionLine) or motion.remarks:
+            return None
+        inputs, outputs = _clean_nodes(head[1:]), _clean_nodes(tail)
+        if inputs is None or outputs is None:
+            return None
+        sources = tuple(copies) or (Source(self.file, first, 1, self._videos),)
+        return ReadUnit(motion.motion, inputs, outputs, sources)
+
+    def _line_by_line(self, chunk: str, last: bool) -> Iterator[ListedUnit]:
+        """Read a chunk that may hold anything, separators with blanks behind them included."""
+        self._lines = lines = chunk.split("\n")
+        start = 0
+        for index, line in enumerate(lines):
+            first = line[:1]
+            if first == "#" and is_video(line):
+                video = read_video(line)
+                self._videos = (*(self._videos if self._header_open else ()), *([video] if video else []))
+                self._header_open = True
+            elif first == "/" and line.rstrip(" \t") == "//":
+                unit = self._unit(start, index, closed=True)
+                if line != "//":
+                    self._warn("outer-space", "blanks after // left out", index, 3, "//")
+                if unit:
+                    self._header_open = False
+                    yield unit
+                start = index + 1
+        unit = self._unit(start, len(lines), closed=not last)
+        if unit:
+            self._header_open = False
+            if last:
+                end = next(i for i in reversed(range(len(lines))) if lines[i].strip())
+                message = "the last unit is not closed by //"
+                self._warn("missing-separator", message, end, len(lines[end]) + 1)
+            yield unit
+
+    def _unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
+        """Read the lines between two separators; ``None`` when they hold no unit."""
+        section = _Section(end, closed, self.reading.left_out)
+        for index in range(start, end):
+            line = self._lines[index]
+            letter = line[:1]
+            if letter == "#":
+                copy = read_copy(line)
+                section.copies += [copy] if copy else []
+            elif letter and not line.isspace():
+                if section.first < 0:
+                    section.first = index
+                self._line(section, index)
+        if section.first < 0:
+            return None
+        self._sections += 1
+        if self._objects is not None:
+            self._objects += _blocks(section.inputs + section.outputs)
+            return None
+        if len(section.motions) != 1 or not section.inputs:
+            self._no_unit(section)
+            return None
+        index, motion = section.motions[0]
+        if not section.outputs:
+            self._warn("no-outputs", f"the unit {motion.motion!r} has no output objects", section.first)
+        inputs, outputs = _blocks(section.inputs), _blocks(section.outputs)
+        for block in (*inputs, *outputs):
+            if block.object.is_goal:
+                self.reading.marked.setdefault(block.node, block.source)
+        sources = tuple(section.copies) or (self._place(section.first)._replace(videos=self._videos),)
+        return ListedUnit(motion, inputs, outputs, sources, self._place(index))
+
+    def _line(self, section: "_Section", index: int) -> None:
+        """Put a line where it belongs, or say why it belongs nowhere."""
+        line = self._lines[index]
+        parsed = read_line(line)
+        if isinstance(parsed, LineError):
+            self._reject("syntax", str(parsed), index, parsed.column)
+            section.lost = section.lost or line[0] == "O"
+            section.blamed = section.blamed or line[0] != "S"
+            return
+        self._remark(parsed, index)
+        if isinstance(parsed, StateLine):
+            if section.lost:
+                self.reading.left_out += self.reading.lenient
+            elif section.states is None:
+                message = "found a state line, expected an object line before it"
+                self._reject("state-without-object", message, index)
+                section.blamed = True
+            else:
+                section.states.append(parsed)
+            return
+        section.lost = False
+        if isinstance(parsed, ObjectLine):
+            section.states = []
+            side = section.outputs if section.motions else section.inputs
+            side.append((parsed, section.states, self._place(index)))
+            return
+        section.states = None
+        section.motions.append((index, parsed))
+        if self._objects is not None:
+            message = "found a motion, expected a list of objects without motions"
+            self._reject("motion-in-list", message, index)
+        elif len(section.motions) > 1:
+            message = "found a second motion in one unit, expected an object line or //"
+            self._reject("second-motion", message, index)
+            section.blamed = True
+
+    def _no_unit(self, section: "_Section") -> None:
+        """Say that lines are no unit, unless an error among them already says why."""
+        if section.blamed and not self.reading.lenient:
+            return
+        lines, first = self._lines, section.first
+        meaningful = [i for i in range(first, section.end) if lines[i].strip() and lines[i][0] != "#"]
+        self.reading.left_out = section.left_out + len(meaningful)
+        unit = f"the unit of line {self._number + first}"
+        if len(section.motions) > 1:
+            self._warn("second-motion", f"{unit} has {len(section.motions)} motions; left out", first)
+        elif section.motions:
+            message = f"found a motion, expected an object line before it: {unit} has no input objects"
+            self._warn("no-inputs", message + "; left out", section.motions[0][0])
+        elif not section.closed and self._sections == 1:
+            self._warn("no-motion", no_motion(len(section.inputs)), first)
+        else:
+            found = "found //" if section.closed else "the file ends"
+            message = f"{found}, expected a motion line: {unit} has no motion; left out"
+            self._warn("no-motion", message, section.end if section.closed else meaningful[-1])
+
+    def _place(self, index: int, column: int = 1) -> Source:
+        return Source(self.file, self._number + index, column)
+
+    def _remark(self, line: Line, index: int) -> None:
+        if line.remarks:
+            mended = write_line(line)
+            fix = mended if mended != self._lines[index] else None
+            for column, code, message in line.remarks:
+                self._warn(code, message, index, column, fix)
+
+    def _warn(self, code: str, message: str, index: int, column: int = 1, fix: str | None = None) -> None:
+        line = self._lines[index] if index < len(self._lines) else "//"
+        self.reading.warn(code, message, self._place(index, column), line, fix)
+
+    def _reject(self, code: str, message: str, index: int, column: int = 1) -> None:
+        self.reading.left_out += self.reading.lenient
+        self.reading.reject(code, message, self._place(index, column), self._lines[index])
+
+
+class _Section:
+    """The lines between two separators, while they are read one by one; places are indices of lines.
+
+    ``states`` are those under the object line at hand, ``None`` before the first; ``lost`` says that this
+    object line cannot be read, and that the states under it go with it. ``blamed`` says that an error among
+    the lines can be why a motion or an object is missing. ``left_out`` is the count of before.
+    """
+
+    def __init__(self, end: int, closed: bool, left_out: int) -> None:
+        self.end, self.closed, self.left_out = end, closed, left_out
+        self.first = -1
+        self.motions: list[tuple[int, MotionLine]] = []
+        self.inputs: list[_Open] = []
+        self.outputs: list[_Open] = []
+        self.copies: list[Source] = []
+        self.states: list[StateLine] | None = None
+        self.lost = self.blamed = False
+
+
+def no_motion(objects: int) -> str:
+    """Return the warning about a file of objects alone where a network was expected."""
+    listed = "one object" if objects == 1 else f"{objects} objects"
+    return f"{listed} and no motion: a list such as a kitchen or goals, without units"
+
+
+def _blocks(side: list[_Open]) -> tuple[ObjectBlock, ...]:
+    return tuple(ObjectBlock(line, tuple(states), source) for line, states, source in side)

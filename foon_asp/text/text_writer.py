@@ -1,0 +1,81 @@
+"""Writing units and objects as FOON text of a dialect."""
+
+from collections.abc import Sequence
+
+from foon_asp.network import Relation
+from foon_asp.text.conversion_ids import Numbering
+from foon_asp.text.conversion_loss import CannotHoldError, lost_in_line
+from foon_asp.text.format import Dialect, Part
+from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
+from foon_asp.text.line_parser import read_line
+from foon_asp.text.listed_unit import ObjectBlock
+from foon_asp.text.motion_times import MotionFields, in_one_field, in_two_fields
+from foon_asp.text.provenance import read_video
+from foon_asp.text.writer import write_line
+
+
+class TextWriter:
+    """Writes FOON text, and reads each line back: what stood in JSON may mean something else in text."""
+
+    holds_prices = holds_no_inputs = False
+
+    def __init__(self, target: Dialect, numbering: Numbering) -> None:
+        self._target = target
+        self._numbering = numbering
+
+    def block(self, block: ObjectBlock, in_list: bool) -> Part:
+        """Write an object block."""
+        parts = list(map(self._line, block.lines))
+        return "".join(text for text, _ in parts), [loss for _, lost in parts for loss in lost]
+
+    def motion(self, line: MotionLine) -> Part:
+        """Write a motion line."""
+        return self._line(line)
+
+    def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
+        """Put a unit together, the closing ``//`` included."""
+        return "".join((*inputs, motion, *outputs, "//\n"))
+
+    def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
+        """Put a file together, the videos at its top."""
+        header = "".join(f"# Source:\t{video}\n" for video in videos) + "//\n" if videos else ""
+        return header + "".join(units)
+
+    def objects(self, parts: Sequence[str]) -> str:
+        """Put a list together."""
+        return "".join(parts)
+
+    def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
+        """Return the videos that a comment line can name."""
+        return tuple(video for video in videos if read_video(f"# Source:\t{video}") == video)
+
+    def held(self, line: Line) -> Line:
+        """Return a line as the dialect has it."""
+        line = line._replace(remarks=())
+        line = with_word(line) if isinstance(line, StateLine) else line
+        line = self._numbering.number(line) if self._target is Dialect.IDS else line._replace(id="")
+        if self._target is Dialect.PLAIN:
+            if isinstance(line, ObjectLine):
+                return line._replace(fields=())
+            return line._replace(fields=(), composite=False) if isinstance(line, MotionLine) else line
+        if isinstance(line, MotionLine):
+            said = MotionFields.of(line.fields)
+            change = in_two_fields if self._target is Dialect.IDS else in_one_field
+            return line._replace(fields=said._replace(times=change(said.times)).fields)
+        return line
+
+    def _line(self, line: Line) -> Part:
+        written = write_line(self.held(line))
+        if any("\ud800" <= c <= "\udfff" for c in written):
+            raise CannotHoldError(f"{written!r} contains half a character")
+        back = read_line(written) if "\n" not in written and "\r" not in written else None
+        if back is None or isinstance(back, LineError):
+            raise CannotHoldError(f"{written!r} is no line of FOON text")
+        return written + "\n", lost_in_line(line, back)
+
+
+def with_word(line: StateLine) -> StateLine:
+    """Return a container without a word as one that the object is in."""
+    if isinstance(line.attribute, Relation) and not line.attribute.word:
+        return line._replace(attribute=line.attribute._replace(word="in"))
+    return line
