@@ -5,7 +5,7 @@ from foon_asp.text.json_value import Json
 
 
 def node_json(node: ObjectNode, number: int | None = None) -> Json:
-    """Give a node in its parts and in one-line notation; ``number`` is its id in the whole network."""
+    """Return a node in its parts and in one-line notation; ``number`` is its id in the whole network."""
     return {
         "id": number,
         "node": str(node),
@@ -17,7 +17,7 @@ def node_json(node: ObjectNode, number: int | None = None) -> Json:
 
 
 def read_node_json(value: Json) -> ObjectNode:
-    """Give back the node of :func:`node_json`.
+    """Return the node of :func:`node_json`.
 
     Raises :class:`KeyError` or :class:`TypeError` for what has another form, and :class:`ValueError` where
     the notation and the parts are not the same node.
@@ -34,5 +34,5 @@ def read_node_json(value: Json) -> ObjectNode:
 
 
 def place_json(place: Source) -> Json:
-    """Give where something was read."""
+    """Return where something was read."""
     return {"file": place.file, "line": place.line, "videos": list(place.videos)}
