@@ -100,7 +100,7 @@ class Renaming:
         return Contents(word, tuple(sorted(self._items(attribute.ingredients))))
 
     def _items(self, items: tuple[str, ...]) -> tuple[str, ...]:
-        """Give ingredients with the new name, once where it stands among them already."""
+        """Return ingredients with the new name, once where it stands among them already."""
         kind, old, new = self.rename
         if kind == NameKind.OBJECT and new in items:
             return tuple(item for item in items if item != old)

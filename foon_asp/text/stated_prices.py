@@ -27,7 +27,7 @@ class StatedPrices:
             self._least[unit] = price
 
     def settled(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
-        """Give the one price of each unit; where copies disagree, it is the ``chosen`` one.
+        """Return the one price of each unit; where copies disagree, it is the ``chosen`` one.
 
         Of a unit with a copy of which the cheapest counts, it is the least.
 

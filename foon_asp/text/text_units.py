@@ -59,7 +59,7 @@ class TextUnits:
         self._sections = 0  # between separators, with anything in them, so far
 
     def units(self) -> Iterator[ReadUnit]:
-        """Give the units in order."""
+        """Yield the units in order."""
         for chunk, last in self._chunks():
             unit = None if last else self._clean_unit(chunk)
             if unit:
@@ -70,7 +70,7 @@ class TextUnits:
                 yield from (unit.identity for unit in self._line_by_line(chunk, last))
 
     def listed_units(self) -> Iterator[ListedUnit]:
-        """Give the units in order, with their lines as written."""
+        """Yield the units in order, with their lines as written."""
         for chunk, last in self._chunks():
             yield from self._line_by_line(chunk, last)
 
