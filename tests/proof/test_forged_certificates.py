@@ -333,17 +333,7 @@ FORGED: dict[str, Forged] = {
 # What one function refuses, in other places of a certificate.
 PLACES: dict[str, Forged] = {
     "expected amounts and their limit": plain(rules=[own((), [[{"1": [3]}, 1, 1]])]),
-    "weights: expected what has a weight by its number": plain(proof={"weights": [["0", ["1"]]]}),
     "expected the number of a rule": plain(**NO_TREE, rules=[SPOILED], cuts=[], proof={"broken": False}),
-    "limits: a weight is not above zero": plain(
-        rules=at_most(5), **BAKED, cuts=[], proof=weigh(limits=[[0, ["-1"]]])
-    ),
-    "expected the id of a kitchen item": plain(
-        **bound("1/2", objective=["kitchen"]),
-        cuts=[[START, END, MIDDLE]],
-        proof=branch(weigh("1/2"), weigh(), item=END),
-    ),
-    "expected the id of a unit": plain(proof=branch(LEAF, weigh(), unit=False)),
     "expected the number of a step": plain(
         rules=[INTERMEDIATE],
         **BAKED,
