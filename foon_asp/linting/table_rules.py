@@ -92,6 +92,6 @@ def _rows(sheet: Sheet) -> dict[str, int]:
     rows: dict[str, int] = {}
     for index, line in enumerate(sheet.lines):
         name = line.partition("\t")[0].partition(";")[0].strip()
-        if name and name[0] != "#" and index + 1 not in bad:
+        if name and not name.startswith("#") and index + 1 not in bad:
             rows.setdefault(name, index)
     return rows
