@@ -122,6 +122,10 @@ def test_a_comment_that_silences_nothing_is_reported(folder: Path, cli: Cli) -> 
     file = write("a.txt", "# noqa: syntax\nO\tonion\n# noqa: typo\nM\tchop\nO\tonion\nS\tcut\n//\n# noqa\n")
     found = cli("lint", file, "--format", "json").json["findings"]
     assert [(f["code"], f["line"]) for f in found] == [("noqa", 1), ("noqa", 3), ("noqa", 8)]
+    nothing = write(
+        "c.txt", "# noqa: space-for-tab\n" + SLIP.replace("\t[gamelle]", "").replace("in [", "in\t[")
+    )
+    assert ("noqa", "warning") in codes(cli, nothing, write("b.txt", SLIP))
     # what is left out otherwise is there to be silenced
     file.write_text(SLIP.replace("S\tin", "# noqa: space-for-tab\nS\tin"))
     write("foon-asp.toml", f'{TABLE}ignore = ["space-for-tab", "unknown-container"]\n')

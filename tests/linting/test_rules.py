@@ -287,6 +287,7 @@ def test_lists_of_another_network_are_told_once(
         ),
         (f"# From:\tsoup.txt:40\n{CHOP}# From:\tsoup.txt:90\n{CHOP}", "9:1 duplicate-unit"),
         (unit("egg, egg, milk", "mix", "egg;mixed, egg;mixed"), "2:3 repeated-object, 7:3 repeated-object"),
+        (unit("egg, egg", "mix", "egg;mixed") + unit("egg;mixed", "fry", "egg;fried"), "2:3 repeated-object"),
         (unit("egg, milk", "mix", "milk, egg"), "1:1 no-effect"),
         (unit("egg, milk", "mix", "milk, egg, egg"), "1:1 no-effect, 6:3 repeated-object"),
     ],
