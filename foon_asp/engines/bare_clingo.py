@@ -126,6 +126,7 @@ class Clingo:
                 raise NotCheckedError(late) from None
             finally:
                 process.kill()
+                process.wait()  # at ctrl-C, Popen itself waits for a quarter of a second only
         found: dict[str, Any] = {}
         with contextlib.suppress(ValueError):
             found = json.loads(out.decode("utf-8", "replace"), strict=False)
