@@ -39,7 +39,7 @@ from foon_asp.proof.verify import (
     verify,
 )
 
-PLAN = Form("foon-asp certificate of a plan", {1: KEYS | {"items", "unreached"}})
+PLAN = Form("foon-asp certificate of a plan", 1, KEYS | {"items", "unreached"})
 
 # The rules that plans can be held against: those that remove units or ask for one, and those whose limit
 # counts each execution.

@@ -45,7 +45,7 @@ from tests.proof.forging import (
     require_its_check_alone,
     require_right,
 )
-from tests.support.handmade_certificate import Content, forbid, handmade, older
+from tests.support.handmade_certificate import Content, forbid, handmade
 
 # Nobody can make the end.
 LOST = recipe("pour: start > middle", "dig: rare > end")
@@ -161,9 +161,8 @@ FORGED: dict[str, Forged] = {
     # --- the frame
     "read_frame: expected an object with the keys of a certificate": Forged([], PLAIN, KIND),
     "read_frame: expected the format …": plain(format="a song"),
-    "read_frame: expected version … of the format": plain(version=99, stays=KIND),
+    "read_frame: expected version … of the format": plain(version=99),
     "read_frame: expected the keys …": plain(more=1),
-    "read_frame: _VERSION_1": plain(version=1, digests=older(PLAIN), containers="implied"),
     "read_frame: the seal does not match: something was changed": Forged(
         certificate() | {"seal": "0"}, PLAIN
     ),
@@ -436,11 +435,6 @@ PARTS = {
         'waiting.append((node["others"], used, without.union(dear)))',
         "pass",
         plain(**TWO, proof={**DEAR, "others": weigh()}),
-    ),
-    "nothing was left out as too dear before version 5": Part(
-        ' and self.certificate["version"] >= _WITH_DEAR',
-        "",
-        plain(version=4, proof={**DEAR, "others": LEAF}),
     ),
     "a unit is used once": Part(
         "members = [*units, *(", "members = [*units[:1], *(", plain(tree=[1, 2], costs=[1])
