@@ -172,7 +172,6 @@ def test_certificates_by_wrong_prices_are_refused() -> None:
     prices = problem.unit_prices
     assert prices is not None
     given = subject_of(problem)
-    right = forged(problem)
     for costs in (["1/5", 2], ["3/10", 3], [0, 2], ["0.3", 2]):
         with pytest.raises(verify.RefusedError, match="the tree costs"):
             verify.verify(forged(problem, costs=costs), given)
