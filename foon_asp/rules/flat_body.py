@@ -8,7 +8,7 @@ recursion, variables that nothing binds, two units that together break a rule) i
 
 from collections.abc import Iterable, Sequence
 from copy import copy
-from itertools import count, product
+from itertools import product
 from typing import Final, NamedTuple
 
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
@@ -165,7 +165,7 @@ class FlatBodies:
     """Makes bodies of a program flat; raises :class:`NotFlatError` for those that are left to the search.
 
     The items of a way are in an order in which each variable has its value before it is needed. ``tables``
-    are the auxiliary predicates that they look at.
+    are the auxiliary predicates that they look at, ``size`` is above the number of each variable.
     """
 
     def __init__(
@@ -178,7 +178,7 @@ class FlatBodies:
                 self._rules.setdefault(clause.head.signature, []).append(clause)
         self.tables: dict[Signature, Table] = {}
         self._open: list[Signature] = []  # that are being looked into
-        self._numbers = count()
+        self.size = 0
 
     def ways(self, clause: Clause) -> tuple[Way, ...]:
         """Return the ways in which the body of a rule holds."""
@@ -224,14 +224,14 @@ class FlatBodies:
         for part in body:
             if not isinstance(part, Test) or part.ast.sign or part.ast.atom.ast_type != ASTType.Comparison:
                 continue
-            number, guards = part.ast.atom.term, part.ast.atom.guards
+            count, guards = part.ast.atom.term, part.ast.atom.guards
             condition = tuple(each for each in body if each is not part)
             times = [each for each in condition if isinstance(each, Literal) and each.signature == TIMES]
-            if len(guards) != 1 or len(times) != 1 or times[0].arguments[1] != number:
+            if len(guards) != 1 or len(times) != 1 or times[0].arguments[1] != count:
                 continue
             at_least, bound = self._allowed(guards[0].comparison, guards[0].term)
             if not at_least:
-                element = Element((number, times[0].arguments[0]), condition)
+                element = Element((count, times[0].arguments[0]), condition)
                 return Row(tuple(self._terms(scope, None, element)), bound, each=True)
         raise NotFlatError
 
@@ -258,7 +258,8 @@ class FlatBodies:
 
     def variable(self) -> Variable:
         """Return a variable that is nowhere yet."""
-        return Variable(next(self._numbers))
+        self.size += 1
+        return Variable(self.size - 1)
 
     def of_atom(self, signature: Signature, terms: tuple[Term, ...]) -> list[Way]:
         """Return the ways in which an atom holds, their items in any order."""
@@ -494,9 +495,9 @@ class _Scope:
         ]
         if len(executions) != 1:
             raise NotFlatError
-        unit, *number = map(within.term, executions[0].arguments)
+        unit, *count = map(within.term, executions[0].arguments)
         *product, last = (within.term(each) for term in element.terms for each in factors(term))
-        for each in number:
+        for each in count:
             if each not in product or product.count(each) > 1:
                 raise NotFlatError
             product.remove(each)
@@ -504,8 +505,8 @@ class _Scope:
             raise NotFlatError
         ways = within.ways(element.condition)
         for way in ways:
-            uses = [item for item in way.items for each in number if each in variables_of([item])]
-            if way.unit != unit or len(uses) != len(number):
+            uses = [item for item in way.items for each in count if each in set(_mentioned(item))]
+            if way.unit != unit or len(uses) != len(count):
                 raise NotFlatError
         return [(way, product[0] if product else Constant(1)) for way in ways]
 
@@ -600,12 +601,9 @@ def _equal(test: Test) -> set[str]:
     return set(global_variables(test)) if is_equal else set()
 
 
-def variables_of(items: Iterable[Item]) -> set[Variable]:
-    """Return the variables of items, but for those that are only within one."""
-    found = set[Variable]()
-    for item in items:
-        found.update(item.given if isinstance(item, Never | Counted) else _variables(_terms(item)))
-    return found
+def _mentioned(item: Item) -> Iterable[Variable]:
+    """Return the variables of an item whose values it shares with others."""
+    return item.given if isinstance(item, Never | Counted) else _variables(_terms(item))
 
 
 def _counts_none(aggregate: Aggregate, constants: Constants) -> bool:

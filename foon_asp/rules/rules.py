@@ -225,7 +225,7 @@ class Rules:
     def _answers(self, problem: Problem) -> FlatAnswers:
         prices = self._prices(problem) if self._analysis.reads(("price", 2)) else {}
         bodies = self._analysis.bodies
-        return FlatAnswers(problem, bodies.tables, prices)
+        return FlatAnswers(problem, bodies.tables, bodies.size, prices)
 
     def _prices(self, problem: Problem) -> dict[int, int]:
         """Give the prices of units as rules see them; raises where those that can be made have none such."""
