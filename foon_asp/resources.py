@@ -17,25 +17,25 @@ def _folder(name: str, witness: str) -> Path:
 
 
 def encodings_folder() -> Path:
-    """Give the folder of the answer-set encodings."""
+    """Return the folder of the answer-set encodings."""
     return _folder("encodings", "task_tree.lp")
 
 
 def published_table() -> Path:
-    """Give the file with the published figures of the literature."""
+    """Return the file with the published figures of the literature."""
     return _folder("data", "published/table1.json") / "published" / "table1.json"
 
 
 def starter_recipe() -> Path:
-    """Give the folder of the recipe that a new data folder begins with, and of its success rates."""
+    """Return the folder of the recipe that a new data folder begins with, and of its success rates."""
     return _folder("data", "starter/FOON.txt") / "starter"
 
 
 def bundled_vocabulary() -> Path:
-    """Give the file of the names that linting knows."""
+    """Return the file of the names that linting knows."""
     return _folder("data", "vocabulary.txt") / "vocabulary.txt"
 
 
 def bundled_kitchen() -> Path:
-    """Give the folder of the bundled universal FOON and its kitchen."""
+    """Return the folder of the bundled universal FOON and its kitchen."""
     return _folder("data", "kitchen/FOON.txt") / "kitchen"

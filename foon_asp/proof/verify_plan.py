@@ -110,7 +110,7 @@ class PlanCheck(Check):
     # --- what units do
 
     def _flow(self, unit: int) -> Flow:
-        """Say what a unit asks for, uses up and adds: none of its inputs is added."""
+        """Return what a unit asks for, uses up and adds: none of its inputs is added."""
         network = self.network
         asks = frozenset(o for o in self.needs(unit) if o is not None)
         gives = frozenset(o for o in self.gives(unit) if o is not None)

@@ -93,7 +93,7 @@ class FlatAnswers:
         return weight
 
     def asked(self, asking: Asking) -> Iterator[frozenset[int] | None]:
-        """Give the sets of units that a rule asks for one of; ``None`` for those that it has without."""
+        """Return the sets of units that a rule asks for one of; ``None`` for those that it has without."""
         values = self._values
         found: list[_Values] = []
         bound = bound_by(asking.when.items)
@@ -112,12 +112,12 @@ class FlatAnswers:
                 yield frozenset().union(*helping)
 
     def _units(self, way: Way, bound: Collection[Variable]) -> set[int]:
-        """Give the units of which a way holds."""
+        """Return the units of which a way holds."""
         assert way.unit is not None
         return self._true_of(way.unit, self._candidates(way, bound), way.items, bound)
 
     def _candidates(self, way: Way, bound: Collection[Variable]) -> Iterable[int]:
-        """Give some units, among them all of which a way holds, faster than by a look at each."""
+        """Return some units, among them all of which a way holds, faster than by a look at each."""
         network = self._problem.network
         sides: dict[str, Sequence[tuple[int, ...]]] = {
             "input": network.inputs,
@@ -163,7 +163,7 @@ class FlatAnswers:
     def _true_of(
         self, variable: Variable, among: Iterable[int], items: Sequence[Item], bound: Iterable[Variable] = ()
     ) -> set[int]:
-        """Give those of which items hold."""
+        """Return those of which items hold."""
         values, test = self._values, self._step(items, (*bound, variable), _yes)
         found = set()
         for each in among:
@@ -408,7 +408,7 @@ def _yes(_: _Values) -> bool:
 
 
 def _symbol(value: Any) -> Symbol:
-    """Give a value as clingo compares it; raises :class:`UserError` for a name that it does not take."""
+    """Return a value as clingo compares it; raises :class:`UserError` for a name that it does not take."""
     if isinstance(value, Symbol):
         return value
     if isinstance(value, str):

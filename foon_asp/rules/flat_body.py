@@ -435,7 +435,7 @@ class _Scope:
         )
 
     def called(self, terms: Sequence[Term], head: Sequence[AST]) -> list[Item]:
-        """Give the variables of a head the terms of an atom; gives what has to be equal besides."""
+        """Return the variables of a head the terms of an atom; gives what has to be equal besides."""
         equal: list[Item] = []
         for term, argument in zip(terms, head, strict=True):
             if argument.ast_type == ASTType.Variable and argument.name not in self._named:
@@ -445,7 +445,7 @@ class _Scope:
         return equal
 
     def term(self, node: AST) -> Term:
-        """Give a variable or a value."""
+        """Return a variable or a value."""
         if node.ast_type == ASTType.Variable:
             if node.name == "_":
                 return self._bodies.variable()
@@ -460,7 +460,7 @@ class _Scope:
         return Constant(symbol.string if symbol.type is SymbolType.String else symbol)
 
     def ways(self, parts: Iterable[Part]) -> list[Way]:
-        """Give the ways in which parts of a body hold together."""
+        """Return the ways in which parts of a body hold together."""
         each = [self._of_part(part) for part in parts]
         found: list[Way] = []
         for chosen in product(*each):
@@ -557,7 +557,7 @@ class _Scope:
         return self._bodies.of_atom(literal.signature, tuple(map(self.term, literal.arguments)))
 
     def _test(self, test: Test, against: bool) -> list[Way]:
-        """Give the ways in which a comparison holds, or does not."""
+        """Return the ways in which a comparison holds, or does not."""
         if test.holds is not None:
             return [Way(())] if test.holds != against else []
         comparison = test.ast.atom
@@ -571,7 +571,7 @@ class _Scope:
         return [Way(tuple(Compare(*each) for each in pairs))]
 
     def _within(self) -> "_Scope":
-        """Give the variables within a condition: those of the whole rule, and others of its own."""
+        """Return the variables within a condition: those of the whole rule, and others of its own."""
         for name in self._whole - self._named.keys():
             self._named[name] = self._bodies.variable()
         scope = copy(self)
@@ -579,22 +579,22 @@ class _Scope:
         return scope
 
     def _having(self, literal: Literal) -> frozenset[Variable]:
-        """Give the variables of a literal that gives none of them a value."""
+        """Return the variables of a literal that gives none of them a value."""
         return frozenset(_variables(self._named[name] for name in global_variables(literal)))
 
     def _given(self, parts: Iterable[Part]) -> frozenset[Variable]:
-        """Give the variables of the whole rule that parts of it have."""
+        """Return the variables of the whole rule that parts of it have."""
         names = {name for part in parts for name in global_variables(part)} & self._named.keys() & self._whole
         return frozenset(_variables(self._named[name] for name in names))
 
 
 def bound_by(items: Iterable[Item]) -> set[Variable]:
-    """Give the variables that have their values once items hold."""
+    """Return the variables that have their values once items hold."""
     return {variable for item in items for variable in _variables(_terms(item))}
 
 
 def _equal(test: Test) -> set[str]:
-    """Give the variables of a comparison that gives a variable the value of another, or of a constant."""
+    """Return the variables of a comparison that gives a variable the value of another, or of a constant."""
     if test.ast.sign or test.ast.atom.ast_type != ASTType.Comparison or len(test.ast.atom.guards) != 1:
         return set()
     is_equal = test.ast.atom.guards[0].comparison == ComparisonOperator.Equal

@@ -18,7 +18,7 @@ class Numbering:
         self._taken: set[tuple[type, str]] = set()
 
     def learn(self, line: Line) -> None:
-        """Note the id of a line, if it has one."""
+        """Record the id of a line, if it has one."""
         if not line.id:
             return
         kind = type(line)

@@ -53,7 +53,7 @@ class JsonList:
             self.error(self.place(0), "found lists nested too deeply, expected a list of objects")
 
     def error(self, source: Source, message: str) -> None:
-        """Note an error at a place of the file."""
+        """Record an error at a place of the file."""
         excerpt = self._text.split("\n", source.line)[source.line - 1].rstrip("\r")
         self.errors.append(Diagnostic(Severity.ERROR, "json", message, source, excerpt))
 

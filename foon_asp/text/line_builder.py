@@ -290,7 +290,7 @@ def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
 
 
 def _advice(line: str) -> str:
-    """Say how to write a line that begins with none of the letters; empty where that cannot be guessed."""
+    """Return how to write a line that begins with none of the letters; empty where that cannot be guessed."""
     if not line.replace("\t", " ").isprintable():
         return ""
     if line.startswith(FENCE):

@@ -45,7 +45,7 @@ class Renaming:
             self.mentions += name_kind == kind and name == old
 
     def learn_ids(self, ids: Mapping[str, int]) -> None:
-        """Note how often which ids stand with the new name, where that is known already."""
+        """Record how often which ids stand with the new name, where that is known already."""
         self._ids.update(ids)
 
     def line(self, line: str) -> str:

@@ -108,7 +108,7 @@ class TextUnits:
             tell(untold + len(waiting[0].encode()))
 
     def _reject_json(self, message: str, text: str) -> None:
-        """Note what stands before JSON, as the only fault of the file."""
+        """Record what stands before JSON, as the only fault of the file."""
         begins = text.lstrip()
         line = text[: len(text) - len(begins)].count("\n") + 1
         self.reading.reject("json", message, Source(self.file, line, 1), split_lines(begins)[0])
