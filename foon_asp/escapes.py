@@ -21,18 +21,18 @@ _COMMAND = r"(?m)^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))"
 
 
 def escaped(name: str) -> str:
-    """Give a name as it is shown within a line, whose end and tabs are escaped too."""
+    """Return a name as it is shown within a line, whose end and tabs are escaped too."""
     return re.sub(_IN_A_LINE, _escape, name)
 
 
 def escaped_lines(text: str, styled: bool = False) -> str:
-    """Give a text of several lines as it is shown; one that is ``styled`` keeps its colours."""
+    """Return a text of several lines as it is shown; one that is ``styled`` keeps its colours."""
     shown = re.sub(_UNSAFE_BUT_ESCAPE, _escape, text) if styled else UNSAFE.sub(_escape, text)
     return re.sub(_COMMAND, _without_command, shown) if "::" in shown or "##" in shown else shown
 
 
 def encodable(text: str, encoding: str = "utf-8") -> str:
-    """Give a text with escapes for the letters that an encoding does not have."""
+    """Return a text with escapes for the letters that an encoding does not have."""
     try:
         text.encode(encoding)
     except UnicodeEncodeError:

@@ -69,7 +69,7 @@ def write_all_whole(contents: Mapping[Path, bytes]) -> None:
 
 
 def utf_8(text: str) -> bytes:
-    """Give the bytes of a text; raises :class:`UserError` for half a character, which has none."""
+    """Return the bytes of a text; raises :class:`UserError` for half a character, which has none."""
     try:
         return text.encode()
     except UnicodeEncodeError as error:

@@ -145,7 +145,7 @@ def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]
 
 
 def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
-    """Give the program of a small question, or to a store, whose rules are all ready-made, without clingo.
+    """Return the program of a small question, or to a store, whose rules are all ready-made, without clingo.
 
     ``None`` for other questions.
     """
@@ -208,7 +208,7 @@ def _is_ours(encoding: "Encoding") -> bool:
 
 
 def _known(settings: Settings) -> "ReadyMade | None":
-    """Give the rules that are added where all are ready-made constraints; ``None`` for others."""
+    """Return the rules that are added where all are ready-made constraints; ``None`` for others."""
     if not settings.constraints or not settings.reductions or settings.replaced is not None:
         return None
     if settings.relaxed is not None or settings.bounded is not None:
@@ -228,7 +228,7 @@ def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
 
 
 def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:
-    """Give what finds numbers beyond clingo's in encodings of the user."""
+    """Return what finds numbers beyond clingo's in encodings of the user."""
     if not encodings:
         return []
     from foon_asp.grounding.number_checks import PLACE  # noqa: PLC0415
@@ -239,7 +239,7 @@ def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:
 
 
 def _understood(settings: Settings) -> "Rules | None":
-    """Give the rules that are added, as far as they are understood; raises as :func:`assemble` does."""
+    """Return the rules that are added, as far as they are understood; raises as :func:`assemble` does."""
     return assemble(settings, lambda _: None).understood
 
 
@@ -255,7 +255,7 @@ class ReachOfRules(Enum):
 
 
 def reach_of_rules(settings: Settings) -> ReachOfRules:
-    """Say which units the rules that are added are about; raises as :func:`assemble` does."""
+    """Return which units the rules that are added are about; raises as :func:`assemble` does."""
     rules = _known(settings) or _understood(settings)
     if rules is None or not rules.local:
         return ReachOfRules.ALL
@@ -283,7 +283,7 @@ def leave_a_rest(settings: Settings) -> bool:
 
 
 def varying_available(settings: Settings) -> "Rules | None":
-    """Give the rules that are added, for questions where more is available; raises as above."""
+    """Return the rules that are added, for questions where more is available; raises as above."""
     rules = _understood(settings)
     return None if rules is None else rules.varying({("available", 1)})
 
@@ -315,7 +315,7 @@ def rules_digest(
 
 
 def _find_encodings(path: Path | None, ours: Path) -> Path:
-    """Give a folder of encodings: the path itself, or a built-in one by name (``by_need``)."""
+    """Return a folder of encodings: the path itself, or a built-in one by name (``by_need``)."""
     if path is None:
         return ours
     folder = ours / path.name if not path.is_dir() and path.name == str(path) else path

@@ -39,7 +39,7 @@ class Breaking:
         self._program = assemble(self._settings, lambda _: None, used_up)
 
     def broken(self, problem: Problem, tree: Collection[int]) -> tuple[IntegrityConstraint, ...]:
-        """Give the rules that a tree breaks, by the ids of its units; of a plan, each as often as executed.
+        """Return the rules that a tree breaks, by the ids of its units; of a plan, each as often as executed.
 
         Raises ``KeyboardInterrupt`` at a limit, and :class:`UserError` for a rule without a value.
         """

@@ -87,7 +87,7 @@ def relax(
 
 
 def _statements(rules: Loaded) -> list[AST]:
-    """Give the statements that say something."""
+    """Return the statements that say something."""
     statements: list[AST] = []
     parse(rules, statements.append, lambda *_: None)
     return [statement for statement in statements if statement.ast_type not in _PASSED_OVER]
@@ -145,7 +145,7 @@ def _parsed(text: str) -> AST:
 
 
 def _global_variables(body: Sequence[AST]) -> Iterator[str]:
-    """Give the variables that a whole rule has in common: not those within an aggregate or a condition."""
+    """Return the variables that a whole rule has in common: not those within an aggregate or a condition."""
     for literal in body:
         if literal.ast_type == ASTType.ConditionalLiteral:
             continue
@@ -159,7 +159,7 @@ def _global_variables(body: Sequence[AST]) -> Iterator[str]:
 
 
 def _names(statement: AST) -> Iterator[str]:
-    """Give the names of what may be a constant in the terms of a statement."""
+    """Return the names of what may be a constant in the terms of a statement."""
     for part in nodes(statement):
         if part.ast_type == ASTType.SymbolicTerm and part.symbol.type is SymbolType.Function:
             yield part.symbol.name

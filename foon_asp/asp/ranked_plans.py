@@ -26,7 +26,7 @@ class RankedPlans:
         self.known: list[tuple[Plan, Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[Plan, Costs]]:
-        """Give plan after plan, each proved the best of those that do not hold one before it."""
+        """Return plan after plan, each proved the best of those that do not hold one before it."""
         given: list[Mapping[int, int]] = []
         while True:
             settings = self._settings._replace(bounded=Bounded(beside=tuple(given)))

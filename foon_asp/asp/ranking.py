@@ -50,7 +50,7 @@ class Ranked:
         self.known: list[tuple[tuple[int, ...], Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[tuple[int, ...], Costs]]:
-        """Give tree after tree.
+        """Return tree after tree.
 
         clingo gives them in the order of rounded costs. A tree is given out when no tree that clingo may
         still find can come before it: where costs are rounded, one may whose weight is higher by less than

@@ -95,7 +95,7 @@ class _Heard(Listener):
             self.reporter.statistics(run.statistics)
 
     def costs(self, units: Units) -> Costs:
-        """Give what units cost, worked out once for a tree in hand."""
+        """Return what units cost, worked out once for a tree in hand."""
         if self._costed is None or self._costed[0] != units:
             self._costed = units, self.problem.costs(units)
         return self._costed[1]
@@ -387,12 +387,12 @@ class _Solver:
         return self._optimal(best) if proved else self._limited(best, ended.lower)
 
     def _in_hand(self, units: Units) -> Units:
-        """Give the best tree reported; with replaced encodings that is not known, and these units count."""
+        """Return the best tree reported; with replaced encodings that is not known, and these units count."""
         assert self.heard.best is not None
         return units if self.program.replaced else self.heard.best[0]
 
     def _wanted(self, incumbent: Units) -> tuple[str, bool]:
-        """Give clasp's mode of search, and whether it leaves out trees that are only as good as this one.
+        """Return clasp's mode of search, and whether it leaves out trees that are only as good as this one.
 
         After the reductions, trees that are only as good need not be among the units left. Where rates
         multiply, rounded weights cannot tell what is better: then what weighs the same is left in. No bound
@@ -498,7 +498,7 @@ class _Solver:
         return program
 
     def _scaled(self) -> "Scales":
-        """Give how what is left of the network is measured in clingo."""
+        """Return how what is left of the network is measured in clingo."""
         if self._scales is None:
             self._scales = self.first.scales
         return self._scales

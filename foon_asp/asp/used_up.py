@@ -81,7 +81,7 @@ def _solver(
 def most_executions(
     problem: Problem, objectives: Sequence[Objective], settings: Settings
 ) -> dict[int, tuple[int, int]]:
-    """Give how often each unit that can matter is executed, at least and at most, by any best plan.
+    """Return how often each unit that can matter is executed, at least and at most, by any best plan.
 
     Where it is proved that there is no plan, each of all units is executed once at most. Raises
     :class:`UserError` where neither is proved.
@@ -99,7 +99,7 @@ def most_executions(
 
 
 def executions_as_good(outcome: Outcome, settings: Settings) -> dict[int, int] | None:
-    """Give how often each unit is executed at most by plans that are as good as one by its first objective.
+    """Return how often each unit is executed at most by plans that are as good as one by its first objective.
 
     ``None`` where nothing says so.
     """
@@ -120,7 +120,7 @@ def best_plans(
     reporter: Reporter,
     most: int,
 ) -> tuple[list[tuple[Plan, Costs]], bool, bool]:
-    """Give plans that are best, none of which executes each unit as often as another does; at most so many.
+    """Return plans that are best, none of which executes each unit as often as another does; at most so many.
 
     Then whether the first is proved the best, and whether there are no others.
     """
@@ -153,7 +153,7 @@ def best_plans(
 
 
 def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
-    """Give units, repeats included, in an order in which a plan runs; ``None`` where none does."""
+    """Return units, repeats included, in an order in which a plan runs; ``None`` where none does."""
     solver = _solver(problem, (Objective.UNITS,), Settings(), Reporter())
     counted = Counter(units)
     return _Counting(solver, list(counted)).order(dict(enumerate(counted.values())))
@@ -189,7 +189,7 @@ def require_rules_of_plans(program: Program) -> None:
 
 
 def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
-    """Give what some units do with what may run out, by their place; that of other units is left out."""
+    """Return what some units do with what may run out, by their place; that of other units is left out."""
     asked = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
 
     def finite(ids: Sequence[int]) -> list[int]:
@@ -280,7 +280,7 @@ class _Solver:
         return rules is not None and not (rules.shrinking and rules.only_limits)
 
     def _cut(self) -> list[int] | None:
-        """Give the units that can matter, ascending; ``None`` where no goal is reached even if items last.
+        """Return the units that can matter, ascending; ``None`` where no goal is reached even if items last.
 
         They make what a goal or another of them asks for and what does not run out; all that can be executed,
         where rules may ask for others.
@@ -443,7 +443,7 @@ class _Counting:
         )
 
     def measure(self, objective: Objective) -> Measure:
-        """Give what each unit costs by an objective, once for each objective."""
+        """Return what each unit costs by an objective, once for each objective."""
         if objective not in self._measures:
             self._measures[objective] = self._measured(objective)
         return self._measures[objective]
@@ -480,18 +480,18 @@ class _Counting:
             ) from None
 
     def _scale(self, objective: Objective) -> Fraction:
-        """Give into how many steps 1 is divided: as many as needed, or as are of use."""
+        """Return into how many steps 1 is divided: as many as needed, or as are of use."""
         figures = self._figures(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
         most = max(figures, default=Fraction(0))
         return Fraction(common) if common * most <= _LARGEST else _FINE / most
 
     def level(self, objective: Objective, costs: Costs) -> Level:
-        """Give a level of the question with what a plan costs."""
+        """Return a level of the question with what a plan costs."""
         return self._level(objective, Fraction(costs.measure(objective)))
 
     def _below(self, objective: Objective, cost: int | Fraction) -> Level:
-        """Give a level of plans that cost less."""
+        """Return a level of plans that cost less."""
         level = self._level(objective, Fraction(cost))
         if level.measure.exact is not None:
             return level._replace(strict=True)

@@ -147,7 +147,7 @@ class Branching:
         return self._proof(self._first)[0]
 
     def cases(self) -> Cases:
-        """Give the actions that were branched on, without what was left out by the way."""
+        """Return the actions that were branched on, without what was left out by the way."""
         return self._cases(self._first)
 
     def _cases(self, place: _Place) -> Cases:
@@ -163,7 +163,7 @@ class Branching:
         return bound > self._below() * PARTS
 
     def _below(self) -> int:
-        """Give the most that a derivation can cost that is better than the one found."""
+        """Return the most that a derivation can cost that is better than the one found."""
         return (self._total - 1) // self._unit * self._unit
 
     def _add(self, cut: frozenset[int]) -> None:
@@ -241,7 +241,7 @@ class Branching:
         return True
 
     def _taken(self, cutter: Cutter, shares: Any, place: _Place) -> set[int]:
-        """Give the actions of a derivation that is taken as a whole; else none, and add a cut it misses."""
+        """Return the actions of a derivation that is taken as a whole; else none, and add a cut it misses."""
         chosen = place.used.union(self._np.flatnonzero(shares > 0.5).tolist()) - place.forbidden
         self.effort -= len(cutter.actions)
         cut = cutter.cut(chosen, cutter.actions)
@@ -278,7 +278,7 @@ class Branching:
         return found > 0
 
     def _weigh(self, place: _Place) -> None:
-        """Note what the weights of all rows prove, if it is more than is known."""
+        """Record what the weights of all rows prove, if it is more than is known."""
         left = self._parts.copy()
         paid = sum(self._costs[a] for a in place.used) * PARTS
         left[list(place.used)] = 0
@@ -291,14 +291,14 @@ class Branching:
             place.weights = [(row, weight) for row, weight in weights.items() if weight]
 
     def _left(self, place: _Place) -> Any:
-        """Give what the weights at a place leave of the cost of each action, in parts."""
+        """Return what the weights at a place leave of the cost of each action, in parts."""
         left = self._parts.copy()
         for row, weight in self._carrying(place):
             left[self._rows[row]] -= weight
         return left
 
     def _carrying(self, place: _Place) -> Iterator[tuple[int, int]]:
-        """Give rows and their weights; what the used actions cross can carry nothing."""
+        """Return rows and their weights; what the used actions cross can carry nothing."""
         for row, weight in place.weights:
             if place.used.isdisjoint(self._rows[row].tolist()):
                 yield row, weight
@@ -334,7 +334,7 @@ class Branching:
         return Packing(tuple(weights)), overloaded & place.forbidden
 
     def _stated(self, cut: frozenset[int], place: _Place) -> Cut:
-        """Give a cut by the numbers of the whole graph, with what crosses it at a place."""
+        """Return a cut by the numbers of the whole graph, with what crosses it at a place."""
         crossing = (self._actions[a] for a in self._achievers.members(cut) if a not in place.forbidden)
         if cut not in self._wide:
             wide = self._achievers.widened(cut)

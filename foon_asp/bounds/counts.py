@@ -209,13 +209,13 @@ class CountBound:
             self._check()
 
     def most_executions(self) -> int | None:
-        """Give how many executions a plan can have in all; ``None`` if not known."""
+        """Return how many executions a plan can have in all; ``None`` if not known."""
         program = self._model(()).program
         bound = program.solve(dict.fromkeys(range(self._size), -1)).bound
         return None if abs(bound) == math.inf else math.floor(-bound)
 
     def caps(self, level: Level) -> list[int | None]:
-        """Give for each action how often a plan that is as good can execute it; ``None`` if not known."""
+        """Return for each action how often a plan that is as good can execute it; ``None`` if not known."""
         model = self._model((level.measure,))
         model.limit(level)
         caps: list[int | None] = []
@@ -351,7 +351,7 @@ class CountBound:
         levels: Sequence[Level],
         is_better: Callable[[Counts], bool | None],
     ) -> Iterator[_Bounds]:
-        """Give the parts into which what is left is divided, after a look at what was found."""
+        """Return the parts into which what is left is divided, after a look at what was found."""
         program = model.program
         halves = [(abs(value - math.floor(value) - 0.5), column) for column, value in enumerate(x)]
         half = min((h for h in halves if h[0] < 0.5 - _NEAR), default=None)
@@ -527,7 +527,7 @@ class _Model:
         self.tighten()
 
     def _as_often(self, action: int, count: int) -> int:
-        """Give the column that says whether an action is executed so often."""
+        """Return the column that says whether an action is executed so often."""
         if count == 1:
             return self._size + action
         if (action, count) not in self._often:
@@ -559,7 +559,7 @@ class _Model:
         self._classes[id(measure)] = columns
 
     def class_columns(self, measure: Measure) -> list[int]:
-        """Give the columns that count the executions of each class."""
+        """Return the columns that count the executions of each class."""
         return self._classes[id(measure)]
 
     def add_landmark(self, landmark: Landmark) -> None:
@@ -596,7 +596,7 @@ class _Model:
         self.tighten()
 
     def objective(self, measure: Measure) -> dict[int, int]:
-        """Give what each column costs."""
+        """Return what each column costs."""
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         if measure.item:
             costs |= dict.fromkeys((*self.items.values(), *self.stock.values()), measure.item)
@@ -622,7 +622,7 @@ def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
 
 
 def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[_Bounds]:
-    """Give all that differs from what was found in one of the columns, which are whole, in parts."""
+    """Return all that differs from what was found in one of the columns, which are whole, in parts."""
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):
         found = round(x[column])

@@ -107,7 +107,7 @@ class Cutter:
         return left if self._places.keys() >= set(left) else None
 
     def widened(self, objects: Iterable[int]) -> Cut:
-        """Give the cut of some objects before the targets, with more where that keeps its landmark small.
+        """Return the cut of some objects before the targets, with more where that keeps its landmark small.
 
         An action that can never run lacks an object that nothing makes: with it in the cut, the action is no
         member. So a cut found among those actions that can run has the same members here.
@@ -133,7 +133,7 @@ class Cutter:
         return self._closed({target}, most_taken)
 
     def _closed(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
-        """Give the cut of objects and of what ``needed`` tells of each action that would be a member."""
+        """Return the cut of objects and of what ``needed`` tells of each action that would be a member."""
         graph, forbidden = self._graph, self._forbidden
         stack = list(inside)
         makers: set[int] = set()
@@ -195,7 +195,7 @@ class _Growth:
         return refused
 
     def _learn(self, refused: list[int]) -> None:
-        """Note which of some objects that together reach the targets does so alone, if one does."""
+        """Record which of some objects that together reach the targets does so alone, if one does."""
         for o in refused:
             new = None if len(refused) == 1 else self._spread([o])
             if new is None:

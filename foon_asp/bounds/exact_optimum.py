@@ -99,7 +99,7 @@ class _Basis:
             raise NowhereError
 
     def entering(self, order: Lexicographic) -> tuple[int, bool] | None:
-        """Give the first column loaded with more than it costs, or else the first row of negative weight.
+        """Return the first column loaded with more than it costs, or else the first row of negative weight.
 
         By Bland's rule; the flag says whether it is a row. ``None`` at the optimum.
         """
@@ -114,7 +114,7 @@ class _Basis:
         return next(((row, True) for row in sorted(self.weights) if order.sign(self.weights[row]) < 0), None)
 
     def leaving(self, number: int, is_row: bool) -> tuple[int, bool]:
-        """Give the column or row that first falls to zero as a column comes in or a row becomes slack."""
+        """Return the column or row that first falls to zero as a column comes in or a row becomes slack."""
         gains = [
             Fraction(-(row == number)) if is_row else parts.get(number, _ZERO)
             for row, parts in enumerate(self._rows)

@@ -36,14 +36,14 @@ class FirstAchievers:
         )
 
     def _of(self, objects: Iterable[int]) -> int:
-        """Give what is made by the time that some objects are, a bit for each object."""
+        """Return what is made by the time that some objects are, a bit for each object."""
         made = 0
         for o in objects:
             made |= self._landmarks[o]
         return made
 
     def members(self, cut: frozenset[int]) -> list[int]:
-        """Give the landmark of a cut: who can be the first to make something of it."""
+        """Return the landmark of a cut: who can be the first to make something of it."""
         makers, needs, before = self.graph.makers, self.graph.needs, self._before
         inside = _bits(cut)
         return sorted(
@@ -51,7 +51,7 @@ class FirstAchievers:
         )
 
     def widened(self, cut: frozenset[int]) -> frozenset[int]:
-        """Give a cut with what is made only after something of it, so that it has these members for all.
+        """Return a cut with what is made only after something of it, so that it has these members for all.
 
         That is added where an action that gives something of the cut needs it.
         """
@@ -74,7 +74,7 @@ def _bits(objects: Iterable[int]) -> int:
 
 
 def _landmarks(graph: Hypergraph, among: int, expired: Callable[[], bool]) -> list[int]:
-    """Give for each object which of the first ones every derivation makes by the time that it is made.
+    """Return for each object which of the first ones every derivation makes by the time that it is made.
 
     The greatest sets of which each has the object itself, and else only what the needs of all its makers have
     (Keyder, Richter and Helmert 2010).

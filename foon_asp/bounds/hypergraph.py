@@ -45,7 +45,7 @@ class Hypergraph:
         return [sum(not at_start[o] for o in set(needed)) for needed in self.needs]
 
     def crossing(self, objects: frozenset[int]) -> tuple[int, ...]:
-        """Give the actions that give one of some objects and need none of them, ascending."""
+        """Return the actions that give one of some objects and need none of them, ascending."""
         makers, needs = self.makers, self.needs
         return tuple(sorted({a for o in objects for a in makers[o] if objects.isdisjoint(needs[a])}))
 

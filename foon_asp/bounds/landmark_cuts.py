@@ -242,7 +242,7 @@ class _Free:
         self._waiting: dict[int, list[int]] = {}
 
     def lacking(self, action: int) -> list[int]:
-        """Give what an action needs and what is neither free nor there from the start."""
+        """Return what an action needs and what is neither free nor there from the start."""
         free, start = self.objects, self._graph.start
         return [o for o in self._graph.needs[action] if o not in free and o not in start]
 

@@ -48,7 +48,7 @@ class Lexicographic:
         return tuple(sum(parts, Fraction(0)) for parts in zip(self.zero, *vectors, strict=True))
 
     def sign(self, vector: Sequence[Fraction | int]) -> int:
-        """Give -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly.
+        """Return -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly.
 
         It can be 0 for a vector that is not: 7/10 * 7/10 is 49/100.
         """
@@ -60,18 +60,18 @@ class Lexicographic:
         return 0
 
     def compare(self, one: Vector, other: Vector) -> int:
-        """Give -1, 0 or 1 for a cost below, equal to or above another, exactly."""
+        """Return -1, 0 or 1 for a cost below, equal to or above another, exactly."""
         return self.sign(minus(one, other))
 
     def approximate(self, vector: Sequence[Fraction | int]) -> list[float]:
-        """Give each level as a float, for methods that guess what is then checked; none is beyond 10^12."""
+        """Return each level as a float, for methods that guess what is then checked; none is beyond 10^12."""
         return [
             sum(self._terms(level, [max(-_GREATEST, min(e, _GREATEST)) for e in part]))
             for level, part in self._parts(vector)
         ]
 
     def _parts(self, vector: Sequence[Fraction | int]) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
-        """Give the coordinates of each level."""
+        """Return the coordinates of each level."""
         begin = 0
         for level, measures in enumerate(self._measures):
             end = begin + len(measures)
@@ -140,7 +140,7 @@ def times(vector: Vector, factor: Fraction) -> Vector:
 
 @lru_cache(maxsize=4096)
 def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
-    """Give ``-log(rate)`` to ``digits`` digits, and its greatest error; the rate is below 1."""
+    """Return ``-log(rate)`` to ``digits`` digits, and its greatest error; the rate is below 1."""
     # close to 1, the logarithms of denominator and numerator share their first digits
     shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
     precise = Context(prec=digits + shared + 10)

@@ -104,13 +104,13 @@ class Rules(Protocol):
     """Rules that derivations keep to, and that neither targets nor limits say."""
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        """Give by rule the actions that are in no derivation with those used and none of the others."""
+        """Return by rule the actions that are in no derivation with those used and none of the others."""
 
     def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
-        """Give some actions of a derivation by which it breaks a rule, none where it keeps to all."""
+        """Return some actions of a derivation by which it breaks a rule, none where it keeps to all."""
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
-        """Give a limit that is not known yet and that a derivation exceeds; from then on it is known."""
+        """Return a limit that is not known yet and that a derivation exceeds; from then on it is known."""
 
 
 class CheaperError(Exception):
@@ -165,7 +165,7 @@ class Prover:
             scale *= _FINER / (1 + largest / unit)
 
     def scaled(self, vector: Vector) -> float:
-        """Give a cost as one float, in which a level counts much less than the one before it."""
+        """Return a cost as one float, in which a level counts much less than the one before it."""
         return sum(map(mul, self._order.approximate(vector), self._scales), 0.0)
 
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
@@ -189,7 +189,7 @@ class Prover:
             return None
 
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
-        """Give the weights, and their sum, that the relaxation alone has to offer: a lower bound.
+        """Return the weights, and their sum, that the relaxation alone has to offer: a lower bound.
 
         Cuts are grown with a good derivation in mind. ``None`` where there was no time, and where the targets
         are out of reach.
@@ -309,7 +309,7 @@ class Prover:
         return None if self._rules is None or not chosen else self._rules.exceeded(chosen)
 
     def _able(self, actions: Sequence[int]) -> list[int]:
-        """Give those of some actions that can run by these alone."""
+        """Return those of some actions that can run by these alone."""
         graph = self._graph
         reached = graph.reach(frozenset(range(len(graph.needs))).difference(actions))
         return [action for action in actions if all(reached[o] for o in graph.needs[action])]
@@ -325,7 +325,7 @@ class Prover:
         alone: bool,
         first: bool,
     ) -> tuple[Proof | None, Sequence[Cut]]:
-        """Give a proof of ``goal``, if one is found without exact arithmetic, and all cuts.
+        """Return a proof of ``goal``, if one is found without exact arithmetic, and all cuts.
 
         The weights of the ``known`` cuts are tried first. Where many actions cost multiples of a ``step``,
         what is too dear by them is left out, if it is worth it, with a proof for ``others``. The same is done
@@ -370,7 +370,7 @@ class Prover:
         return self._searched(cutter, goal, cuts, step) if first else None, cuts
 
     def _step(self) -> Fraction:
-        """Give what all costs are multiples of, where they are one number each; else 0."""
+        """Return what all costs are multiples of, where they are one number each; else 0."""
         told = self._limits or self._rules is not None
         one = len(self._multiples) == 1 == len(self._order.zero)
         return self._multiples[0] if one and not told else Fraction(0)
@@ -402,12 +402,12 @@ class Prover:
         return Dear(tuple(sorted(needed)), packing._replace(rounded=0), proof) if needed else proof
 
     def _crossing(self, proof: Proof) -> Iterator[int]:
-        """Give the actions that cross cuts of a proof, those that are left out somewhere with them."""
+        """Return the actions that cross cuts of a proof, those that are left out somewhere with them."""
         for objects in {cut.objects for cut in _cuts(proof)}:
             yield from self._members(frozenset(objects))
 
     def _widened(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
-        """Give a cut with more objects, if any action crosses it that cannot run."""
+        """Return a cut with more objects, if any action crosses it that cannot run."""
         inside = frozenset(o for o in objects if not self._graph.at_start[o])
         members = cutter.among(self._members(inside))
         return cutter.widened(inside) if members is None else Cut(tuple(sorted(inside)), members)
@@ -442,7 +442,7 @@ class Prover:
         return None if found is None else stated(found)
 
     def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> tuple[Packing, dict[int, Vector]]:
-        """Give each cut in turn the weight that its members have left of their costs, or at most another.
+        """Return each cut in turn the weight that its members have left of their costs, or at most another.
 
         Also give what is left of the costs of all members.
         """
@@ -468,7 +468,7 @@ class Prover:
 
 
 def _cuts(proof: Proof) -> Iterator[Cut]:
-    """Give the cuts of a proof."""
+    """Return the cuts of a proof."""
     waiting = [proof]
     while waiting:
         part = waiting.pop()
@@ -563,13 +563,13 @@ class _Node:
             raise _TimeUpError
 
     def _share(self, x: Sequence[float]) -> None:
-        """Note a solution, with all that costs nothing and is in no limit or rule taken as a whole."""
+        """Record a solution, with all that costs nothing and is in no limit or rule taken as a whole."""
         self.shares = [*x]
         for place in self._free:
             self.shares[place] = 1.0
 
     def packing(self, exact: ExactOptimum) -> Packing:
-        """Give the weighted cuts of an exact optimum."""
+        """Return the weighted cuts of an exact optimum."""
         weights = sorted(exact.weights.items())
         first = len(self._limits)
         return Packing(
@@ -579,7 +579,7 @@ class _Node:
         )
 
     def undecided(self) -> int | None:
-        """Give the action that is most nearly half taken, the most expensive of several; else ``None``."""
+        """Return the action that is most nearly half taken, the most expensive of several; else ``None``."""
         halves = [
             (abs(x - 0.5), -self._floats[place], self._actions[place])
             for place, x in enumerate(self.shares[: len(self._actions)])
@@ -588,7 +588,7 @@ class _Node:
         return min(halves)[2] if halves else None
 
     def taken(self) -> list[int]:
-        """Give the actions that the relaxed solution takes, with those that are used anyway."""
+        """Return the actions that the relaxed solution takes, with those that are used anyway."""
         shares = zip(self._actions, self.shares, strict=False)  # after those of actions come those of limits
         return sorted({action for action, x in shares if round(x)} | self._used)
 

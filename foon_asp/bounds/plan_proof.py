@@ -137,7 +137,7 @@ class PlanProver(CountBound):
         return Split(column, most, up_to, above)
 
     def _choice(self, model: _Model, x: Sequence[float]) -> tuple[int, int] | None:
-        """Give a column to branch on, and the most of the lower side; ``None`` where all are whole."""
+        """Return a column to branch on, and the most of the lower side; ``None`` where all are whole."""
         program, size = model.program, self._size
         for a in range(size):
             most = program.upper[a]
@@ -230,7 +230,7 @@ class PlanProver(CountBound):
         return claim.item if column in self._columns else claim.order.zero
 
     def _bound(self, model: _Model, weights: Mapping[int, Vector], free: bool = False) -> Vector | None:
-        """Give what weights prove of the part at hand; ``None`` where that is nothing.
+        """Return what weights prove of the part at hand; ``None`` where that is nothing.
 
         Where all is ``free``, nothing costs anything.
         """

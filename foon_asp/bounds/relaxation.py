@@ -134,5 +134,5 @@ class Covering:
         )
 
     def weights(self) -> list[float]:
-        """Give the weight of each row in the optimum found last."""
+        """Return the weight of each row in the optimum found last."""
         return list(self._highs.getSolution().row_dual)

@@ -69,7 +69,7 @@ def share_costs(
 def renumbered(
     graph: Hypergraph, targets: Iterable[int], actions: Sequence[int]
 ) -> tuple[Hypergraph, list[int], list[int]]:
-    """Give a graph of some actions alone, its objects by their numbers before, and its targets."""
+    """Return a graph of some actions alone, its objects by their numbers before, and its targets."""
     targets, start = tuple(targets), graph.start
     objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))
     number = {o: place for place, o in enumerate(objects)}
@@ -83,7 +83,7 @@ def renumbered(
 
 
 def in_parts(costs: Sequence[int]) -> Any:
-    """Give an array of costs in parts: machine numbers where their sum is one, else of any size."""
+    """Return an array of costs in parts: machine numbers where their sum is one, else of any size."""
     import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
     return np.array(costs, dtype=np.int64 if sum(costs) * PARTS < _LARGE else object) * PARTS
@@ -100,7 +100,7 @@ def _quotient(a: int, b: int) -> float:
 def shared_out(
     told: Iterable[tuple[int, float]], of_1: int, rows: Sequence[Any], left: Any
 ) -> dict[int, int]:
-    """Give rows the weights that they are told to have, rounded to parts, which ``left`` is able to carry.
+    """Return rows the weights that they are told to have, rounded to parts, which ``left`` is able to carry.
 
     What rounding leaves goes to whom it helps. ``of_1`` are the parts of a weight of 1, ``rows`` the members
     of each row, and ``left`` what each of these can carry, from which the weights are taken away.
@@ -189,7 +189,7 @@ class _Sharing:
         return None if last is None else self._shared(last)
 
     def _solved(self, expired: Callable[[], bool]) -> Weighed | None:
-        """Give a relaxed solution, or ``None`` where HiGHS finds none, or not by the time that is up."""
+        """Return a relaxed solution, or ``None`` where HiGHS finds none, or not by the time that is up."""
         if self._inside:
             found = self._covering.inside(expired)
             if found is not None:
@@ -261,7 +261,7 @@ class _Sharing:
         )
 
     def _whole(self, row: int) -> frozenset[int]:
-        """Give the objects of a cut by their numbers in the whole graph, where it has the same landmark."""
+        """Return the objects of a cut by their numbers in the whole graph, where it has the same landmark."""
         if row not in self._stated:
             wide = self._achievers.widened(self._cuts[row])
             self._stated[row] = frozenset(self._objects[o] for o in wide)

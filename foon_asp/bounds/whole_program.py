@@ -99,7 +99,7 @@ class WholeProgram:
     def with_bounds(
         self, column: int, lower: int | None, upper: int | None
     ) -> tuple[list[int], list[int | None]]:
-        """Give the bounds of all columns with one changed."""
+        """Return the bounds of all columns with one changed."""
         lowers, uppers = list(self.lower), list(self.upper)
         if lower is not None:
             lowers[column] = lower
@@ -124,7 +124,7 @@ class WholeProgram:
         return Solved(self._nearly(), -math.inf)
 
     def _nearly(self) -> list[float] | None:
-        """Give a solution of the rows but for a little, where floats find none and prove nothing.
+        """Return a solution of the rows but for a little, where floats find none and prove nothing.
 
         Rows with large parts may leave so narrow a gap that it is lost in floats.
         """
@@ -153,11 +153,11 @@ class WholeProgram:
         return Relaxation(None, [abs(weight) for weight in highs.getDualRay()[2]], [], [])
 
     def said(self, row: int) -> tuple[dict[int, int], int]:
-        """Give a row: its parts, and what they add up to at least."""
+        """Return a row: its parts, and what they add up to at least."""
         return self._rows[row]
 
     def whole_optimum(self, objective: Mapping[int, int]) -> list[float] | None:
-        """Give the best whole solution by HiGHS' word; ``None`` if it finds none, or when time is up."""
+        """Return the best whole solution by HiGHS' word; ``None`` if it finds none, or when time is up."""
         highs = self._send(objective)
         count = self.columns
         whole = self._library.HighsVarType.kInteger
@@ -217,7 +217,7 @@ class WholeProgram:
     def _bound(
         self, objective: Mapping[int, int], weights: Sequence[float], cutoff: float
     ) -> float | Fraction:
-        """Give the bound that weights of rows prove, whatever they are, computed in whole numbers."""
+        """Return the bound that weights of rows prove, whatever they are, computed in whole numbers."""
         best: float | Fraction = -math.inf
         for parts in _PARTS:
             scaled = [max(0, round(weight * parts)) if abs(weight) < 1e15 else 0 for weight in weights]

@@ -101,7 +101,7 @@ def _certified_plan(outcome: Outcome, covered: Coverage, expired: Callable[[], b
 
 
 def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
-    """Say why an answer and a certificate cannot both be true; ``None`` where they can.
+    """Return why an answer and a certificate cannot both be true; ``None`` where they can.
 
     The certificate was verified, but not against the answer: that it speaks of the same goals and rule, and
     proves nothing that the answer denies, is looked at here and not taken from how it was found.
@@ -123,7 +123,7 @@ def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> s
 def _costs_at_odds(
     outcome: Outcome, units: Sequence[int], certificate: Certificate, covered: Coverage
 ) -> str | None:
-    """Say why a tree cannot cost what a certificate proves; ``None`` where it can."""
+    """Return why a tree cannot cost what a certificate proves; ``None`` where it can."""
     problem, content = outcome.problem, certificate.content
     arrays = Arrays(problem, certificate.certified, covered)
     cost = arrays.order.total(arrays.costs[a] for a in arrays.actions(units))

@@ -173,7 +173,7 @@ class _Question:
         return list(map(Fraction, self._problem.figures(objective, self._units)))
 
     def _claim(self, objective: Objective) -> Claim:
-        """Say what is to be proved: that no plan costs less than the one in hand."""
+        """Return what is to be proved: that no plan costs less than the one in hand."""
         problem, figures = self._problem, self._figures(objective)
         if multiplies(objective):
             rates = sorted({rate for rate in figures if rate != 1}) or [_HALF]
@@ -215,7 +215,7 @@ class _Question:
         return self._cuts.setdefault(tuple(sorted(set(objects))), len(self._cuts))
 
     def balance(self, o: int) -> int:
-        """Note that the balance of an object is used."""
+        """Record that the balance of an object is used."""
         self._balanced.add(o)
         return o
 
@@ -322,7 +322,7 @@ class _Stated:
         }
 
     def _place(self, condition: Condition) -> tuple[str, tuple[int, ...], int]:
-        """Say what a condition is in a certificate, and by how much its weight counts more there."""
+        """Return what a condition is in a certificate, and by how much its weight counts more there."""
         question = self._question
         if isinstance(condition, Landmark):
             cut = question.cut(condition.objects)
@@ -347,7 +347,7 @@ def weight_text(weight: Vector, order: Lexicographic | None) -> str | dict[str, 
 
 
 def _minus_log(rate: Fraction, up: bool) -> Fraction:
-    """Give ``-log(rate)``, at most or at least."""
+    """Return ``-log(rate)``, at most or at least."""
     if rate == 1:
         return Fraction(0)
     about, off = minus_log(rate, _DIGITS)

@@ -91,7 +91,7 @@ class Encoding:
     statements: list[AST] = field(default_factory=list)
 
     def first_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
-        """Give predicates among some, with their first arguments where these are names."""
+        """Return predicates among some, with their first arguments where these are names."""
         symbols = (node.symbol for each in self.statements for node in nodes(each) if _is_atom(node))
         for symbol in symbols:
             if (symbol.name, len(symbol.arguments)) in signatures:
@@ -105,7 +105,7 @@ class Encoding:
         return [each for each in self.statements if each.ast_type == ASTType.Definition]
 
     def saying(self, constant: str) -> set[Signature]:
-        """Give the predicates of which rules say that they hold of a constant."""
+        """Return the predicates of which rules say that they hold of a constant."""
         heads = (each.head for each in self.statements if each.ast_type == ASTType.Rule)
         atoms = (
             head.atom.symbol for head in heads if head.ast_type == ASTType.Literal and _is_atom(head.atom)
@@ -306,7 +306,7 @@ def check_encodings(
 
 
 def no_numbers(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
-    """Give terms that are above every number where one is compared with them, and what to say of that.
+    """Return terms that are above every number where one is compared with them, and what to say of that.
 
     These are names that no ``#const`` sets, and texts in place of a bound of what is counted or added up.
     """
@@ -466,7 +466,7 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
 
 
 def constant_value(name: str, default: str, value: str) -> str:
-    """Give a value of a constant as a term, of the type of its default.
+    """Return a value of a constant as a term, of the type of its default.
 
     Raises :class:`UserError` for one of another type.
     """

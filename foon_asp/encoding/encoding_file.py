@@ -36,7 +36,7 @@ _SUFFIX = ".lp"
 
 
 def included_files(path: Path) -> list[Path]:
-    """Give an encoding and all files that it includes, directly or not, each once.
+    """Return an encoding and all files that it includes, directly or not, each once.
 
     A file may include those in its own folder, and below. Raises :class:`InputError` for other files, for a
     ``#script``, for letters that clingo does not know, and for numbers that it has not.
@@ -55,7 +55,7 @@ def included_files(path: Path) -> list[Path]:
 
 
 def excerpt(source: Source) -> str:
-    """Give the line of an encoding at a place; files of other kinds are never quoted."""
+    """Return the line of an encoding at a place; files of other kinds are never quoted."""
     path = Path(source.file)
     if path.suffix != _SUFFIX or not path.is_file():
         return ""
@@ -82,7 +82,7 @@ def check_text(text: str, place: str) -> None:
 
 
 def _look_over(file: Path, errors: list[Diagnostic]) -> list[Path]:
-    """Note what is wrong with a file, and give the files that it includes."""
+    """Record what is wrong with a file, and give the files that it includes."""
     if file.suffix != _SUFFIX:
         raise UserError(f"{file}: expected an encoding, a file whose name ends in {_SUFFIX}")
     if any("\ud800" <= letter <= "\udfff" for letter in str(file)):  # what clingo cannot be given
@@ -149,7 +149,7 @@ def _look_over_text(text: str, place: str, file: Path | None, errors: list[Diagn
 
 
 def _refused(file: Path, target: str) -> str:
-    """Say why a file may not include another, named as in the file; empty if it may."""
+    """Return why a file may not include another, named as in the file; empty if it may."""
     folder = file.parent.resolve()
     path = file.parent / target
     if "\0" in target or not path.resolve().is_relative_to(folder) or ".." in Path(target).parts:
@@ -168,7 +168,7 @@ def _refused(file: Path, target: str) -> str:
 
 
 def _tokens(text: str) -> Iterator[_Token]:
-    """Give the tokens of a program, without blanks and comments."""
+    """Return the tokens of a program, without blanks and comments."""
     place = 0
     while match := _TOKEN.match(text, place):
         kind = str(match.lastgroup)

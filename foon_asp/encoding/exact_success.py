@@ -35,7 +35,7 @@ class RateScale(NamedTuple):
     exponents: Mapping[Fraction, Mapping[int, int]]
 
     def product_exponents(self, rates: Iterable[Fraction]) -> dict[int, int]:
-        """Give the exponents of a product of rates; every factor is listed."""
+        """Return the exponents of a product of rates; every factor is listed."""
         total = {factor: 0 for rate in self.exponents.values() for factor in rate}
         for rate in rates:
             for factor, exponent in self.exponents[rate].items():
@@ -72,7 +72,7 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 
 
 def _scale(logarithms: Collection[Decimal]) -> int:
-    """Give the power of ten by which logarithms above 0 become weights."""
+    """Return the power of ten by which logarithms above 0 become weights."""
     if not logarithms:
         return _FINE
     fitting: int = 10 ** (_LARGEST / max(logarithms)).adjusted()
@@ -96,7 +96,7 @@ def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
 
 
 def _minus_log(rate: Fraction, digits: int) -> Decimal:
-    """Give ``-ln`` of a rate with ``digits`` digits: the relative error is below 10^-digits."""
+    """Return ``-ln`` of a rate with ``digits`` digits: the relative error is below 10^-digits."""
     lost = 1 - rate
     zeros = -_CONTEXT.divide(Decimal(lost.numerator), Decimal(lost.denominator)).adjusted()
     # The logarithm of 1 + x has as many digits fewer than 1 + x as x begins with zeros.
@@ -105,7 +105,7 @@ def _minus_log(rate: Fraction, digits: int) -> Decimal:
 
 
 def _weight(rate: Fraction, scale: int) -> int:
-    """Give ``floor(scale * -ln rate)``, exactly.
+    """Return ``floor(scale * -ln rate)``, exactly.
 
     The logarithm of a rational number other than 1 is irrational, so enough digits always settle the floor.
     """

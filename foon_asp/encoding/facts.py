@@ -189,7 +189,7 @@ def _unit_atom(problem: Problem, unit: int) -> str:
 def _unit_atoms(
     problem: Problem, unit: int, scales: Scales | None, prices: Mapping[int, int] | None
 ) -> list[_Atom]:
-    """Give the facts about a unit, except that it is one; with ``prices``, also those for rules alone."""
+    """Return the facts about a unit, except that it is one; with ``prices``, also those for rules alone."""
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
     ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
@@ -222,7 +222,7 @@ def _unit_atoms(
 def hundredths(
     problem: Problem, units: Iterable[int], looked_at: Collection[tuple[str, int]]
 ) -> dict[int, int]:
-    """Give the price of each unit that has one, in hundredths.
+    """Return the price of each unit that has one, in hundredths.
 
     Where that cannot be told exactly, or a sum could not, there are none, or :class:`UserError` is raised if
     somebody looks at them.
@@ -260,13 +260,13 @@ def _object_atom(problem: Problem, o: int) -> str:
 
 
 def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
-    """Give the facts about an object node, except that it is one and whether it is at hand."""
+    """Return the facts about an object node, except that it is one and whether it is at hand."""
     number = problem.network.object_number(o)
     return [(name, f"{number},{said}") for name, said in object_facts(problem.network.objects[o])]
 
 
 def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -> list[_Atom]:
-    """Give what facts of some predicates say of an object node, without the node."""
+    """Return what facts of some predicates say of an object node, without the node."""
     atoms = [("label", quote(node.label))] if "label" in predicates else []
     if "state" in predicates:
         atoms += [("state", quote(state)) for state in sorted(node.states)]
@@ -278,14 +278,14 @@ def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -
 
 
 def described(problem: Problem, units: Iterable[int]) -> list[int]:
-    """Give the object nodes in the facts about some units, including the goals, in order."""
+    """Return the object nodes in the facts about some units, including the goals, in order."""
     network = problem.network
     touched = {o for unit in units for side in (network.inputs, network.outputs) for o in side[unit]}
     return sorted(touched.union(problem.goals))
 
 
 def write_times(times: Mapping[int, tuple[int, int]]) -> str:
-    """Say how often units, by number, are executed at least and at most."""
+    """Return how often units, by number, are executed at least and at most."""
     return "".join(
         f"_least({unit},{least}). _most({unit},{_check(most)}).\n" for unit, (least, most) in times.items()
     )
@@ -300,7 +300,7 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
 
 
 def write_exponents(problem: Problem, scales: Scales) -> str:
-    """Give the vector of every unit by the objective that is rounded: its rate over the coprime factors."""
+    """Return the vector of every unit by the objective that is rounded: its rate over the coprime factors."""
     return "".join(
         f"_exponent({problem.network.unit_number(unit)},{place},{_check(number)}).\n"
         for unit, vector in scales.unit_vectors().items()
@@ -335,18 +335,18 @@ def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> 
 
 
 def write_list(number: int, items: Iterable[int]) -> str:
-    """Give a shopping list that was found before."""
+    """Return a shopping list that was found before."""
     return f"_found_list({number}).\n" + "".join(f"_on_list({number},{o}).\n" for o in items)
 
 
 def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
-    """Give the cost of dropping each constraint, by number, and those that are kept."""
+    """Return the cost of dropping each constraint, by number, and those that are kept."""
     facts = [f"_constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
     return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])
 
 
 def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
-    """Give sets of constraints, by number, each of which leaves a tree when it is dropped."""
+    """Return sets of constraints, by number, each of which leaves a tree when it is dropped."""
     return "".join(
         f"_correction({place},{number}).\n"
         for place, correction in enumerate(corrections)
@@ -355,7 +355,7 @@ def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
 
 
 def write_soft(weights: Mapping[int, int]) -> str:
-    """Give the weight of each soft constraint, by number."""
+    """Return the weight of each soft constraint, by number."""
     return "".join(f"_soft({number},{_check(weight)}).\n" for number, weight in weights.items())
 
 
@@ -370,7 +370,7 @@ def write_greatest_penalty(penalty: int) -> str:
 
 
 def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
-    """Give a bound: objectives with numbers, of which at least one must not be exceeded.
+    """Return a bound: objectives with numbers, of which at least one must not be exceeded.
 
     Raises ``ValueError`` for ``success``, which does not count.
     """
@@ -407,7 +407,7 @@ def write_required(sets: Sequence[Iterable[int]]) -> str:
 
 
 def write_known(numbers: Iterable[int]) -> str:
-    """Give the units of which all is there that may make what they need, by their numbers."""
+    """Return the units of which all is there that may make what they need, by their numbers."""
     return "".join(f"_known({_check(number)}).\n" for number in numbers)
 
 
@@ -436,7 +436,7 @@ def write_given(numbers: Collection[int]) -> str:
 
 
 def write_same_rates(classes: Sequence[Iterable[int]]) -> str:
-    """Give the units of each success rate, by their numbers in the whole network."""
+    """Return the units of each success rate, by their numbers in the whole network."""
     return "".join(
         f"_same_rate({rate},{number}).\n" for rate, numbers in enumerate(classes) for number in numbers
     )
@@ -448,7 +448,7 @@ def write_most_alike(most: Sequence[int]) -> str:
 
 
 def write_exactly_alike(numbers: Sequence[int]) -> str:
-    """Say how many units of each success rate the tree is to have."""
+    """Return how many units of each success rate the tree is to have."""
     return "".join(f"_exactly_alike({rate},{_check(number)}).\n" for rate, number in enumerate(numbers))
 
 
@@ -493,7 +493,7 @@ def quote(text: str) -> str:
 
 
 def source_names(sources: Iterable[Source]) -> dict[str, None]:
-    """Give the names of a unit's places for constraints: files, with folders and without, and videos."""
+    """Return the names of a unit's places for constraints: files, with folders and without, and videos."""
     names: dict[str, None] = {}
     for source in sources:
         names.update(_file_names(source.file))
@@ -507,7 +507,7 @@ def _file_names(file: str) -> dict[str, None]:
 
 
 def millionths(rate: Fraction) -> int:
-    """Give a success rate as constraints see it."""
+    """Return a success rate as constraints see it."""
     return rate.numerator * 1_000_000 // rate.denominator
 
 

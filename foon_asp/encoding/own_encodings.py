@@ -25,7 +25,7 @@ def is_own(file: Path) -> bool:
 
 
 def question_encoding(name: str) -> Path:
-    """Give a built-in encoding that a question needs and that cannot be replaced, such as ``soft.lp``.
+    """Return a built-in encoding that a question needs and that cannot be replaced, such as ``soft.lp``.
 
     Raises :class:`UserError` where it was changed.
     """
@@ -33,12 +33,12 @@ def question_encoding(name: str) -> Path:
 
 
 def exact_success() -> Path:
-    """Give the encoding that settles products of rates. Raises :class:`UserError` where it was changed."""
+    """Return the encoding that settles products of rates. Raises :class:`UserError` where it was changed."""
     return _unchanged(encodings_folder() / "exact_success.lp")
 
 
 def digest(file: Path) -> str:
-    """Give the SHA-256 of a text with the line ends of Unix."""
+    """Return the SHA-256 of a text with the line ends of Unix."""
     return hashlib.sha256(file.read_bytes().replace(b"\r\n", b"\n")).hexdigest()
 
 

@@ -98,7 +98,7 @@ class Scales:
         self.rounded: Objective | None = rounded[0] if rounded else None
 
     def weight(self, objective: Objective, units: Iterable[int]) -> int:
-        """Give what clingo adds up for some units."""
+        """Return what clingo adds up for some units."""
         if multiplies(objective):
             assert self.rates is not None
             return sum(self.rates.weights[self._problem.rate(unit)] for unit in units)
@@ -112,7 +112,7 @@ class Scales:
         return int(sum(problem.figure(objective, unit) for unit in units)) + objective.row.item * len(items)
 
     def cost_weight(self, objective: Objective, cost: int | Fraction) -> int:
-        """Give what clingo adds up for a cost that bounds others.
+        """Return what clingo adds up for a cost that bounds others.
 
         Raises :class:`UserError` for an objective that is rounded, and where sums may not fit: where clingo
         compares a sum with a number, what all units weigh together wraps, and the bound is lost.
@@ -133,7 +133,7 @@ class Scales:
         return int(scale.scale * cost)
 
     def doubt(self, units: Iterable[int]) -> int:
-        """Give the number of units that weigh less than they cost by the rounded objective.
+        """Return the number of units that weigh less than they cost by the rounded objective.
 
         The error is below that number.
         """
@@ -145,7 +145,7 @@ class Scales:
         return sum(scale * cost != weights[Fraction(cost)] for cost in costs)
 
     def vector(self, units: Iterable[int]) -> dict[int, int]:
-        """Give the numbers that tell one total by the rounded objective from another, by place.
+        """Return the numbers that tell one total by the rounded objective from another, by place.
 
         Where rates multiply these are exponents of coprime factors, else it is how often each cost occurs.
         """
@@ -160,7 +160,7 @@ class Scales:
         return vector
 
     def unit_vector(self, unit: int) -> Mapping[int, int]:
-        """Give the vector of one unit, without zeros."""
+        """Return the vector of one unit, without zeros."""
         assert self.rounded is not None
         if multiplies(self.rounded):
             assert self.rates is not None
@@ -168,7 +168,7 @@ class Scales:
         return {self.costs[self.rounded].places[Fraction(self._problem.figure(self.rounded, unit))]: 1}
 
     def unit_vectors(self) -> dict[int, Mapping[int, int]]:
-        """Give the vectors of all units."""
+        """Return the vectors of all units."""
         return {unit: self.unit_vector(unit) for unit in self._units}
 
     def bound(self, objective: Objective, weight: int) -> int | Fraction:

@@ -131,6 +131,7 @@ class Clingo:
                 raise NotCheckedError(timeout_message) from None
             finally:
                 process.kill()
+                process.wait()  # at ctrl-C, Popen itself waits for a quarter of a second only
         output: dict[str, Any] = {}
         with contextlib.suppress(ValueError):
             output = json.loads(out.decode("utf-8", "replace"), strict=False)

@@ -58,7 +58,7 @@ class GroundProgram:
             self._messages += numbers_beyond(self._control)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Give for each predicate, by name and arity, the numbers of its atoms: all that the rules derive.
+        """Return for each predicate, by name and arity, the numbers of its atoms: all that the rules derive.
 
         To be asked of rules without choice, whose atoms grounding alone settles.
         """

@@ -17,7 +17,7 @@ _MOST = 1000  # that are kept of those about what was left out
 
 
 def listener(messages: list[str]) -> Callable[[MessageCode, str], None]:
-    """Give a logger for clingo that notes the messages about something that is lost."""
+    """Return a logger for clingo that notes the messages about something that is lost."""
 
     def hear(code: MessageCode, text: str) -> None:
         if text.startswith(f"{PLACE}:") and code is MessageCode.OperationUndefined:

@@ -32,7 +32,7 @@ def _exact(text: Symbol, *values: Symbol) -> Symbol:
 
 
 def numbers_beyond(control: Control) -> Iterator[str]:
-    """Give messages, as clingo would, for what a ground program calculates beyond its numbers."""
+    """Return messages, as clingo would, for what a ground program calculates beyond its numbers."""
     for atom in control.symbolic_atoms.by_signature(*BEYOND):
         file, line, column, term = atom.symbol.arguments
         yield (

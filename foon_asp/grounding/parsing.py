@@ -34,7 +34,7 @@ def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], N
 
 
 def nodes(piece: AST) -> Iterator[AST]:
-    """Give a piece of a rule and all that is within it."""
+    """Return a piece of a rule and all that is within it."""
     yield piece
     for key in piece.child_keys:
         child = getattr(piece, key)

@@ -43,7 +43,7 @@ class WorkerProgram:
         _ask(self._worker, deadline, *command)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Give for each predicate, by name and arity, the numbers of its atoms."""
+        """Return for each predicate, by name and arity, the numbers of its atoms."""
         found: list[list[tuple[int, ...]]] = _ask(
             self._worker, self.deadline, "consequences", list(predicates)
         )
@@ -78,7 +78,7 @@ def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[V
 
 
 def _memory(deadline: Deadline) -> int | None:
-    """Give how many bytes another process may use."""
+    """Return how many bytes another process may use."""
     return None if deadline.memory is None else max(1, deadline.memory - deadline.memory_in_use())
 
 
@@ -107,7 +107,7 @@ def _forget(worker: Worker) -> None:
 
 
 def _ask(worker: Worker, deadline: Deadline, *command: object, hear: _Heard | None = None) -> Any:
-    """Give a command, and return the answer.
+    """Return a command, and return the answer.
 
     Raises :class:`ProgramError` and :class:`UserError` as the program does, and :class:`LimitError`.
     """

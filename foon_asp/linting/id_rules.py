@@ -24,9 +24,9 @@ class _Use(NamedTuple):
 
 
 def _shared(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
-    """Yield the letter of each id with several names, the id, and the names, the most frequent first.
+    """Yield the letter of each id, the id, and the names that it has, the most frequent first.
 
-    Or, not ``by_id``, of each name with several ids.
+    Or, not ``by_id``, of each name the ids.
     """
     uses: dict[tuple[str, str], dict[str, _Use]] = {}
     for line, first, often in sheet.distinct_lines:
@@ -36,8 +36,7 @@ def _shared(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
             earlier = known.get(text, _Use(text, 0, first))
             known[text] = _Use(text, earlier.often + often, min(earlier.first, first))
     for (letter, key), known in uses.items():
-        if len(known) > 1:
-            yield letter, key, sorted(known.values(), key=lambda use: (-use.often, use.first))
+        yield letter, key, sorted(known.values(), key=lambda use: (-use.often, use.first))
 
 
 @rule("id-of-two-names", WARNING, "one id for two names")

@@ -28,7 +28,7 @@ def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
         (sheet, index, line)
         for sheet in context.sheets
         for index, line in enumerate(sheet.lines)
-        if line[:1] != "#" and not _PLAIN.fullmatch(line)
+        if not line.startswith("#") and not _PLAIN.fullmatch(line)
     ]
     spelt = Counter(word for _, _, line in odd for word in _WORD.findall(line))
     usual: dict[

@@ -24,7 +24,7 @@ _LINE_BREAK = re.compile(r"[\r\n]")
 
 
 def with_tables(paths: Iterable[Path], files: Iterable[Path]) -> list[Path]:
-    """Give files, and the tables of rates, utensils and the like in the folders among the paths."""
+    """Return files, and the tables of rates, utensils and the like in the folders among the paths."""
     folders = [path for path in paths if path.is_dir()]
     tables = [file for folder in folders for file in sorted(folder.rglob("*.txt")) if file.name in TABLES]
     return list(dict.fromkeys([*files, *tables]))

@@ -19,7 +19,7 @@ def is_mendable(finding: Diagnostic, unsafe: bool = False) -> bool:
 
 
 def mended(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -> bytes:
-    """Give the bytes of a file with the lines of findings as their ``fix`` has them.
+    """Return the bytes of a file with the lines of findings as their ``fix`` has them.
 
     Only with ``unsafe`` are there fixes that change what is read; names to be written otherwise are so
     everywhere in the file.

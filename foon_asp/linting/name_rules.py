@@ -86,8 +86,6 @@ def unknown_ingredient(context: Context) -> Iterator[Diagnostic]:
 
 def _unknown(context: Context, bracket: Bracket, role: str, advice: str) -> Iterator[Diagnostic]:
     names, known = context.names, context.vocabulary
-    if all(sheet.entries is not None for sheet in context.sheets):
-        return
     for name, mentions in names.mentions[Kind.OBJECT].items():
         if name in names.objects or (Kind.OBJECT, name) in context.paired_names:
             continue

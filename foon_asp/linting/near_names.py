@@ -22,7 +22,7 @@ def near_names(
     known: Collection[str] = (),
     loose: Container[str] = (),
 ) -> Iterator[tuple[str, str]]:
-    """Give pairs of names of one kind: the one that stands less often, and the one that may be meant.
+    """Return pairs of names of one kind: the one that stands less often, and the one that may be meant.
 
     Names that only differ in doubled letters, capitals, blanks or hyphens are a pair at any frequency
     (``drinking glas``, ``hashbrown``). A name that is rare beside another one is a pair with it if one
@@ -69,7 +69,7 @@ def near_names(
 
 
 def _spelt_two_ways(counts: dict[str, int], known: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Give pairs that are the same without doubled letters, capitals and blanks."""
+    """Return pairs that are the same without doubled letters, capitals and blanks."""
     spellings: dict[str, list[str]] = {}
     for name in counts:
         if len(name) <= _LONGEST:
@@ -90,7 +90,7 @@ def _without_a_letter(name: str) -> Iterable[str]:
 
 
 def near_word(word: str, near: Mapping[str, Iterable[str]], verbs: bool) -> str | None:
-    """Give the known word for which one that is not known is likely a slip.
+    """Return the known word for which one that is not known is likely a slip.
 
     ``near`` has the known words by what is left of them when a letter is taken away, and by themselves.
     """
@@ -107,7 +107,7 @@ def near_word(word: str, near: Mapping[str, Iterable[str]], verbs: bool) -> str 
 
 
 def by_what_is_left(words: Iterable[str]) -> dict[str, list[str]]:
-    """Give words by themselves and by what is left of them when a letter is taken away."""
+    """Return words by themselves and by what is left of them when a letter is taken away."""
     near: dict[str, list[str]] = {}
     for word in words:
         if len(word) >= _SHORT_KNOWN:

@@ -59,9 +59,9 @@ def noqa(context: Context) -> Iterator[Diagnostic]:
 
 
 def _commented(context: Context) -> Iterator[Sheet]:
-    """Yield the sheets and tables with comments; JSON has none."""
+    """Yield the sheets and tables with comments; those of JSON have no line that is one."""
     for sheet in (*context.sheets, *context.files.tables):
-        if sheet.places is None and any(line[:1] == "#" and _COMMENT.match(line) for line in sheet.lines):
+        if any(line.startswith("#") and _COMMENT.match(line) for line in sheet.lines):
             yield sheet
 
 
@@ -71,7 +71,7 @@ def _comments(sheet: Sheet) -> list[_Comment]:
     following = len(sheet.lines)
     for index in range(len(sheet.lines) - 1, -1, -1):
         line = sheet.lines[index]
-        if line[:1] != "#" and line.strip():
+        if not line.startswith("#") and line.strip():
             following = index + 1
         elif match := _COMMENT.match(line):
             codes = re.findall(r"[^\s,]+", match["codes"]) if match["colon"] else []

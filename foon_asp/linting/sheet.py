@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
@@ -63,8 +64,7 @@ class Sheet:
     @property
     def lists_goals(self) -> bool:
         """Whether it is a list of goals: its name says so, as that of ``goal_nodes.json`` does."""
-        name = self.file.replace("\\", "/").rsplit("/", 1)[-1]
-        return self.entries is not None and "goal" in name.lower()
+        return self.entries is not None and "goal" in Path(self.file).name.lower()
 
     @cached_property
     def distinct_lines(self) -> list[WrittenLine]:
@@ -105,12 +105,12 @@ class Sheet:
                 if block is not None:
                     block.attributes.append((number, line.attribute))
                 continue
-            if text[:1] == "#" or not text.strip():
+            if text.startswith("#") or not text.strip():
                 continue
             if block is not None:
                 yield block
             block = WrittenBlock(number, line.label, []) if isinstance(line, ObjectLine) else None
-            if text[:2] == "//":
+            if text.startswith("//"):
                 yield None
         if block is not None:
             yield block

@@ -1,6 +1,5 @@
 """The tables beside a network: rates, utensils, durations, tools, prices."""
 
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -25,17 +24,11 @@ def table(context: Context) -> Iterator[Diagnostic]:
 
 
 def _faults(sheet: Sheet) -> Iterator[Diagnostic]:
-    table = TABLES[Path(sheet.file).name]
-    if not table.expected:  # names alone
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Path(folder) / "table.txt"
-        copy.write_text("\n".join(sheet.lines), encoding="utf-8")
-        try:
-            table.rows(copy)
-        except InputError as error:
-            for fault in error.diagnostics:
-                yield fault._replace(source=fault.source._replace(file=sheet.file))
+    file = Path(sheet.file)
+    try:
+        TABLES[file.name].rows(file, "\n".join(sheet.lines))
+    except InputError as error:
+        yield from error.diagnostics
 
 
 @rule("unknown-row", WARNING, "a row of a table for a name that the network has not")
@@ -82,6 +75,6 @@ def _rows(sheet: Sheet) -> dict[str, int]:
     rows: dict[str, int] = {}
     for index, line in enumerate(sheet.lines):
         name = line.partition("\t")[0].partition(";")[0].strip()
-        if name and name[0] != "#" and index + 1 not in bad:
+        if name and not name.startswith("#") and index + 1 not in bad:
             rows.setdefault(name, index)
     return rows

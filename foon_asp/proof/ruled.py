@@ -65,7 +65,7 @@ class Ruled:
         return {place: barred(used, without) for place, barred in self.barred.items()}
 
     def fault(self, units: Units, others: Units) -> str | None:
-        """Say why a tree of these units, and none of the others, does not keep to the constraints."""
+        """Return why a tree of these units, and none of the others, does not keep to the constraints."""
         members = self.used(units)
         if removed := self.removed & units:
             return f"has unit {min(removed)}, which a rule removes"

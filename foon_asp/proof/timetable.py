@@ -128,7 +128,7 @@ def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[st
 def timetable_fault(
     problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
 ) -> str | None:
-    """Say what is wrong with a schedule of a plan, ``None`` where nothing is.
+    """Return what is wrong with a schedule of a plan, ``None`` where nothing is.
 
     At each moment there has to be a copy for each step that takes one, nobody may do two things, and each
     tool is at one step, in the state in which an earlier one left it or as the kitchen has it. The problem

@@ -31,7 +31,6 @@ from foon_asp.network import Network, UnitPrices, node_at_level
 from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
 from foon_asp.proof.ruled import Limit, Ruled
 
-_WITH_DEAR = 5  # the first version whose proofs leave out what is too dear
 _NOTHING = "nothing"  # what a tree that is not there is measured by
 OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "attempts", "price")
 
@@ -41,7 +40,6 @@ KEYS = frozenset(
         *("measures", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
     )
 )
-_BEFORE_RULES = KEYS - {"rules", "measures"} | {"forbidden"}
 _NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
 _RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
 _SURROGATE = re.compile("[\ud800-\udfff]")
@@ -63,31 +61,16 @@ _WRITTEN = 13_000  # bits of a success rate: Python writes numbers of up to 4,30
 # A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
 Amount: TypeAlias = dict[tuple[int, Fraction | None], Fraction]
 
-# Why version 1 is refused under implied containers; under strict ones it says what version 2 does.
-_VERSION_1 = (
-    "in version 1, a unit could make a container that it had skipped under the implied rule, so a container "
-    "could come from nothing; certify again"
-)
-
 
 class Form(NamedTuple):
-    """A form of certificates: its name, the keys by version, and the first version that names a digest."""
+    """A form of certificates: its name, its version, and the keys that each of them has."""
 
     name: str
-    keys: Mapping[int, frozenset[str]]
-    since: Mapping[str, int] = MappingProxyType({})
-
-    @property
-    def version(self) -> int:
-        """The newest version."""
-        return max(self.keys)
+    version: int
+    keys: frozenset[str]
 
 
-TREE = Form(
-    "foon-asp certificate",
-    {1: _BEFORE_RULES, 2: _BEFORE_RULES, 3: _BEFORE_RULES, 4: KEYS, 5: KEYS},
-    {"prices": 3, "sources": 4},
-)
+TREE = Form("foon-asp certificate", 5, KEYS)
 
 
 class Subject(NamedTuple):
@@ -249,8 +232,6 @@ def verify(certificate: Any, subject: Subject) -> Verified:
     found.
     """
     rules = read_frame(certificate, TREE, subject)
-    if certificate["version"] < TREE.since["prices"]:
-        subject = subject._replace(prices=None)
     return Check(certificate, rules, subject).claim()
 
 
@@ -259,20 +240,14 @@ def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ..
     require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
     require(certificate.get("format") == form.name, f"expected the format {form.name!r}")
     version = certificate.get("version")
-    require(type(version) is int and version in form.keys, f"expected version {form.version} of the format")
-    keys = form.keys[version]
-    require(certificate.keys() == keys, f"expected the keys {', '.join(sorted(keys))}")
-    require(form is not TREE or version > 1 or certificate["containers"] != "implied", _VERSION_1)
+    same = type(version) is int and version == form.version
+    require(same, f"expected version {form.version} of the format")
+    require(certificate.keys() == form.keys, f"expected the keys {', '.join(sorted(form.keys))}")
     require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
     level, network = certificate["level"], subject.network
     require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
-    rules = (
-        read_rules(certificate["rules"], len(network))
-        if "rules" in keys
-        else _forbidding(certificate["forbidden"])
-    )
+    rules = read_rules(certificate["rules"], len(network))
     found = subject.digests(rules)
-    found = {name: digest for name, digest in found.items() if version >= form.since.get(name, 1)}
     named = read_object(certificate["digests"], tuple(found))
     for name, digest in found.items():
         require(named[name] == digest, f"{name}: not the one that the certificate is about")
@@ -534,7 +509,7 @@ class Check:
                 require(not crossing, "a cut called hopeless is crossed")
                 continue
             dear: list[int] | None = None
-            if "dear" in keys and self.certificate["version"] >= _WITH_DEAR:
+            if "dear" in keys:
                 dear = self._dear(node["dear"], used | without)
                 require("others" in keys, "expected a proof for what is without the dear")
                 waiting.append((node["others"], used, without.union(dear)))
@@ -1033,16 +1008,6 @@ def _own(rule: Rule, units: int) -> None:
             require(whole, "a limit counts what is no whole number above zero")
             counted += read_numbers(some, units)
         require(len(set(counted)) == len(counted), "a limit counts a unit twice")
-
-
-def _forbidding(value: Any) -> tuple[Rule, ...]:
-    """Read the motions and labels of objects that were all that a claim could forbid before version 4."""
-    forbidden = read_object(value, ("motions", "objects"))
-    rules: list[Rule] = [
-        {"rule": "forbid_motion", "forbidden_motion": motion} for motion in _names(forbidden["motions"])
-    ]
-    rules += ({"rule": "forbid_object", "forbidden_object": label} for label in _names(forbidden["objects"]))
-    return tuple(rules)
 
 
 def _rational(value: Any) -> Fraction:

@@ -39,7 +39,7 @@ from foon_asp.proof.verify import (
     verify,
 )
 
-PLAN = Form("foon-asp certificate of a plan", {1: KEYS | {"items", "unreached"}})
+PLAN = Form("foon-asp certificate of a plan", 1, KEYS | {"items", "unreached"})
 
 # The rules that plans can be held against: those that remove units or ask for one, and those whose limit
 # counts each execution.
@@ -110,7 +110,7 @@ class PlanCheck(Check):
     # --- what units do
 
     def _flow(self, unit: int) -> Flow:
-        """Say what a unit asks for, uses up and adds: none of its inputs is added."""
+        """Return what a unit asks for, uses up and adds: none of its inputs is added."""
         network = self.network
         asks = frozenset(o for o in self.needs(unit) if o is not None)
         gives = frozenset(o for o in self.gives(unit) if o is not None)

@@ -44,15 +44,15 @@ class _Listener(Reporter):
         self._warned.warning(message)
 
     def tree(self, costs: Costs) -> None:
-        """Tell of a tree."""
+        """Report a tree."""
         self._told(self._progress._replace(costs=costs))
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Tell of a bound."""
+        """Report a bound."""
         self._told(self._progress._replace(bounds={**self._progress.bounds, objective: bound}))
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Tell of an answer."""
+        """Report an answer."""
         self._told(self._progress._replace(done=done, total=total))
 
     def _told(self, progress: Progress) -> None:

@@ -250,13 +250,13 @@ class _Enough(Reporter):
         self._least: int | Fraction | None = None
 
     def tree(self, costs: Costs) -> None:
-        """Note the cost of the best plan."""
+        """Record the cost of the best plan."""
         self._reporter.tree(costs)
         self._cost = costs.measure(self._objective)
         self._compare()
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Note what no plan costs less than."""
+        """Record what no plan costs less than."""
         self._reporter.bound(objective, bound)
         if objective is self._objective:
             self._least = bound

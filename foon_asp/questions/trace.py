@@ -250,7 +250,7 @@ def trace(
     items: str = "used-up",
     **how: Unpack[Posed],
 ) -> Traced:
-    """Say what is in the kitchen after each step of a plan, and plan anew if a step fails.
+    """Return what is in the kitchen after each step of a plan, and plan anew if a step fails.
 
     Parameters:
         plan: The path of a file (FOON text, or an answer in JSON), or functional units in the order of

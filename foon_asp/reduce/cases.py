@@ -23,16 +23,16 @@ class Rules(Protocol):
     """Rules that a tree keeps to still when units are left out of it."""
 
     def conflict(self, problem: Problem, units: Units) -> Sequence[Units] | None:
-        """Give sets of units of each of which a tree has one, and no tree that keeps to the rules does.
+        """Return sets of units of each of which a tree has one, and no tree that keeps to the rules does.
 
         ``None`` where the tree keeps to them.
         """
 
     def barred(self, problem: Problem, without: Units) -> Units:
-        """Give units that no tree has that keeps to the rules and has none of some others."""
+        """Return units that no tree has that keeps to the rules and has none of some others."""
 
     def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
-        """Give how much each unit counts, and what those of a tree come to at most."""
+        """Return how much each unit counts, and what those of a tree come to at most."""
 
 
 class Kept(NamedTuple):

@@ -21,7 +21,7 @@ class Derivations(NamedTuple):
     before: dict[int, int]
 
     def tree(self, graph: Graph, objects: Iterable[int]) -> set[int] | None:
-        """Give the actions that make the objects by following the makers; ``None`` if one is not made."""
+        """Return the actions that make the objects by following the makers; ``None`` if one is not made."""
         return follow(objects, self.maker, graph.needs, graph.start)
 
 

@@ -58,7 +58,7 @@ class _Needs:
             self._at[place].append(action)
 
     def within(self, needs: Sequence[int], gives: int) -> Iterator[int]:
-        """Give the actions that need no more; of many, only those that give something."""
+        """Return the actions that need no more; of many, only those that give something."""
         at, below = self._at, self._below
         places = [0]  # those below which the needs so far lead
         yield from at[0] if len(at[0]) <= _FEW else self._giving(0).get(gives, ())

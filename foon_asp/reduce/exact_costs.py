@@ -56,7 +56,7 @@ class ExactCosts:
     def priced(
         self, counts: Callable[[int], int], price: int | Fraction, limit: int | None = None
     ) -> "ExactCosts":
-        """Give the same costs with a price on each unit, as many times as it counts.
+        """Return the same costs with a price on each unit, as many times as it counts.
 
         Where the price is a fraction, all are as many times as much as makes them whole. With a ``limit``,
         they are met as soon as a bound reaches it, or a tree stays below it.
@@ -79,13 +79,13 @@ class ExactCosts:
         return self._factors[first] * (1 + self._most(first, self._actions))
 
     def _step(self, objective: Objective, actions: Collection[int]) -> int:
-        """Give into how many steps 1 is divided, so that no cost of an action is between two."""
+        """Return into how many steps 1 is divided, so that no cost of an action is between two."""
         if objective.row.whole or objective in self._multiplied:
             return 1
         return math.lcm(*{cost.denominator for cost in self._costs(objective, actions)})
 
     def _most(self, objective: Objective, actions: Collection[int]) -> int:
-        """Give what no set of actions costs more than by one objective."""
+        """Return what no set of actions costs more than by one objective."""
         if objective is Objective.UNITS:
             return len(actions)
         if objective in self._multiplied:
@@ -98,7 +98,7 @@ class ExactCosts:
         return self._problem.figures(objective, (a for a in actions if a < self._units))
 
     def __call__(self, action: int) -> int:
-        """Give what an action costs."""
+        """Return what an action costs."""
         cost = self._known.get(action)
         if cost is None:
             cost = self._times * sum(self._figure(o, action) * factor for o, factor in self._factors.items())
@@ -151,7 +151,7 @@ class ExactCosts:
         return not _large(proved) and order.sign(proved) >= 0
 
     def of(self, costs: Costs) -> int:
-        """Give what a tree costs, or more by the rounding."""
+        """Return what a tree costs, or more by the rounding."""
         total = 0
         for objective, factor in self._factors.items():
             measure = Fraction(costs.measure(objective))
@@ -163,7 +163,7 @@ class ExactCosts:
         return total * self._times
 
     def figures(self, action: int) -> list[tuple[Objective, int]]:
-        """Give what an action costs by each objective, in steps; for ``success`` in rounded logarithms."""
+        """Return what an action costs by each objective, in steps; for ``success`` in rounded logarithms."""
         return [(objective, self._figure(objective, action)) for objective in self._objectives]
 
     def total(self, objective: Objective, figure: int) -> int | Fraction:
@@ -175,7 +175,7 @@ class ExactCosts:
         return abs(figure - _logarithm(product.denominator) + _logarithm(product.numerator)) < _ROUNDED
 
     def rate(self, action: int) -> Fraction:
-        """Give the rate of an action; taking an item from the kitchen never fails."""
+        """Return the rate of an action; taking an item from the kitchen never fails."""
         if action >= self._units:
             return Fraction(1)
         return self._problem.rate(action)
@@ -222,7 +222,7 @@ class CoarseCosts:
         self._by_unit = {unit: _coarse(rate) for unit, rate in own.items()}
 
     def __call__(self, action: int) -> int:
-        """Give about what an action costs."""
+        """Return about what an action costs."""
         if action >= len(self._problem.network):
             return self._objective.row.item
         if self._multiplied:
@@ -239,7 +239,7 @@ def _coarse(rate: Fraction) -> int:
 
 
 def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
-    """Give for each rate the sum of the scaled logarithms of its coprime factors, rounded each."""
+    """Return for each rate the sum of the scaled logarithms of its coprime factors, rounded each."""
     if not all(0 < rate <= 1 and rate.denominator <= _FINEST for rate in rates):
         raise TooFineError
     base = coprime_base(n for rate in rates for n in rate.as_integer_ratio())

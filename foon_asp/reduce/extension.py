@@ -13,7 +13,7 @@ _FIRST = 500  # actions nearest to the required sets, among which an extension i
 
 
 def extended(graph: Graph, tree: Collection[int], cost: Callable[[int], int], most: int) -> set[int] | None:
-    """Give a tree with what else it takes to have a unit of each required set, as cheaply as estimates say.
+    """Return a tree with what else it takes to have a unit of each required set, as cheaply as estimates say.
 
     ``None`` where none is found among ``most`` actions.
     """
@@ -30,7 +30,7 @@ def extended(graph: Graph, tree: Collection[int], cost: Callable[[int], int], mo
 def extensions(
     graph: Graph, free: Collection[int], cost: Callable[[int], int], limit: int, expired: Callable[[], bool]
 ) -> set[int]:
-    """Give the actions that an extension of costs up to a limit can have, as if ``free`` ones cost nothing.
+    """Return the actions that an extension of costs up to a limit can have, as if ``free`` ones cost nothing.
 
     All on a way from an action of it to a required set is of the extension, too, so that counts in full, and
     what the action builds upon does besides, but for free ones.

@@ -32,7 +32,7 @@ class Graph(Hypergraph):
         return backwards(self.goals, self.makers, self.needs, self.start, allowed)
 
     def thin(self, most: int, cost: Callable[[int], int]) -> "Graph":
-        """Give a graph in which required sets have few units each, for estimates.
+        """Return a graph in which required sets have few units each, for estimates.
 
         Most units of a large set are far from the goals, and one at random is enough to see that it costs no
         more. Those stay that lack least, the cheapest first; what the others give is not told.
@@ -49,7 +49,7 @@ class Graph(Hypergraph):
 
 
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
-    """Give the graph of a problem under a list of objectives."""
+    """Return the graph of a problem under a list of objectives."""
     network, kitchen, restriction = problem.network, problem.kitchen, problem.restriction
     units, size = len(network), len(network.objects)
     goals = tuple(o for o in dict.fromkeys(problem.targets) if o not in kitchen)

@@ -16,7 +16,7 @@ def near(
     least: int = 0,
     within: Callable[[int, float], bool] | None = None,
 ) -> set[int]:
-    """Give the allowed actions that a derivation without spare actions, of rests up to ``limit``, can have.
+    """Return the allowed actions that a derivation without spare actions, of rests up to ``limit``, can have.
 
     ``rest(a)`` is what the cuts leave of the cost of action ``a``. Such a derivation leads from each of its
     actions to a goal, each needing what the one before gives, so the rests along the way count (no action

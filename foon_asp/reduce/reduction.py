@@ -467,7 +467,7 @@ class _Reducer:
         search.search(effort, self.expired)
 
     def _shared(self, costs: ExactCosts, shared: "SharedCosts") -> bool:
-        """Note a bound, and leave out what is dear by it; whether the tree is proved optimal.
+        """Record a bound, and leave out what is dear by it; whether the tree is proved optimal.
 
         What trees cost is whole, so a part of 1 more than the next smaller cost is enough.
         """

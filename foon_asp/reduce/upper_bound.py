@@ -42,7 +42,7 @@ def guessed(
     shares: Mapping[int, float],
     without: Collection[int],
 ) -> Iterator[set[int]]:
-    """Give trees without some actions that use what a relaxed solution takes."""
+    """Return trees without some actions that use what a relaxed solution takes."""
     allowed = [a for a in actions if a not in without]
 
     def unshared(action: int) -> int:
@@ -62,7 +62,7 @@ def _part(cost: int, share: float) -> int:
 def following(
     graph: Graph, actions: Collection[int], cost: Callable[[int], int], shared: "SharedCosts"
 ) -> Iterator[set[int]]:
-    """Give trees that follow a relaxed solution, by what it takes and by what cuts leave of the costs."""
+    """Return trees that follow a relaxed solution, by what it takes and by what cuts leave of the costs."""
 
     def unshared(action: int) -> int:
         return 1 + _part(cost(action), 1 - min(1.0, shared.shares[action]))

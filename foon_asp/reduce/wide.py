@@ -31,7 +31,7 @@ class Wide:
     spare: bool
 
     def landmarks(self) -> list[frozenset[int]]:
-        """Give sets of units of each of which every tree has one: those of the cuts, and those required."""
+        """Return sets of units of each of which every tree has one: those of the cuts, and those required."""
         graph, restriction = self.graph, self.problem.restriction
         found = [frozenset(cut.members) for cut in self.cuts.cuts if max(cut.members) < graph.units]
         if restriction is not None:
@@ -40,25 +40,25 @@ class Wide:
         return found
 
     def makers(self, units: Iterable[int]) -> set[int]:
-        """Give all units that a tree can have to make the goals and what some units need."""
+        """Return all units that a tree can have to make the goals and what some units need."""
         graph, kitchen = self.graph, self.problem.kitchen
         needed = {o for unit in units for o in graph.needs[unit] if o not in kitchen}
         return {maker for o in needed.union(graph.goals) for maker in graph.makers[o]}
 
     def beside(self, units: Iterable[int]) -> set[int]:
-        """Give units with all others that make one of the same things."""
+        """Return units with all others that make one of the same things."""
         graph, kitchen = self.graph, self.problem.kitchen
         made = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
         return {maker for o in made for maker in graph.makers[o]}
 
     def left_of(self, numbers: Iterable[int]) -> set[int]:
-        """Give the units that there are of some, by number in a network that this one is a part of."""
+        """Return the units that there are of some, by number in a network that this one is a part of."""
         network, restriction = self.problem.network, self.problem.restriction
         units = {unit for number in numbers if (unit := network.unit_of_number(number)) is not None}
         return {unit for unit in units if restriction is None or not restriction.removed(unit)}
 
     def with_only_makers(self, units: Iterable[int], most: int) -> set[int]:
-        """Give units with all that they build upon without a choice, or part of it beyond ``most``."""
+        """Return units with all that they build upon without a choice, or part of it beyond ``most``."""
         graph, kitchen = self.graph, self.problem.kitchen
         found, waiting = set(units), list(units)
         while waiting and len(found) < most:
@@ -71,11 +71,11 @@ class Wide:
         return found
 
     def total(self, units: Iterable[int]) -> int:
-        """Give what a tree costs, with the items that it takes where these are counted."""
+        """Return what a tree costs, with the items that it takes where these are counted."""
         return sum(map(self.costs, self.actions(units)))
 
     def actions(self, units: Iterable[int]) -> set[int]:
-        """Give the units of a tree with the taking of the items that it needs, where these are counted."""
+        """Return the units of a tree with the taking of the items that it needs, where these are counted."""
         tree = set(units)
         if self.graph.start:
             return tree
@@ -83,11 +83,11 @@ class Wide:
         return tree | {self.graph.units + o for o in needed & self.problem.kitchen}
 
     def nearest(self, most: int) -> frozenset[int]:
-        """Give at least so many units, those nearest to the goals by what cuts leave, or all."""
+        """Return at least so many units, those nearest to the goals by what cuts leave, or all."""
         return self._units(near(self.graph, self.left, rests(self.costs, self.cuts), math.inf, most=most))
 
     def everything(self) -> frozenset[int]:
-        """Give all units that a tree can have, whatever it costs."""
+        """Return all units that a tree can have, whatever it costs."""
         if self.spare:
             return self._units(self._able(self._all()))
         cone, _ = self.graph.cone()
@@ -95,11 +95,11 @@ class Wide:
         return self._units(left)
 
     def within(self, limit: int, expired: Callable[[], bool]) -> frozenset[int]:
-        """Give the units that a tree of costs up to a limit can have, and maybe more where time is up."""
+        """Return the units that a tree of costs up to a limit can have, and maybe more where time is up."""
         return self._units(self.actions_within(limit, expired))
 
     def actions_within(self, limit: int, expired: Callable[[], bool]) -> Collection[int]:
-        """Give the actions that a tree of costs up to a limit can have, and maybe more where time is up.
+        """Return the actions that a tree of costs up to a limit can have, and maybe more where time is up.
 
         What the cuts leave of the costs of a tree is at most its cost less their bound. Where no unit is
         spare, it is on a way from each unit to a goal; else it is at least in what the unit itself takes.
@@ -137,7 +137,7 @@ class Wide:
         return left
 
     def _all(self) -> list[int]:
-        """Give all actions that a tree may have."""
+        """Return all actions that a tree may have."""
         units, restriction = self.graph.units, self.problem.restriction
         actions = (
             range(units) if restriction is None else [u for u in range(units) if not restriction.removed(u)]
@@ -146,7 +146,7 @@ class Wide:
         return [*actions, *(units + o for o in self.problem.kitchen if counted)]
 
     def _able(self, actions: Collection[int]) -> Collection[int]:
-        """Give those that can run; what cannot be made has no costs, and none are asked for."""
+        """Return those that can run; what cannot be made has no costs, and none are asked for."""
         return derive(self.graph, actions, lambda _: 0, added=False).before
 
     def _units(self, actions: Iterable[int]) -> frozenset[int]:
@@ -154,7 +154,7 @@ class Wide:
 
 
 def rests(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
-    """Give what cuts leave of the costs of actions."""
+    """Return what cuts leave of the costs of actions."""
     left = cuts.left
     return lambda action: left[action] if action in left else costs(action)
 
@@ -166,7 +166,7 @@ def dear_left_out(
     limit: int,
     expired: Callable[[], bool],
 ) -> set[int]:
-    """Give the allowed actions that trees without spare units, of rests up to a limit, can have."""
+    """Return the allowed actions that trees without spare units, of rests up to a limit, can have."""
     left = near(graph, allowed, rest, limit, within=within_reach(graph, allowed, rest))
     while not expired():
         made = derive(graph, left, rest, added=False)

@@ -12,7 +12,7 @@ _LOOKS = 200_000  # at actions, in all: in circles each object can be asked abou
 def within_reach(
     graph: Graph, allowed: Container[int], rest: Callable[[int], int]
 ) -> Callable[[int, float], bool]:
-    """Tell of an object and a limit whether allowed actions can make it at rests up to that.
+    """Report an object and a limit whether allowed actions can make it at rests up to that.
 
     It takes as much as the dearest that its maker needs, and the maker (h_max): what ``derive`` finds of all
     objects at once. Here it is found from the object that is asked about downwards, and what a limit rules

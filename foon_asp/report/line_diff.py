@@ -8,7 +8,7 @@ _LINE = re.compile(r"[^\n]*\n|[^\n]+")
 
 
 def line_diff(file: str, before: str, after: str) -> str:
-    """Give a unified diff of the text of a file; empty where both are the same."""
+    """Return a unified diff of the text of a file; empty where both are the same."""
     return "".join(_lines(file, _LINE.findall(before), _LINE.findall(after)))
 
 

@@ -161,13 +161,13 @@ def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
 
 
 def place(statement: AST) -> Source:
-    """Say where a statement begins."""
+    """Return where a statement begins."""
     begin = statement.location.begin
     return Source(begin.filename, begin.line, begin.column)
 
 
 def written(statement: AST, rules: Loaded | None = None) -> str:
-    """Give a statement on one line: as written, where it is in a file or in these rules."""
+    """Return a statement on one line: as written, where it is in a file or in these rules."""
     begin, end = statement.location.begin, statement.location.end
     if isinstance(rules, Stated) and begin.filename == rules.place:
         content = rules.text.encode("utf-8")
@@ -187,7 +187,7 @@ def _is_plain(term: AST) -> bool:
 
 
 def value(term: AST, constants: Constants) -> Symbol | None:
-    """Give the value of a term without variables and arithmetic, ``None`` where it is not so simple."""
+    """Return the value of a term without variables and arithmetic, ``None`` where it is not so simple."""
     if term.ast_type == ASTType.SymbolicTerm:
         symbol: Symbol = term.symbol
         if symbol.type is SymbolType.Function and not symbol.arguments and symbol.name in constants:
@@ -207,7 +207,7 @@ def plain_value(symbol: Symbol) -> str | int | None:
 
 
 def factors(term: AST) -> list[AST]:
-    """Give the two factors of a product, or a term itself."""
+    """Return the two factors of a product, or a term itself."""
     product = (ASTType.BinaryOperation, BinaryOperator.Multiplication)
     is_product = (term.ast_type, getattr(term, "operator_type", None)) == product
     return [term.left, term.right] if is_product else [term]
@@ -253,7 +253,7 @@ def global_variables(part: Part) -> Iterator[str]:
 
 
 def literals(parts: Iterable[Part]) -> Iterator[Literal]:
-    """Give all literals in parts of a body, those in conditions and aggregates, too."""
+    """Return all literals in parts of a body, those in conditions and aggregates, too."""
     for part in parts:
         if isinstance(part, Literal):
             yield part
@@ -304,7 +304,7 @@ class _Reader:
         return Strange(text)
 
     def _compare(self, comparison: AST) -> bool | None:
-        """Say whether a comparison holds, if all its terms are known."""
+        """Return whether a comparison holds, if all its terms are known."""
         known = [
             value(term, self._constants) for term in (comparison.term, *(g.term for g in comparison.guards))
         ]
@@ -341,14 +341,14 @@ class _Reader:
         return Aggregate(function, elements, tuple(guards), int(node.sign), sure, str(node))
 
     def _beyond(self, function: AggregateFunction, guard: Guard) -> bool | None:
-        """Say whether a sum or a count keeps to a guard that is beyond all numbers."""
+        """Return whether a sum or a count keeps to a guard that is beyond all numbers."""
         bound = value(guard.term, self._constants)
         if function not in _NUMBERS or bound not in (Infimum, Supremum):
             return None
         return compared(Number(0), guard.comparison, bound)
 
     def head_atoms(self, head: AST) -> Iterator[tuple[Literal, tuple[Part, ...]]]:
-        """Give the atoms of a head that is not plain, with their conditions."""
+        """Return the atoms of a head that is not plain, with their conditions."""
         if head.ast_type == ASTType.Literal:
             atom = self.literal(head)
             if isinstance(atom, Literal):

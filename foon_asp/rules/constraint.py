@@ -102,7 +102,7 @@ def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
 
 
 def find_constraint(constraint: Constraint) -> Constraint:
-    """Give a constraint with the path of its file, that of a ready-made one for its name.
+    """Return a constraint with the path of its file, that of a ready-made one for its name.
 
     Raises :class:`UserError` where there is none.
     """
@@ -131,7 +131,7 @@ def _library() -> Path:
 
 
 def _bundled(path: Path) -> Path | None:
-    """Give the ready-made constraint of a name, with or without its suffix."""
+    """Return the ready-made constraint of a name, with or without its suffix."""
     if path.name != str(path):
         return None
     file = _library() / (path.name.removesuffix(_SUFFIX) + _SUFFIX)

@@ -51,7 +51,7 @@ class Depends(Flag):
     BOTH = 3
 
     def negated(self) -> "Depends":
-        """Give what becomes of its negation."""
+        """Return what becomes of its negation."""
         swapped = {Depends.GROWS: Depends.SHRINKS, Depends.SHRINKS: Depends.GROWS}
         return swapped.get(self, self)
 
@@ -92,18 +92,18 @@ class Dependence:
                     self._depends[clause.head.signature] = after
 
     def of(self, signature: Signature) -> Depends:
-        """Say what becomes of the atoms of a predicate."""
+        """Return what becomes of the atoms of a predicate."""
         return self._depends.get(signature, Depends.NOT)
 
     def of_parts(self, parts: Iterable[Part]) -> Depends:
-        """Say what becomes of parts of a body, all of which have to hold."""
+        """Return what becomes of parts of a body, all of which have to hold."""
         together = Depends.NOT
         for part in parts:
             together |= self.of_part(part)
         return together
 
     def of_part(self, part: Part) -> Depends:
-        """Say what becomes of one part of a body."""
+        """Return what becomes of one part of a body."""
         if isinstance(part, Literal):
             depends = self.of(part.signature)
             return depends.negated() if part.negations == 1 else depends
@@ -114,7 +114,7 @@ class Dependence:
         return Depends.BOTH if isinstance(part, Strange) else Depends.NOT
 
     def doubt(self, parts: Iterable[Part]) -> Doubt | None:
-        """Say why nothing is known of parts of a body, ``None`` where enough is."""
+        """Return why nothing is known of parts of a body, ``None`` where enough is."""
         parts = tuple(parts)
         for literal in literals(parts):
             found = self.doubts.get(literal.signature) or self._doubt_of(literal.signature)
@@ -124,7 +124,7 @@ class Dependence:
         return Doubt(f"{strange.text} is nothing that is looked into") if strange else None
 
     def _doubt_of(self, signature: Signature) -> Doubt | None:
-        """Say why nothing is known of a predicate that has no rules here."""
+        """Return why nothing is known of a predicate that has no rules here."""
         name, arity = signature
         if name.startswith("-"):
             return Doubt(f"{name}/{arity} is negated with a minus")
@@ -157,7 +157,7 @@ class Dependence:
                         changed = True
 
     def _find_loops(self, program: Sequence[Clause]) -> None:
-        """Note the predicates that are derived from themselves through ``not`` or an aggregate."""
+        """Record the predicates that are derived from themselves through ``not`` or an aggregate."""
         reads: defaultdict[Signature, set[Signature]] = defaultdict(set)
         unclear: list[tuple[Signature, Signature, Source]] = []
         for clause in program:
@@ -236,7 +236,7 @@ class Dependence:
         return found.negated() if aggregate.negations == 1 else found
 
     def _of_guard(self, aggregate: Aggregate, guard: Guard, conditions: Depends) -> Depends:
-        """Say what becomes of a comparison of an aggregate whose elements come and go in a known way."""
+        """Return what becomes of a comparison of an aggregate whose elements come and go in a known way."""
         operator, function = guard.comparison, aggregate.function
         if operator in {ComparisonOperator.Equal, ComparisonOperator.NotEqual}:
             if operator is ComparisonOperator.Equal and self._is_zero(aggregate, guard):
@@ -274,7 +274,7 @@ def named(signature: Signature) -> str:
 
 
 def _reads(parts: Iterable[Part], plainly: bool) -> Iterator[tuple[Signature, bool]]:
-    """Give the predicates that a body reads, and whether as they are: not negated, and in no aggregate."""
+    """Return the predicates that a body reads, and whether as they are: not negated, and in no aggregate."""
     for part in parts:
         if isinstance(part, Literal):
             yield part.signature, plainly and part.positive
@@ -287,7 +287,7 @@ def _reads(parts: Iterable[Part], plainly: bool) -> Iterator[tuple[Signature, bo
 
 
 def _closure(start: Signature, reads: Mapping[Signature, set[Signature]]) -> set[Signature]:
-    """Give a predicate and all that it is derived from."""
+    """Return a predicate and all that it is derived from."""
     found, stack = {start}, [start]
     while stack:
         for read in reads.get(stack.pop(), ()):

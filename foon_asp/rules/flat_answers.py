@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 from clingo.ast import ComparisonOperator
@@ -27,95 +28,96 @@ from foon_asp.rules.flat_body import (
     Variable,
     Way,
     bound_by,
-    variables_of,
 )
 
-_Values = dict[
-    Variable, Any
-]  # ids, texts, numbers, symbols; of tables and of ``located``, tuples are matched
-_Facts = Callable[[Any], Collection[Any]]  # what facts of a predicate say of their first argument
-
-
-class _Step(NamedTuple):
-    """An item, with the steps of the ways within it and the terms that these count.
-
-    Where this item and all after it depend on one variable alone that has its value before, ``alone`` is that
-    and ``known`` remembers for which of its values they hold.
-    """
-
-    item: Item
-    inner: "tuple[tuple[_Steps, tuple[Term, ...]], ...]"
-    alone: Variable | None
-    known: dict[Any, bool]
-
-
-_Steps = tuple[_Step, ...]
+_Values = list[Any]  # of variables, by number: ids, texts, numbers, symbols
+_Step = Callable[[_Values], bool]
+_Answer = tuple[Any, ...]
 
 
 class FlatAnswers:
     """Answers flat bodies for a problem."""
 
     def __init__(
-        self, problem: Problem, tables: Mapping[Signature, Table], prices: Mapping[int, int]
+        self,
+        problem: Problem,
+        tables: Mapping[Signature, Table],
+        size: int,
+        prices: Mapping[int, int],
     ) -> None:
-        """Look at a problem, with the tables that bodies look at, and prices of units in hundredths."""
+        """Look at a problem, with the tables that bodies look at and the number of their variables.
+
+        ``prices`` are those of units, in hundredths.
+        """
         self._problem = problem
-        self._facts = _facts(problem, prices)
-        self._tables: dict[Signature, frozenset[tuple[Any, ...]]] = {}
+        self._said = _said(problem, prices)
+        self._values: _Values = [None] * size
+        self._tables: dict[Signature, frozenset[_Answer]] = {}
         for signature, table in tables.items():
-            rows = (self._rows(_steps(way.items, ()), head, {}) for way, head in table.rows)
-            self._tables[signature] = frozenset().union(*rows)
+            self._tables[signature] = frozenset(self._table(table))
 
     def any_holds(self, ways: Iterable[Way]) -> bool:
         """Whether some way holds that takes no unit."""
-        return any(self._holds(_steps(way.items, ()), {}) for way in ways)
+        return any(self._step(way.items, (), _yes)(self._values) for way in ways)
 
     def removed(self, ways: Iterable[Way]) -> Callable[[int], bool]:
         """Return a test of units: whether some way holds that takes the unit."""
-        tests = [(way.unit, _steps(way.items, (way.unit,))) for way in ways if way.unit is not None]
-        return lambda unit: any(self._holds(steps, {variable: unit}) for variable, steps in tests)
+        tests = [(way.unit, self._step(way.items, (way.unit,), _yes)) for way in ways if way.unit is not None]
+        values = self._values
+
+        def is_removed(unit: int) -> bool:
+            for variable, test in tests:
+                values[variable] = unit
+                if test(values):
+                    return True
+            return False
+
+        return is_removed
 
     def weight(self, row: Row) -> Callable[[int], int]:
         """Return a function for how much one execution of a unit adds to the sum of a row."""
-        terms = [
-            (way.unit, _steps(way.items, (way.unit,)), (term,))
+        values, found = self._values, set[_Answer]()
+        steps = [
+            (way.unit, self._step(way.items, (way.unit,), self._noting([term], found)))
             for way, term in row.terms
             if way.unit is not None
         ]
 
         def weight(unit: int) -> int:
-            numbers = {
-                number for each, steps, term in terms for (number,) in self._rows(steps, term, {each: unit})
-            }
-            return sum(number for number in numbers if isinstance(number, int))
+            found.clear()
+            for variable, step in steps:
+                values[variable] = unit
+                step(values)
+            return sum(number for (number,) in found if isinstance(number, int))
 
         return weight
 
     def asked(self, asking: Asking) -> Iterator[frozenset[int] | None]:
         """Return the sets of units that a rule asks for one of; ``None`` for those that it has without."""
+        values = self._values
+        found: list[_Values] = []
         bound = bound_by(asking.when.items)
-        for values in self._solutions(_steps(asking.when.items, ()), 0, {}):
-            without = (way for way in asking.helping if way.unit is None)
-            if any(self._holds(_steps(way.items, bound), values) for way in without):
+
+        def note(values: _Values) -> bool:
+            found.append(list(values))
+            return False
+
+        self._step(asking.when.items, (), note)(values)
+        for each in found:
+            values[:] = each
+            if any(self._step(way.items, bound, _yes)(values) for way in asking.helping if way.unit is None):
                 yield None
             else:
-                helping = (way for way in asking.helping if way.unit is not None)
-                yield frozenset().union(*(self._units(way, values) for way in helping))
+                helping = (self._units(way, bound) for way in asking.helping if way.unit is not None)
+                yield frozenset().union(*helping)
 
-    def _units(self, way: Way, values: _Values) -> set[int]:
-        """Return the units for which a way holds."""
+    def _units(self, way: Way, bound: Collection[Variable]) -> set[int]:
+        """Return the units of which a way holds."""
         assert way.unit is not None
-        return self._satisfying(way.unit, self._candidates(way, values), way.items, values)
+        return self._true_of(way.unit, self._candidates(way, bound), way.items, bound)
 
-    def _satisfying(
-        self, variable: Variable, among: Iterable[int], items: Sequence[Item], values: _Values
-    ) -> set[int]:
-        """Return the values of a variable, among some, for which items hold."""
-        steps = _steps(items, (*values, variable))
-        return {each for each in among if self._holds(steps, {**values, variable: each})}
-
-    def _candidates(self, way: Way, values: _Values) -> Iterable[int]:
-        """Return some units, among them all for which a way holds, faster than by a look at each."""
+    def _candidates(self, way: Way, bound: Collection[Variable]) -> Iterable[int]:
+        """Return some units, among them all of which a way holds, faster than by a look at each."""
         network = self._problem.network
         sides: dict[str, Sequence[tuple[int, ...]]] = {
             "input": network.inputs,
@@ -123,23 +125,23 @@ class FlatAnswers:
             "output": network.outputs,
             "gives": self._problem.gives,
         }
-        known = values.keys() | {way.unit}
+        known = set(bound) if way.unit is None else {*bound, way.unit}
         for place, item in enumerate(way.items):
             if not isinstance(item, Fact) or item.terms[0] != way.unit:
                 known |= bound_by([item])
                 continue
-            (name, _), term = item.signature, item.terms[-1]
+            name, term = item.signature[0], item.terms[-1]
             if item.signature == NUMBER and isinstance(term, Constant):
                 unit = network.unit_of_number(term.value) if isinstance(term.value, int) else None
                 return [] if unit is None else [unit]
-            if name == "motion" and (isinstance(term, Constant) or term in values):
-                motion = _value(term, values)
+            if name == "motion" and (isinstance(term, Constant) or term in bound):
+                motion = self._read(term)(self._values)
                 return [unit for unit, each in enumerate(network.motions) if each == motion]
             after = way.items[place + 1 :]
             if not isinstance(term, Variable) or term in known:
                 continue
-            if name in sides and after and known.isdisjoint(variables_of(after)):
-                objects = self._satisfying(term, self._likely(term, after), after, values)
+            if name in sides and _is_apart(after, known):
+                objects = self._true_of(term, self._likely(term, after), after)
                 if name in {"output", "gives"}:
                     return sorted({unit for o in objects for unit in network.producers[o]})
                 return [unit for unit, side in enumerate(sides[name]) if not objects.isdisjoint(side)]
@@ -147,7 +149,7 @@ class FlatAnswers:
         return range(len(network))
 
     def _likely(self, variable: Variable, items: Sequence[Item]) -> Iterable[int]:
-        """Return some object nodes, among them all for which items hold: by a label or ingredient."""
+        """Give some object nodes, among them all of which items hold: by a label or ingredient they name."""
         network = self._problem.network
         for item in items:
             if isinstance(item, Fact) and item.terms[0] == variable:
@@ -158,129 +160,195 @@ class FlatAnswers:
                         return network.by_ingredient.get(name, ())
         return range(len(network.objects))
 
-    def _holds(self, steps: _Steps, values: _Values, place: int = 0) -> bool:
-        """Whether there are values, beside some, with which steps from a place on hold."""
-        if place == len(steps):
-            return True
-        step = steps[place]
-        if step.alone is not None:
-            known = step.known.get(values[step.alone])
-            if known is not None:
-                return known
-        found = any(self._holds(steps, each, place + 1) for each in self._matches(step, values))
-        if step.alone is not None:
-            step.known[values[step.alone]] = found
+    def _true_of(
+        self, variable: Variable, among: Iterable[int], items: Sequence[Item], bound: Iterable[Variable] = ()
+    ) -> set[int]:
+        """Return those of which items hold."""
+        values, test = self._values, self._step(items, (*bound, variable), _yes)
+        found = set()
+        for each in among:
+            values[variable] = each
+            if test(values):
+                found.add(each)
         return found
 
-    def _solutions(self, steps: _Steps, place: int, values: _Values) -> Iterator[_Values]:
-        """Return all values, beside some, with which steps from a place on hold."""
-        if place == len(steps):
-            yield values
-        else:
-            for each in self._matches(steps[place], values):
-                yield from self._solutions(steps, place + 1, each)
+    def _table(self, table: Table) -> set[_Answer]:
+        found: set[_Answer] = set()
+        for way, head in table.rows:
+            self._step(way.items, (), self._noting(head, found))(self._values)
+        return found
 
-    def _rows(self, steps: _Steps, terms: Sequence[Term], values: _Values) -> set[tuple[Any, ...]]:
-        """Return what terms are wherever steps hold."""
-        return {tuple(_value(term, each) for term in terms) for each in self._solutions(steps, 0, values)}
+    def _step(self, items: Sequence[Item], bound: Iterable[Variable], then: _Step) -> _Step:
+        """Make a function that looks for values with which items hold, and ``then`` does."""
+        known = set(bound)
+        before = []
+        for item in items:
+            before.append(frozenset(known))
+            known.update(bound_by([item]))
+        pure = then is _yes
+        for place, so_far in reversed(list(enumerate(before))):
+            item = items[place]
+            leads_to = item.terms[-1] if isinstance(item, Fact) and len(item.terms) > 1 else None
+            if (
+                pure
+                and isinstance(leads_to, Variable)
+                and bound_by([item]) - so_far == {leads_to}
+                and _is_apart(items[place + 1 :], so_far)
+            ):
+                then = _remembered(leads_to, then)
+            then = self._one(item, so_far, then)
+        return then
 
-    def _matches(self, step: _Step, values: _Values) -> Collection[_Values]:
-        """Return the values with which one item holds: some that are known, and those that it binds."""
-        item = step.item
-        if isinstance(item, Fact):
-            name, arity = item.signature
-            if name == "goal":
-                return _agreeing(item.terms[0], self._problem.goals, values)
-            said = self._facts[name](_value(item.terms[0], values))
-            if arity == 1:
-                return (values,) if said else ()
-            return _agreeing(item.terms[1] if arity == 2 else item.terms[1:], said, values)
-        if isinstance(item, Listed):
-            return _agreeing(item.terms, self._tables[item.signature], values)
-        if isinstance(item, Compare):
-            return _comparing(item, values)
-        return (values,) if self._holds_within(step, values) else ()
-
-    def _holds_within(self, step: _Step, values: _Values) -> bool:
-        """Whether what an item says of ways within it holds: that none does, or how many rows they have."""
-        item = step.item
-        if not isinstance(item, Counted):
-            return not any(self._holds(steps, values) for steps, _ in step.inner)
-        rows = set[tuple[Any, ...]]().union(*(self._rows(*inner, values) for inner in step.inner))
-        number = Number(len(rows))
-        holds = all(compared(number, how, _symbol(_value(term, values))) for how, term in item.guards)
-        return holds is not item.negated
-
-
-def _steps(items: Sequence[Item], bound: Iterable[Variable]) -> _Steps:
-    """Return items as steps, where some variables have their values before."""
-    known, found = set(bound), list[_Step]()
-    for place, item in enumerate(items):
-        inner: tuple[tuple[_Steps, tuple[Term, ...]], ...] = ()
+    def _one(self, item: Item, bound: frozenset[Variable], then: _Step) -> _Step:
         if isinstance(item, Never):
-            inner = tuple((_steps(way.items, item.given), ()) for way in item.ways)
-        elif isinstance(item, Counted):
-            inner = tuple((_steps(way.items, item.given), terms) for way, terms in item.rows)
-        before = known & variables_of(items[place:])
-        found.append(_Step(item, inner, before.pop() if len(before) == 1 else None, {}))
-        known |= bound_by([item])
-    return tuple(found)
+            inner = [self._step(way.items, item.given, _yes) for way in item.ways]
+            return lambda values: not any(each(values) for each in inner) and then(values)
+        if isinstance(item, Counted):
+            return self._counted(item, then)
+        if isinstance(item, Compare):
+            return self._compare(item, bound, then)
+        if isinstance(item, Listed):
+            return self._match(item.terms, bound, self._tables[item.signature], then)
+        return self._fact(item, bound, then)
+
+    def _counted(self, item: Counted, then: _Step) -> _Step:
+        seen: set[_Answer] = set()
+        steps = [self._step(way.items, item.given, self._noting(terms, seen)) for way, terms in item.rows]
+        guards = [(operator, self._read(term)) for operator, term in item.guards]
+        fixed = all(isinstance(term, Constant) for _, term in item.guards)
+        known: dict[int, bool] = {}  # of counts, where nothing else decides
+
+        def step(values: _Values) -> bool:
+            seen.clear()
+            for each in steps:
+                each(values)
+            holds = known.get(len(seen))
+            if holds is None:
+                number = Number(len(seen))
+                holds = all(compared(number, operator, _symbol(read(values))) for operator, read in guards)
+                if fixed:
+                    known[len(seen)] = holds
+            return holds is not item.negated and then(values)
+
+        return step
+
+    def _noting(self, terms: Sequence[Term], found: set[_Answer]) -> _Step:
+        """Make a function that notes the values of terms, and goes on."""
+        reads = list(map(self._read, terms))
+
+        def note(values: _Values) -> bool:
+            found.add(tuple(read(values) for read in reads))
+            return False
+
+        return note
+
+    def _compare(self, item: Compare, bound: frozenset[Variable], then: _Step) -> _Step:
+        for one, other in ((item.left, item.right), (item.right, item.left)):
+            if isinstance(one, Variable) and one not in bound:
+                return self._equal(one, bound, self._read(other), then)
+        left, right = self._read(item.left), self._read(item.right)
+        if item.comparison is ComparisonOperator.Equal:
+            return lambda values: left(values) == right(values) and then(values)
+        if item.comparison is ComparisonOperator.NotEqual:
+            return lambda values: left(values) != right(values) and then(values)
+        operator = item.comparison
+        return lambda values: (
+            compared(_symbol(left(values)), operator, _symbol(right(values))) and then(values)
+        )
+
+    def _fact(self, item: Fact, bound: frozenset[Variable], then: _Step) -> _Step:
+        """Look for a fact: what is said of its first term."""
+        name, of = item.signature[0], self._read(item.terms[0])
+        if name == "goal":
+            return self._match(item.terms, bound, [(goal,) for goal in self._problem.goals], then)
+        if name in self._said.tests:
+            holds = self._said.tests[name]
+            return lambda values: holds(of(values)) and then(values)
+        if name in self._said.once:
+            said = self._said.once[name]
+            return self._equal(item.terms[1], bound, lambda values: said(of(values)), then)
+        said_often = self._said.often[name]
+        term = item.terms[1]
+        if len(item.terms) > 2:
+            rows = item.terms[1:]
+            return lambda values: self._match(rows, bound, said_often(of(values)), then)(values)
+        if isinstance(term, Variable) and term not in bound:
+            return _each(term, lambda values: said_often(of(values)), then)
+        wanted = self._read(term)
+        return lambda values: wanted(values) in said_often(of(values)) and then(values)
+
+    def _equal(
+        self, term: Term, bound: Collection[Variable], read: Callable[[_Values], Any], then: _Step
+    ) -> _Step:
+        """Hold a term against what is read, or give it that value."""
+        if isinstance(term, Constant):
+            constant = term.value
+            return lambda values: read(values) == constant and then(values)
+        if term in bound:
+            return lambda values: read(values) == values[term] and then(values)
+
+        def step(values: _Values) -> bool:
+            values[term] = read(values)
+            return then(values)
+
+        return step
+
+    def _match(
+        self, terms: Sequence[Term], bound: Collection[Variable], rows: Collection[_Answer], then: _Step
+    ) -> _Step:
+        """Look for a row that terms agree with."""
+        reads = list(map(self._read, terms))
+        if all(isinstance(term, Constant) or term in bound for term in terms):
+            if len(terms) == 1:
+                read, single = reads[0], frozenset(row[0] for row in rows)
+                return lambda values: read(values) in single and then(values)
+            return lambda values: tuple(read(values) for read in reads) in rows and then(values)
+
+        def step(values: _Values) -> bool:
+            for row in rows:
+                met: set[Term] = set()
+                for place, (term, value) in enumerate(zip(terms, row, strict=True)):
+                    if isinstance(term, Variable) and term not in bound and term not in met:
+                        met.add(term)
+                        values[term] = value
+                    elif reads[place](values) != value:
+                        break
+                else:
+                    if then(values):
+                        return True
+            return False
+
+        return step
+
+    def _read(self, term: Term) -> Callable[[_Values], Any]:
+        """Make a function that gives the value of a term."""
+        if isinstance(term, Constant):
+            constant = term.value
+            return lambda _: constant
+        return itemgetter(term)
 
 
-def _agreeing(terms: Term | Sequence[Term], rows: Collection[Any], values: _Values) -> Collection[_Values]:
-    """Return the values with which terms are a row; those of one term are no tuples."""
-    if isinstance(terms, Variable) and terms not in values:
-        return [{**values, terms: row} for row in rows]
-    if isinstance(terms, Variable | Constant):
-        return (values,) if _value(terms, values) in rows else ()
-    if all(isinstance(term, Constant) or term in values for term in terms):
-        return (values,) if tuple(_value(term, values) for term in terms) in rows else ()
-    found = []
-    for row in rows:
-        bound = values
-        for term, value in zip(terms, row, strict=True):
-            if isinstance(term, Variable) and term not in bound:
-                bound = {**bound, term: value}
-            elif _value(term, bound) != value:
-                break
-        else:
-            found.append(bound)
-    return found
+class _Said(NamedTuple):
+    """What facts say of a unit, an object node or a label: once, often, or that it is so."""
+
+    once: dict[str, Callable[[int], Any]]
+    often: dict[str, Callable[[int], Collection[Any]]]
+    tests: dict[str, Callable[[Any], bool]]
 
 
-def _comparing(item: Compare, values: _Values) -> Collection[_Values]:
-    for one, other in ((item.left, item.right), (item.right, item.left)):
-        if isinstance(one, Variable) and one not in values:
-            return ({**values, one: _value(other, values)},)
-    left, right = _value(item.left, values), _value(item.right, values)
-    if item.comparison is ComparisonOperator.Equal:
-        holds = left == right
-    elif item.comparison is ComparisonOperator.NotEqual:
-        holds = left != right
-    else:
-        holds = compared(_symbol(left), item.comparison, _symbol(right))
-    return (values,) if holds else ()
-
-
-def _value(term: Term, values: _Values) -> Any:
-    return term.value if isinstance(term, Constant) else values[term]
-
-
-def _facts(problem: Problem, prices: Mapping[int, int]) -> dict[str, _Facts]:
-    """Return what facts say of a unit, an object node or a label, by the name of their predicate."""
-    network, objects, inputs = problem.network, problem.network.objects, problem.network.inputs
+def _said(problem: Problem, prices: Mapping[int, int]) -> _Said:
+    network, kitchen, utensils = problem.network, problem.kitchen_seen, problem.utensils
+    objects, inputs = network.objects, network.inputs
     seen = problem.as_seen or problem
     written = lru_cache(maxsize=1000)(encodable)  # many units are of one video
-    return {
-        "unit": lambda unit: (unit,),
-        "object": lambda o: (o,),
-        "kitchen": lambda o: (o,) if o in problem.kitchen_seen else (),
-        "utensil": lambda label: (label,) if label in problem.utensils else (),
-        NUMBER[0]: lambda unit: (network.unit_number(unit),),
-        "motion": lambda unit: (network.motions[unit],),
-        "label": lambda o: (objects[o].label,),
-        "inputs": lambda unit: (len(inputs[unit]),),
-        "ingredients": lambda unit: (sum(len(objects[o].ingredients) for o in inputs[unit]),),
+    once: dict[str, Callable[[int], Any]] = {
+        "motion": network.motions.__getitem__,
+        NUMBER[0]: network.unit_number,
+        "label": lambda o: objects[o].label,
+        "inputs": lambda unit: len(inputs[unit]),
+        "ingredients": lambda unit: sum(len(objects[o].ingredients) for o in inputs[unit]),
+    }
+    often: dict[str, Callable[[int], Collection[Any]]] = {
         "input": inputs.__getitem__,
         "output": network.outputs.__getitem__,
         "needs": problem.needs.__getitem__,
@@ -290,9 +358,53 @@ def _facts(problem: Problem, prices: Mapping[int, int]) -> dict[str, _Facts]:
         "located": lambda o: [tuple(each) for each in objects[o].relations],
         "source": lambda unit: source_names(network.sources[unit]),
         "video": lambda unit: [written(each) for s in network.sources[unit] for each in s.videos],
-        "rate": lambda unit: () if problem.rates is None else (millionths(seen.rate(unit)),),
+        "rate": lambda _: (),
         "price": lambda unit: (prices[unit],) if unit in prices else (),
     }
+    if problem.rates is not None:
+        once["rate"] = lambda unit: millionths(seen.rate(unit))
+    tests: dict[str, Callable[[Any], bool]] = {
+        "unit": lambda _: True,
+        "object": lambda _: True,
+        "kitchen": kitchen.__contains__,
+        "utensil": utensils.__contains__,
+    }
+    return _Said(once, often, tests)
+
+
+def _each(variable: Variable, read: Callable[[_Values], Iterable[Any]], then: _Step) -> _Step:
+    def step(values: _Values) -> bool:
+        for value in read(values):
+            values[variable] = value
+            if then(values):
+                return True
+        return False
+
+    return step
+
+
+def _is_apart(items: Sequence[Item], known: Collection[Variable]) -> bool:
+    """Whether items, one at least, are about no variable that is known before them."""
+    used = bound_by(items).union(*(item.given for item in items if isinstance(item, Never | Counted)))
+    return bool(items) and used.isdisjoint(known)
+
+
+def _remembered(variable: Variable, then: _Step) -> _Step:
+    """Do what comes next once for each value of a variable on which alone it depends."""
+    known: dict[Any, bool] = {}
+
+    def step(values: _Values) -> bool:
+        value = values[variable]
+        holds = known.get(value)
+        if holds is None:
+            holds = known[value] = then(values)
+        return holds
+
+    return step
+
+
+def _yes(_: _Values) -> bool:
+    return True
 
 
 def _symbol(value: Any) -> Symbol:

@@ -8,7 +8,7 @@ recursion, variables that nothing binds, two units that together break a rule) i
 
 from collections.abc import Iterable, Sequence
 from copy import copy
-from itertools import count, product
+from itertools import product
 from typing import Final, NamedTuple
 
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
@@ -165,7 +165,7 @@ class FlatBodies:
     """Makes bodies of a program flat; raises :class:`NotFlatError` for those that are left to the search.
 
     The items of a way are in an order in which each variable has its value before it is needed. ``tables``
-    are the auxiliary predicates that they look at.
+    are the auxiliary predicates that they look at, ``size`` is above the number of each variable.
     """
 
     def __init__(
@@ -178,7 +178,7 @@ class FlatBodies:
                 self._rules.setdefault(clause.head.signature, []).append(clause)
         self.tables: dict[Signature, Table] = {}
         self._open: list[Signature] = []  # that are being looked into
-        self._numbers = count()
+        self.size = 0
 
     def ways(self, clause: Clause) -> tuple[Way, ...]:
         """Return the ways in which the body of a rule holds."""
@@ -224,14 +224,14 @@ class FlatBodies:
         for part in body:
             if not isinstance(part, Test) or part.ast.sign or part.ast.atom.ast_type != ASTType.Comparison:
                 continue
-            number, guards = part.ast.atom.term, part.ast.atom.guards
+            count, guards = part.ast.atom.term, part.ast.atom.guards
             condition = tuple(each for each in body if each is not part)
             times = [each for each in condition if isinstance(each, Literal) and each.signature == TIMES]
-            if len(guards) != 1 or len(times) != 1 or times[0].arguments[1] != number:
+            if len(guards) != 1 or len(times) != 1 or times[0].arguments[1] != count:
                 continue
             at_least, bound = self._allowed(guards[0].comparison, guards[0].term)
             if not at_least:
-                element = Element((number, times[0].arguments[0]), condition)
+                element = Element((count, times[0].arguments[0]), condition)
                 return Row(tuple(self._terms(scope, None, element)), bound, each=True)
         raise NotFlatError
 
@@ -258,7 +258,8 @@ class FlatBodies:
 
     def variable(self) -> Variable:
         """Return a variable that is nowhere yet."""
-        return Variable(next(self._numbers))
+        self.size += 1
+        return Variable(self.size - 1)
 
     def of_atom(self, signature: Signature, terms: tuple[Term, ...]) -> list[Way]:
         """Return the ways in which an atom holds, their items in any order."""
@@ -434,7 +435,7 @@ class _Scope:
         )
 
     def called(self, terms: Sequence[Term], head: Sequence[AST]) -> list[Item]:
-        """Give the variables of a head the terms of an atom; gives what has to be equal besides."""
+        """Return the variables of a head the terms of an atom; gives what has to be equal besides."""
         equal: list[Item] = []
         for term, argument in zip(terms, head, strict=True):
             if argument.ast_type == ASTType.Variable and argument.name not in self._named:
@@ -444,7 +445,7 @@ class _Scope:
         return equal
 
     def term(self, node: AST) -> Term:
-        """Give a variable or a value."""
+        """Return a variable or a value."""
         if node.ast_type == ASTType.Variable:
             if node.name == "_":
                 return self._bodies.variable()
@@ -459,7 +460,7 @@ class _Scope:
         return Constant(symbol.string if symbol.type is SymbolType.String else symbol)
 
     def ways(self, parts: Iterable[Part]) -> list[Way]:
-        """Give the ways in which parts of a body hold together."""
+        """Return the ways in which parts of a body hold together."""
         each = [self._of_part(part) for part in parts]
         found: list[Way] = []
         for chosen in product(*each):
@@ -494,9 +495,9 @@ class _Scope:
         ]
         if len(executions) != 1:
             raise NotFlatError
-        unit, *number = map(within.term, executions[0].arguments)
+        unit, *count = map(within.term, executions[0].arguments)
         *product, last = (within.term(each) for term in element.terms for each in factors(term))
-        for each in number:
+        for each in count:
             if each not in product or product.count(each) > 1:
                 raise NotFlatError
             product.remove(each)
@@ -504,8 +505,8 @@ class _Scope:
             raise NotFlatError
         ways = within.ways(element.condition)
         for way in ways:
-            uses = [item for item in way.items for each in number if each in variables_of([item])]
-            if way.unit != unit or len(uses) != len(number):
+            uses = [item for item in way.items for each in count if each in set(_mentioned(item))]
+            if way.unit != unit or len(uses) != len(count):
                 raise NotFlatError
         return [(way, product[0] if product else Constant(1)) for way in ways]
 
@@ -556,7 +557,7 @@ class _Scope:
         return self._bodies.of_atom(literal.signature, tuple(map(self.term, literal.arguments)))
 
     def _test(self, test: Test, against: bool) -> list[Way]:
-        """Give the ways in which a comparison holds, or does not."""
+        """Return the ways in which a comparison holds, or does not."""
         if test.holds is not None:
             return [Way(())] if test.holds != against else []
         comparison = test.ast.atom
@@ -570,7 +571,7 @@ class _Scope:
         return [Way(tuple(Compare(*each) for each in pairs))]
 
     def _within(self) -> "_Scope":
-        """Give the variables within a condition: those of the whole rule, and others of its own."""
+        """Return the variables within a condition: those of the whole rule, and others of its own."""
         for name in self._whole - self._named.keys():
             self._named[name] = self._bodies.variable()
         scope = copy(self)
@@ -578,34 +579,31 @@ class _Scope:
         return scope
 
     def _having(self, literal: Literal) -> frozenset[Variable]:
-        """Give the variables of a literal that gives none of them a value."""
+        """Return the variables of a literal that gives none of them a value."""
         return frozenset(_variables(self._named[name] for name in global_variables(literal)))
 
     def _given(self, parts: Iterable[Part]) -> frozenset[Variable]:
-        """Give the variables of the whole rule that parts of it have."""
+        """Return the variables of the whole rule that parts of it have."""
         names = {name for part in parts for name in global_variables(part)} & self._named.keys() & self._whole
         return frozenset(_variables(self._named[name] for name in names))
 
 
 def bound_by(items: Iterable[Item]) -> set[Variable]:
-    """Give the variables that have their values once items hold."""
+    """Return the variables that have their values once items hold."""
     return {variable for item in items for variable in _variables(_terms(item))}
 
 
 def _equal(test: Test) -> set[str]:
-    """Give the variables of a comparison that gives a variable the value of another, or of a constant."""
+    """Return the variables of a comparison that gives a variable the value of another, or of a constant."""
     if test.ast.sign or test.ast.atom.ast_type != ASTType.Comparison or len(test.ast.atom.guards) != 1:
         return set()
     is_equal = test.ast.atom.guards[0].comparison == ComparisonOperator.Equal
     return set(global_variables(test)) if is_equal else set()
 
 
-def variables_of(items: Iterable[Item]) -> set[Variable]:
-    """Return the variables of items, but for those that are only within one."""
-    found = set[Variable]()
-    for item in items:
-        found.update(item.given if isinstance(item, Never | Counted) else _variables(_terms(item)))
-    return found
+def _mentioned(item: Item) -> Iterable[Variable]:
+    """Return the variables of an item whose values it shares with others."""
+    return item.given if isinstance(item, Never | Counted) else _variables(_terms(item))
 
 
 def _counts_none(aggregate: Aggregate, constants: Constants) -> bool:

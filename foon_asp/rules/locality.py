@@ -45,7 +45,7 @@ class Locality:
         self._find_abouts(program)
 
     def further(self, clause: Clause) -> Further | None:
-        """Say what a rule that stands by itself sees beyond the tree, ``None`` where it is local."""
+        """Return what a rule that stands by itself sees beyond the tree, ``None`` where it is local."""
         if any(atom.signature[0].startswith("-") for atom in clause.heads):
             return Further("an atom with a minus rules out the one without, wherever that is", clause.source)
         known = self._known(clause.body)
@@ -157,7 +157,7 @@ class Locality:
         return list(facts.leads_to.items())
 
     def _lacking(self, parts: Iterable[Part], known: _Known, source: Source) -> "_Lacking | None":
-        """Give the first thing that has to be of the tree, and is not known to be."""
+        """Return the first thing that has to be of the tree, and is not known to be."""
         for part in parts:
             found = self._lacking_in(part, known, source)
             if found:

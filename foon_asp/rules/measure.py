@@ -49,7 +49,7 @@ class Measure:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[Cost]:
-        """Give what each unit of a problem costs, worked out once for a network, up to a deadline.
+        """Return what each unit of a problem costs, worked out once for a network, up to a deadline.
 
         Raises :class:`InputError` for rules that give a unit two costs, or one that is no number from 0.
         """
@@ -103,7 +103,7 @@ class _Evaluation:
         self._number = problem.network.unit_number
 
     def costs(self) -> Sequence[Cost]:
-        """Give what each unit costs; of units with the same facts, one is looked at."""
+        """Return what each unit costs; of units with the same facts, one is looked at."""
         units = range(len(self._problem.network))
         alike = self._alike()
         if alike is None:
@@ -117,7 +117,7 @@ class _Evaluation:
         return list(map(by_key.__getitem__, alike))
 
     def _alike(self) -> Sequence[Hashable] | None:
-        """Give for each unit a key that is the same for those whose facts are, but for numbers.
+        """Return for each unit a key that is the same for those whose facts are, but for numbers.
 
         ``None`` where numbers count, or facts that are not known here.
         """
@@ -156,7 +156,7 @@ class _Evaluation:
         return list(zip(*columns, strict=True)) if columns else [()] * len(network)
 
     def found(self, units: Iterable[int]) -> dict[int, Cost]:
-        """Give what units cost, by number, as far as rules say something."""
+        """Return what units cost, by number, as far as rules say something."""
         by_number = {self._number(unit): unit for unit in units}
         values: dict[int, Cost] = {}
         for world, name, number, value in self._derived(by_number.values(), self._rules.statements):
@@ -244,7 +244,7 @@ class _Evaluation:
 def _shape(
     network: Network, unit: int, sides: Sequence[Sequence[Sequence[int]]], kinds: Sequence[int]
 ) -> Hashable:
-    """Give what a unit has on some sides; of object nodes, their kinds and where they are count."""
+    """Return what a unit has on some sides; of object nodes, their kinds and where they are count."""
     nodes = dict.fromkeys((*network.inputs[unit], *network.outputs[unit]))
     places = {o: place for place, o in enumerate(nodes)}
     return (
@@ -254,7 +254,7 @@ def _shape(
 
 
 def _cost(value: "Value") -> Cost | None:
-    """Give an exact number, a whole one as such; ``None`` for what is no number from 0."""
+    """Return an exact number, a whole one as such; ``None`` for what is no number from 0."""
     if isinstance(value, int):
         return value if value >= 0 else None
     if not isinstance(value, str) or not _DECIMAL.fullmatch(value):

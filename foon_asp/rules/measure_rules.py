@@ -252,7 +252,7 @@ class _Reader:
                     yield signature
 
     def _dependent(self) -> frozenset[Signature]:
-        """Give the predicates that depend on facts about units, and costs."""
+        """Return the predicates that depend on facts about units, and costs."""
         found = {COST, *self._read()} - {("utensil", 1)}
         before = 0
         while len(found) > before:

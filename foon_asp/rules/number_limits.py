@@ -44,7 +44,7 @@ Head = Callable[[AST], str]
 
 
 def number_checks(statements: Iterable[AST]) -> str:
-    """Give rules that derive ``_beyond`` for terms that leave clingo's numbers; nothing where none can."""
+    """Return rules that derive ``_beyond`` for terms that leave clingo's numbers; nothing where none can."""
     return "".join(f"{text}\n" for _, text in beyond(statements, _placed))
 
 
@@ -106,7 +106,7 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 
 
 def _harmless(term: AST) -> int:
-    """Give a number up to which values may be, above and below 0, and nothing leaves clingo's numbers."""
+    """Return a number up to which values may be, above and below 0, and nothing leaves clingo's numbers."""
     return next((most for most in (LARGEST >> n for n in range(32)) if _size(term, most) <= LARGEST), -1)
 
 
@@ -138,7 +138,7 @@ def _has_interval(term: AST) -> bool:
 
 
 def _sums(rule: AST) -> Iterator[tuple[AST, list[str]]]:
-    """Give the sums of a rule, each with its elements, which count above 0 whatever they add."""
+    """Return the sums of a rule, each with its elements, which count above 0 whatever they add."""
     for part in rule.body if rule.ast_type == ASTType.Minimize else [rule.head, *rule.body]:
         aggregate = part.atom if part.ast_type == ASTType.Literal else part
         if aggregate.ast_type not in _AGGREGATES:
@@ -148,7 +148,7 @@ def _sums(rule: AST) -> Iterator[tuple[AST, list[str]]]:
 
 
 def _sizes(element: AST) -> Iterator[str]:
-    """Give an element that adds how far a weight is from 0; nothing for what is no number."""
+    """Return an element that adds how far a weight is from 0; nothing for what is no number."""
     inner = element.condition
     condition = list(inner.condition) if isinstance(inner, AST) else list(inner)
     weight = "_Weight"
@@ -159,7 +159,7 @@ def _sizes(element: AST) -> Iterator[str]:
 
 
 def _places(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]]:
-    """Give the parts of a statement, each with the conditions that its variables are bound by."""
+    """Return the parts of a statement, each with the conditions that its variables are bound by."""
     known = _known(statement.body)
     if statement.ast_type == ASTType.Minimize:
         yield from ((term, known) for term in (statement.weight, statement.priority, *statement.terms))
@@ -187,7 +187,7 @@ def _places(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]]:
 def _inner_places(
     element: AST, known: Sequence[AST], counted: bool = False
 ) -> Iterator[tuple[AST, Sequence[AST]]]:
-    """Give the parts of an element of an aggregate, of a choice, or of what holds under a condition."""
+    """Return the parts of an element of an aggregate, of a choice, or of what holds under a condition."""
     terms: list[AST] = list(getattr(element, "terms", ()))
     conditional = element if element.ast_type == ASTType.ConditionalLiteral else element.condition
     if isinstance(conditional, AST) and conditional.ast_type == ASTType.ConditionalLiteral:
@@ -198,7 +198,7 @@ def _inner_places(
 
 
 def _terms(place: AST) -> Iterator[AST]:
-    """Give the terms of a place that calculate, without those that are part of one."""
+    """Return the terms of a place that calculate, without those that are part of one."""
     if place.ast_type == ASTType.SymbolicAtom:
         symbol = place.symbol
         while symbol.ast_type == ASTType.UnaryOperation:  # p with a minus before it
@@ -220,7 +220,7 @@ def _terms(place: AST) -> Iterator[AST]:
 
 
 def _known(body: Iterable[AST]) -> list[AST]:
-    """Give what binds variables, and what calculates nothing and counts nothing."""
+    """Return what binds variables, and what calculates nothing and counts nothing."""
     return [each for each in body if _binds(each) or not any(map(_calculates, nodes(each)))]
 
 
@@ -260,7 +260,7 @@ def _bound(conditions: Sequence[AST]) -> set[str]:
 
 
 def _solved_for(term: AST) -> Iterator[str]:
-    """Give the variable for which clingo solves an equality: of ``X``, ``X+1``, ``2*X`` and the like."""
+    """Return the variable for which clingo solves an equality: of ``X``, ``X+1``, ``2*X`` and the like."""
     if term.ast_type == ASTType.Variable:
         yield term.name
     elif term.ast_type == ASTType.BinaryOperation and term.operator_type in _LINEAR:

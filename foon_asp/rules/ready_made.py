@@ -93,14 +93,14 @@ class ReadyMade:
         return Restriction(removed.__contains__, required)
 
     def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
-        """Give how much each unit counts, a whole number, and what those of a tree come to at most."""
+        """Return how much each unit counts, a whole number, and what those of a tree come to at most."""
         for each in self._said(problem)[0]:
             if each.most is not None and all(len(units) == 1 for units, _ in each.things):
                 amounts = {unit: int(amount) for units, amount in each.things for unit in units}
                 yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(each.most)  # type: ignore[misc]
 
     def conflict(self, problem: Problem, units: Units) -> Sequence[Units] | None:
-        """Give sets of units of each of which a tree has one, and no tree that keeps to the rest does.
+        """Return sets of units of each of which a tree has one, and no tree that keeps to the rest does.
 
         ``None`` where it keeps to it; the tree keeps to what is not of the rest.
         """
@@ -117,7 +117,7 @@ class ReadyMade:
         return None
 
     def barred(self, problem: Problem, without: Units) -> Units:
-        """Give units that no tree has that keeps to them all and has none of some others."""
+        """Return units that no tree has that keeps to them all and has none of some others."""
         meanings, _ = self._said(problem)
         return Units().union(*(each.barred(Units(), without) for each in meanings if each.barred))
 
@@ -159,7 +159,7 @@ def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> Re
 def _values(
     uses: Sequence[tuple[str, Mapping[str, str]]], shared: Mapping[str, str]
 ) -> tuple[Sequence[Rule], Mapping[str, str]] | None:
-    """Give constraints with their values, and all constants as terms; ``None`` where one is not plain."""
+    """Return constraints with their values, and all constants as terms; ``None`` where one is not plain."""
     facts: dict[str, set[str]] = {name: set() for name in LISTED}
     constants: dict[str, str] = {}
     taken: set[str] = set()
@@ -215,7 +215,7 @@ def _too_early(problem: Problem, rule: Rule, units: Units) -> Units:
 
 
 def question_of(problem: Problem) -> Question:
-    """Give what constraints look at of a problem."""
+    """Return what constraints look at of a problem."""
     seen = problem.as_seen or problem
     return Question(
         problem.network,

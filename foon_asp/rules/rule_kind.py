@@ -138,7 +138,7 @@ class Analysis:
         )
 
     def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
-        """Say what a clause does, and why nothing more is known."""
+        """Return what a clause does, and why nothing more is known."""
         dependence = self.dependence
         doubt: Doubt | None
         if not clause.plain:
@@ -166,7 +166,7 @@ class Analysis:
         return any(each.signature == signature for clause in self.live for each in literals(clause.body))
 
     def _why_never(self, body: Iterable[Part]) -> str | None:
-        """Say why a body cannot hold, whatever the facts are; ``None`` where it may."""
+        """Return why a body cannot hold, whatever the facts are; ``None`` where it may."""
         for part in body:
             if isinstance(part, Test | Aggregate) and part.holds is False:
                 return _NEVER
@@ -185,7 +185,7 @@ class Analysis:
         return None
 
     def _why_both(self, clause: Clause) -> Doubt:
-        """Say why units may break a rule and mend it."""
+        """Return why units may break a rule and mend it."""
         for part in clause.body:
             if self.dependence.of_part(part) is Depends.BOTH:
                 return Doubt(f"more units may make `{part.text}` true or false", clause.source)
@@ -245,7 +245,7 @@ def _together(kinds: Iterable[Kind]) -> Kind:
 
 @cache
 def _implied() -> list[Clause]:
-    """Give the rules of our encoding that a user's rules can look at."""
+    """Return the rules of our encoding that a user's rules can look at."""
     statements: list[AST] = []
     parse_string(_IMPLIED, statements.append)
     return list(clauses(statements[-1], -1, {}))

@@ -80,7 +80,7 @@ class Rules:
         self.rules: tuple[Rule, ...] = self._analysis.rules
 
     def varying(self, varied: Collection[Signature]) -> "Rules":
-        """Give the same rules for a question that derives or varies some predicates of facts."""
+        """Return the same rules for a question that derives or varies some predicates of facts."""
         return Rules(self._encodings, self._constants, varied)
 
     @cached_property
@@ -198,7 +198,7 @@ class Rules:
         return found
 
     def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
-        """Give how much each unit counts in a sum that a rule bounds, and what a tree comes to at most."""
+        """Return how much each unit counts in a sum that a rule bounds, and what a tree comes to at most."""
         rows = [row for row in self._analysis.rows.values() if not (row.each or row.at_least)]
         if rows:
             answers = self._answers(problem)
@@ -225,7 +225,7 @@ class Rules:
     def _answers(self, problem: Problem) -> FlatAnswers:
         prices = self._prices(problem) if self._analysis.reads(("price", 2)) else {}
         bodies = self._analysis.bodies
-        return FlatAnswers(problem, bodies.tables, prices)
+        return FlatAnswers(problem, bodies.tables, bodies.size, prices)
 
     def _prices(self, problem: Problem) -> dict[int, int]:
         """Give the prices of units as rules see them; raises where those that can be made have none such."""
@@ -246,7 +246,7 @@ def _always(asking: Asking) -> bool:
 
 
 def _traits(way: Way) -> Iterator[Trait]:
-    """Give what a unit has of which a way holds, as far as words of the rule say it."""
+    """Return what a unit has of which a way holds, as far as words of the rule say it."""
     facts = _facts(way)
     for (name, _), terms in facts:
         if terms[0] == way.unit and name in _HAVING:
@@ -269,10 +269,10 @@ def _text(term: Term) -> list[str]:
 
 
 def _named(facts: Iterable[Fact], predicates: Collection[str]) -> list[str]:
-    """Give the texts that facts of some predicates have in a rule."""
+    """Return the texts that facts of some predicates have in a rule."""
     return [word for fact in facts if fact.signature[0] in predicates for word in _text(fact.terms[-1])]
 
 
 def _saying(statements: Iterable[AST]) -> list[AST]:
-    """Give the statements that are in a ready-made constraint whatever its constants are called."""
+    """Return the statements that are in a ready-made constraint whatever its constants are called."""
     return [each for each in statements if each.ast_type not in {ASTType.Program, ASTType.Comment}]

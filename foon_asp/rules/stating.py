@@ -14,7 +14,7 @@ from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText
 
 
 def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
-    """Give what is loaded for each of some constraints, found before.
+    """Return what is loaded for each of some constraints, found before.
 
     Rules are numbered in their order, and so are ready-made constraints with constants of their own. Raises
     :class:`UserError` for constants that such a constraint has not, and for values that do not fit.
@@ -36,7 +36,7 @@ def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
 
 
 def _renamed(use: LibraryUse, number: int) -> Stated:
-    """Give a ready-made constraint with its constants set, and names of its own for them and its helpers.
+    """Return a ready-made constraint with its constants set, and names of its own for them and its helpers.
 
     Each statement is on the line on which it begins in the file.
     """
@@ -78,7 +78,7 @@ class _Renaming(Transformer):
         self._predicates, self._constants, self._number = predicates, constants, number
 
     def name(self, name: str) -> str:
-        """Give the other name, which begins as all names do that are ours."""
+        """Return the other name, which begins as all names do that are ours."""
         return f"_{name.lstrip('_')}_{self._number}"
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)

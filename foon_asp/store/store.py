@@ -250,19 +250,24 @@ class Store:
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
         """Return how many nodes have a label, and the ids of the first :data:`LISTED`."""
         found = [*self._named(label)]
-        if not found and label in self.beginning(label, 1):
-            raise LookupError(f"no object node has the label {label!r}")
         return len(found), found[:LISTED]
 
     @reporting_damage
     def beginning(self, start: str, most: int) -> list[str]:
         """Return at most ``most`` labels that begin with ``start``, in alphabetical order."""
-        return labels_beginning(self._database, start, most)
+        return self._known(labels_beginning(self._database, start, most))
 
     @reporting_damage
     def near(self, label: str, most: int) -> list[str]:
         """Return at most ``most`` labels that are similar to one, the most similar first."""
-        return similar_labels(self._database, label, most)
+        return self._known(similar_labels(self._database, label, most))
+
+    def _known(self, labels: list[str]) -> list[str]:
+        """Return labels that object nodes have to have."""
+        for label in labels:
+            if next(self._named(label), None) is None:
+                raise LookupError(f"no object node has the label {label!r}")
+        return labels
 
     @reporting_damage
     def nodes_where(self, condition: str, *values: object) -> frozenset[int]:

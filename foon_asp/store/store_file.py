@@ -82,7 +82,7 @@ class StoreFile:
             self.damaged("it was changed after the import" if found == "ok" else " ".join(found.split()))
 
     def failed(self, error: BaseException) -> NoReturn:
-        """Say why nothing can be read."""
+        """Return why nothing can be read."""
         if not self._closing.alive:
             raise UserError(f"{self.file}: the store was closed; open it again to read from it") from None
         self.damaged(str(error) or type(error).__name__)

@@ -89,7 +89,7 @@ def _used(text: str) -> tuple[int, ...]:
 
 
 def _document(text: str) -> Json | None:
-    """Give a document of ours, of whatever version; ``None`` for anything else."""
+    """Return a document of ours, of whatever version; ``None`` for anything else."""
     if not text.lstrip().startswith("{"):
         return None
     try:
@@ -100,7 +100,7 @@ def _document(text: str) -> Json | None:
 
 
 def _with_tree(found: Json) -> Json:
-    """Give the document with the tree: what other questions found has an answer within."""
+    """Return the document with the tree: what other questions found has an answer within."""
     within = found.get("answer")
     answer, kind = within if isinstance(within, dict) else found, ""
     for name in (found.get("schema"), answer.get("schema")):

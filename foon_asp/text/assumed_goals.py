@@ -9,7 +9,7 @@ MARKED, LAST = "marked", "last"
 
 
 def wanted_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterable[int]) -> list[int]:
-    """Give what the last unit of a file is for, of the ids on its sides: the outputs that no unit needs.
+    """Return what the last unit of a file is for, of the ids on its sides: the outputs that no unit needs.
 
     ``needed`` are those of the outputs that some unit has among its inputs. Where these are all, it is what
     the unit was not given itself, and all of it where there is nothing else.
@@ -19,12 +19,12 @@ def wanted_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterab
 
 
 def as_entry(node: ObjectNode, source: Source) -> ListedObject:
-    """Give a node as an entry of a goals file would name it; ``source`` is where it was read."""
+    """Return a node as an entry of a goals file would name it; ``source`` is where it was read."""
     return ListedObject(NodePattern.of(node), source._replace(videos=()))
 
 
 def last_goals(network: Network, last_units: Mapping[int, Source]) -> list[ListedObject]:
-    """Give what the last units, by id with their places, are for: as entries of a goals file."""
+    """Return what the last units, by id with their places, are for: as entries of a goals file."""
     outputs = {o for unit in last_units for o in network.outputs[unit]}
     needed = {o for inputs in network.inputs for o in inputs if o in outputs}
     found: dict[int, Source] = {}

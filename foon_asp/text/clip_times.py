@@ -13,7 +13,7 @@ _CLOCK = re.compile(r"\d+:\d\d(?::\d\d)?", re.ASCII)
 
 
 def median_clips(files: Iterable[Path], lenient: bool = False) -> dict[str, Fraction]:
-    """Give the median of the clip times of each motion that has any, in seconds.
+    """Return the median of the clip times of each motion that has any, in seconds.
 
     Units without two times, such as those that are assumed, and clips that do not end after they begin are
     passed over, and with ``lenient`` so are lines that are not understood. Raises :class:`InputError` for
@@ -31,7 +31,7 @@ def median_clips(files: Iterable[Path], lenient: bool = False) -> dict[str, Frac
 
 
 def _clips(times: tuple[str, ...]) -> Iterator[int]:
-    """Give the seconds of each clip of a unit: from one time to the next."""
+    """Yield the seconds of each clip of a unit: from one time to the next."""
     clocks = [_seconds(clock) for clock in _CLOCK.findall(" ".join(times))]
     for begin, end in zip(clocks[::2], clocks[1::2], strict=False):
         if end > begin:

@@ -60,7 +60,7 @@ class Converter:
         return self._reading.left_out
 
     def learn(self, text: str) -> None:
-        """Note the ids of a text that will be converted, so that others keep clear of them."""
+        """Record the ids of a text that will be converted, so that others keep clear of them."""
         if self.target is Dialect.IDS:
             for line in format_of(text).lines(text):
                 self._numbering.learn(line)

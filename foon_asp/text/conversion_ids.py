@@ -18,7 +18,7 @@ class Numbering:
         self._taken: set[tuple[type, str]] = set()
 
     def learn(self, line: Line) -> None:
-        """Note the id of a line, if it has one."""
+        """Record the id of a line, if it has one."""
         if not line.id:
             return
         kind = type(line)
@@ -28,7 +28,7 @@ class Numbering:
             self._highest[kind] = max(self._highest.get(kind, 0), int(line.id))
 
     def number(self, line: Line) -> Line:
-        """Give the line with an id: its own, if it has one."""
+        """Return the line with an id: its own, if it has one."""
         if line.id:
             return line
         kind, name = type(line), name_of(line)

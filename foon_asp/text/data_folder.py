@@ -129,12 +129,12 @@ def find_data(
 
 
 def kitchen_file(folder: Path) -> Path | None:
-    """Give the kitchen of a folder, if it has one."""
+    """Return the kitchen of a folder, if it has one."""
     return next((folder / name for name in _KITCHENS if (folder / name).is_file()), None)
 
 
 def network_files(path: Path) -> list[Path]:
-    """Give the network files that a path stands for: itself, or those of a folder in order of name."""
+    """Return the network files that a path stands for: itself, or those of a folder in order of name."""
     if not path.is_dir():
         return [path]
     if (path / "FOON.txt").is_file():
@@ -204,14 +204,14 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
 
 
 def _assumed_goals(reader: FoonReader, network: Network) -> tuple[list[ListedObject], str]:
-    """Give the goals of a network without a list of them: those marked, or what its last units are for."""
+    """Return the goals of a network without a list of them: those marked, or what its last units are for."""
     if reader.marked:
         return [as_entry(node, source) for node, source in reader.marked.items()], MARKED
     return last_goals(network, reader.last_units), LAST
 
 
 def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[int]:
-    """Give the object nodes that kitchen items stand for, at the level of the network."""
+    """Return the object nodes that kitchen items stand for, at the level of the network."""
     return frozenset(o for item in items for o in network.find(pattern_at_level(item.pattern, network.level)))
 
 

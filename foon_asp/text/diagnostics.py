@@ -52,7 +52,7 @@ class Diagnostic(NamedTuple):
     rename: Rename | None = None
 
     def __str__(self) -> str:
-        """Give ``file:line:column: severity: message`` and, where known, the line with a caret."""
+        """Return ``file:line:column: severity: message`` and, where known, the line with a caret."""
         file, line, column, _ = self.source
         text = f"{escaped(file)}:{line}:{column}: {self.severity}: {escaped(self.message)}"
         if self.excerpt:
@@ -85,7 +85,7 @@ class InputError(UserError):
 
 
 def in_brief(diagnostics: Sequence[Diagnostic]) -> list[str]:
-    """Give warnings as :func:`summarize` does if that takes a few lines, and else count them in one line."""
+    """Return warnings as :func:`summarize` does if that takes a few lines, else their number in one line."""
     told = summarize(diagnostics)
     if sum(1 + text.count("\n") for text in told) <= _BRIEF:
         return told

@@ -22,7 +22,7 @@ class FolderFile(NamedTuple):
 
 
 def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
-    """Give the files that are named, and those of folders, sub-folders included, in order of name.
+    """Return the files that are named, and those of folders, sub-folders included, in order of name.
 
     Of a folder these are the ``*.txt``, ``*.json`` and ``*.jsonl`` in which there is anything of FOON,
     networks and lists of objects alike. Raises :class:`UserError` where nothing is found.

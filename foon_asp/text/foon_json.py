@@ -47,7 +47,7 @@ class FoonJson(Format):
         return isinstance(first.value, str) or "input_nodes" not in first.value
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-        """Give the units of a text in order, with the lines that they would have."""
+        """Yield the units of a text in order, with the lines that they would have."""
         for unit in read_json_units(text, file, reading):
             if unit.price:
                 copy = FunctionalUnit.of(unit.motion.motion, *unit.sides)
@@ -55,11 +55,11 @@ class FoonJson(Format):
             yield unit
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-        """Give the objects of a kitchen or of goals; a ``container`` is in what they stand for alone."""
+        """Yield the objects of a kitchen or of goals; a ``container`` is in what they stand for alone."""
         return read_json_objects(text, file, reading)
 
     def lines(self, text: str) -> Iterator[Line]:
-        """Give the lines that its objects and motions would have."""
+        """Yield the lines that its objects and motions would have."""
         reading = Reading(lenient=True)
         if self.lists_objects(text):
             for block, _ in self.objects(text, "", reading):
@@ -82,7 +82,7 @@ class FoonJson(Format):
         return laid_out.replace("\n", usual_line_end(text))
 
     def names(self, text: str, file: str) -> Iterator[Mention]:
-        """Give every mention of a name; raises :class:`InputError` for what is not JSON."""
+        """Yield every mention of a name; raises :class:`InputError` for what is not JSON."""
         check_json(text, file)
         return json_mentions(text)
 
@@ -98,7 +98,7 @@ class FoonJson(Format):
 
 
 def _first_objects(text: str) -> Iterator[dict[str, object]]:
-    """Give the first object of a list of objects, or the objects of the first unit."""
+    """Yield the first object of a list of objects, or the objects of the first unit."""
     first = next(iter(JsonList(text, Path(), "functional_units")), None)
     value = first.value if first else None
     if not isinstance(value, dict):

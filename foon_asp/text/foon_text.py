@@ -54,24 +54,24 @@ class FoonText(Format):
         return "O" in starts and "M" not in starts
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
-        """Give the units of a file, of which some pieces at a time are in memory."""
+        """Yield the units of a file, of which some pieces at a time are in memory."""
         return TextUnits(text_pieces(file, _PIECE), str(file), reading).units()
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Give the units of a text in order."""
+        """Yield the units of a text in order."""
         return _units(text, file, reading).units()
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-        """Give the units of a text in order, with their lines as written."""
+        """Yield the units of a text in order, with their lines as written."""
         return _units(text, file, reading).listed_units()
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-        """Give the objects of a kitchen or of goals."""
+        """Yield the objects of a kitchen or of goals."""
         for block in _units(text, file, reading).objects():
             yield block, NodePattern.of(block.node)
 
     def lines(self, text: str) -> Iterator[Line]:
-        """Give the lines that can be understood."""
+        """Yield the lines that can be understood."""
         for written in split_lines(text):
             if written[:1] in {"O", "S", "M"} and not isinstance(line := read_line(written), LineError):
                 yield line
@@ -81,7 +81,7 @@ class FoonText(Format):
         return rewritten(text, file, lenient, _mended)
 
     def names(self, text: str, file: str) -> Iterator[Mention]:
-        """Give every mention of a name."""
+        """Yield every mention of a name."""
         for line in self.lines(text):
             yield from line_names(line)
 

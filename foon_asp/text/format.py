@@ -40,8 +40,7 @@ class Format(Protocol):
 
     ``dialects`` are those that it has; ``suffix`` and ``list_suffix`` are how the names of its networks
     and of its lists of objects end. ``has_comments`` says whether it has comments, and ``machine_written``
-    whether a node that a unit lists twice means two of it.
-    A ``file`` is named in places and messages.
+    whether a node that a unit lists twice means two of it. A ``file`` is named in places and messages.
     """
 
     dialects: tuple[Dialect, ...] = ()
@@ -60,21 +59,21 @@ class Format(Protocol):
         """Whether a text lists object nodes, as a kitchen or goals do, and has no functional units."""
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
-        """Give the units of a file in order; raises :class:`InputError` for one that is no text."""
+        """Yield the units of a file in order; raises :class:`InputError` for one that is no text."""
         yield from self.units(read_plain_text(file), str(file), reading)
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Give the units of a text in order; what there is to say about it is noted in ``reading``."""
+        """Yield the units of a text in order; what there is to say about it is noted in ``reading``."""
         return (unit.identity for unit in self.listed_units(text, file, reading))
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-        """Give the units of a text in order, with their lines as written."""
+        """Yield the units of a text in order, with their lines as written."""
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-        """Give the objects of a kitchen or of goals, each with what it stands for."""
+        """Yield the objects of a kitchen or of goals, each with what it stands for."""
 
     def lines(self, text: str) -> Iterator[Line]:
-        """Give all that can be understood of a text as the lines that FOON text has for it."""
+        """Yield all that can be understood of a text as the lines that FOON text has for it."""
 
     def normalised(self, text: str, file: str, lenient: bool = False) -> str:
         """Return a text in canonical form, which means the same.
@@ -83,7 +82,7 @@ class Format(Protocol):
         """
 
     def names(self, text: str, file: str) -> Iterator[Mention]:
-        """Give every mention of a name; raises :class:`InputError` for a text that is broken."""
+        """Yield every mention of a name; raises :class:`InputError` for a text that is broken."""
 
     def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
         """Return a text with a new name for an old one; everything else stays as it is written."""
@@ -97,9 +96,9 @@ Part = tuple[str, "list[Loss]"]
 
 
 class Writer(Protocol):
-    """Writes one file in a dialect, part by part.
+    """Writes files in a dialect, part by part.
 
-    ``holds_prices`` says whether it can hold prices of units, ``holds_no_inputs`` units without inputs.
+    ``holds_prices`` says whether they can hold prices of units, ``holds_no_inputs`` units without inputs.
     """
 
     holds_prices: bool

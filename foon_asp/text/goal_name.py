@@ -52,22 +52,22 @@ class NodeNames(Protocol):
         """How much of a node counts."""
 
     def object_id(self, node: ObjectNode) -> int | None:
-        """Give the id of a node, or ``None`` when it is not there."""
+        """Return the id of a node, or ``None`` when it is not there."""
 
     def node(self, object_id: int) -> ObjectNode:
-        """Give the node with that id."""
+        """Return the node with that id."""
 
     def find(self, pattern: NodePattern) -> Sequence[int]:
-        """Give the ids of the nodes that a kitchen or goals entry stands for."""
+        """Return the ids of the nodes that a kitchen or goals entry stands for."""
 
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Give how many nodes have a label, and the first of them, a dozen or more."""
+        """Return how many nodes have a label, and the first of them, a dozen or more."""
 
     def beginning(self, start: str, most: int) -> Sequence[str]:
-        """Give labels that begin with ``start``, in alphabetical order, at most ``most``."""
+        """Return labels that begin with ``start``, in alphabetical order, at most ``most``."""
 
     def near(self, label: str, most: int) -> Sequence[str]:
-        """Give labels similar to ``label``, the most similar first, at most ``most``."""
+        """Return labels similar to ``label``, the most similar first, at most ``most``."""
 
 
 def find_goal(
@@ -158,7 +158,7 @@ def listed_goal(entry: ListedObject, names: NodeNames) -> int:
 
 
 def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
-    """Give the nodes that an entry of a goals file stands for; raises :class:`UserError` for none."""
+    """Return the nodes that an entry of a goals file stands for; raises :class:`UserError` for none."""
     found = names.find(entry.pattern)
     if not found:
         count, labelled = names.labelled(entry.pattern.label)

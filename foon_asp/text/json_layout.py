@@ -13,7 +13,7 @@ TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{}:,]|[^\s\[\]{}:,"]+')
 
 
 def lay_out(text: str, level: int = 0) -> str:
-    """Give a JSON text with one value a line; only the blanks between the values change.
+    """Return a JSON text with one value a line; only the blanks between the values change.
 
     Strings and numbers stay as they are written. ``level`` is how deep the text will stand. The text has to
     be JSON: see :func:`check_json`.
@@ -34,7 +34,7 @@ def lay_out(text: str, level: int = 0) -> str:
 
 
 def on_one_line(text: str) -> str:
-    """Give a JSON text on one line, with a blank behind each comma and colon; strings and numbers stay."""
+    """Return a JSON text on one line, with a blank behind each comma and colon; strings and numbers stay."""
     return "".join(token + " " if token in {",", ":"} else token for token in TOKEN.findall(text))
 
 

@@ -53,12 +53,12 @@ class JsonList:
             self.error(self.place(0), "found lists nested too deeply, expected a list of objects")
 
     def error(self, source: Source, message: str) -> None:
-        """Note an error at a place of the file."""
+        """Record an error at a place of the file."""
         excerpt = self._text.split("\n", source.line)[source.line - 1].rstrip("\r")
         self.errors.append(Diagnostic(Severity.ERROR, "json", message, source, excerpt))
 
     def place(self, offset: int) -> Source:
-        """Give the line and column of an offset; offsets that only grow are the fast way to ask."""
+        """Return the line and column of an offset; offsets that only grow are the fast way to ask."""
         if offset < self._counted:
             self._line, self._counted = 1, 0
         self._line += self._text.count("\n", self._counted, offset)
@@ -74,7 +74,7 @@ class JsonList:
         self._nothing_after(end)
 
     def _in_object(self, position: int) -> Iterator[tuple[int, object]]:
-        """Give the elements of the list under the key; the values of other keys are kept aside."""
+        """Yield the elements of the list under the key; the values of other keys are kept aside."""
         seen: set[str] = set()
         position = self._skip(position)
         while self._text[position : position + 1] != "}":
@@ -100,7 +100,7 @@ class JsonList:
         self._nothing_after(position + 1)
 
     def _in_list(self, position: int) -> Generator[tuple[int, object], None, int]:
-        """Give the elements of the list that begins there, and return where it ends."""
+        """Yield the elements of the list that begins there, and return where it ends."""
         position = self._expect("[", position, "a list, [ ... ]")
         first = True
         while self._text[position : position + 1] != "]":

@@ -22,7 +22,7 @@ _IDS = {NameKind.OBJECT: "object_id", NameKind.MOTION: "motion_id"}
 
 
 def json_mentions(text: str) -> Iterator[Mention]:
-    """Give every mention of a name in a text that is JSON; a state may be written as a state line is."""
+    """Yield every mention of a name in a text that is JSON; a state may be written as a state line is."""
     for found in _json_names(text):
         state = read_line(f"S\t{found.name}") if _is_state_line(found) else None
         if state is None or isinstance(state, LineError):
@@ -79,7 +79,7 @@ class _Level:
 
 
 def _json_names(text: str) -> list[_JsonName]:
-    """Give the names of a text that is JSON, those of an object when it ends."""
+    """Return the names of a text that is JSON, those of an object when it ends."""
     levels = [_Level("", True)]
     found: list[_JsonName] = []
     tokens = list(TOKEN.finditer(text))
@@ -105,7 +105,7 @@ def _json_names(text: str) -> list[_JsonName]:
 
 
 def _with_ids(level: _Level) -> Iterator[_JsonName]:
-    """Give the names of an object of JSON; a label has the id beside it, a container has none."""
+    """Yield the names of an object of JSON; a label has the id beside it, a container has none."""
     related = any(key in _RELATED and not is_none(name.name) for key, name in level.names)
     for key, name in level.names:
         kind = NameKind.WORD if related and name.kind is NameKind.STATE else name.kind

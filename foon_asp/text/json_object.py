@@ -130,7 +130,7 @@ def check_keys(value: dict[str, object], known: set[str]) -> None:
 
 
 def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
-    """Give the one of several keys that an object has, and its value; else the first key and ``None``.
+    """Return the one of several keys that an object has, and its value; else the first key and ``None``.
 
     Raises :class:`ValueError` when it has two of them.
     """
@@ -154,7 +154,7 @@ def is_none(name: str) -> bool:
 
 
 def number(value: dict[str, object], key: str) -> str:
-    """Give the digits of a number, which may be written as text; empty if there is none."""
+    """Return the digits of a number, which may be written as text; empty if there is none."""
     found = value.get(key)
     if found is None or (isinstance(found, str) and is_none(found)):
         return ""
@@ -247,7 +247,7 @@ def _name(value: object, key: str, expected: str = "a name") -> str:
 
 
 def shown(value: object) -> str:
-    """Give a value as it is written, for a message; a long one is cut."""
+    """Return a value as it is written, for a message; a long one is cut."""
     if isinstance(value, JsonNumber):
         return value.text[:40]
     return json_line(value, _plain_number)[:40]

@@ -24,7 +24,7 @@ _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_ty
 
 
 def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-    """Give the units in order; what there is to say about them is noted in ``reading``.
+    """Yield the units in order; what there is to say about them is noted in ``reading``.
 
     An object whose ``container`` is named without a word is ``in`` it.
     """

@@ -15,7 +15,7 @@ _VERSIONS = {"verify": 2}  # 1 of all else; what changes the meaning of a key, o
 
 
 def schema_name(kind: str) -> str:
-    """Give the name of a kind of JSON, ``foon-asp/answer/1``; ``foon-asp schema`` says what is in it."""
+    """Return the name of a kind of JSON, ``foon-asp/answer/1``; ``foon-asp schema`` says what is in it."""
     return f"foon-asp/{kind}/{_VERSIONS.get(kind, 1)}"
 
 

@@ -111,7 +111,7 @@ def kind_of(line: Line) -> NameKind:
 
 
 def line_names(line: Line) -> Iterator[Mention]:
-    """Give the names that a line mentions, the first with the id of the line."""
+    """Yield the names that a line mentions, the first with the id of the line."""
     yield Mention(kind_of(line), name_of(line), line.id)
     if isinstance(line, StateLine):
         if isinstance(line.attribute, Relation):
@@ -134,7 +134,7 @@ class LineError(Exception):
         self.expected = expected
 
     def kept(self) -> Self:
-        """Give the error to keep as a value: without what was going on when it was raised."""
+        """Return the error to keep as a value: without what was going on when it was raised."""
         self.__context__ = None
         return self.with_traceback(None)
 

@@ -136,7 +136,7 @@ def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
 
 
 def _id(letter: Token, remarks: list[Remark]) -> str:
-    """Give the id behind the letter; one tab has to follow."""
+    """Return the id behind the letter; one tab has to follow."""
     if letter[-1] == "\t" and letter[-2] not in "\t ":
         return letter[1:-1]
     id_ = letter[1:].rstrip("\t ")
@@ -151,7 +151,7 @@ def _id(letter: Token, remarks: list[Remark]) -> str:
 
 
 def _fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, ...]:
-    """Give the fields behind a name without blanks around them; empty ones are left out."""
+    """Return the fields behind a name without blanks around them; empty ones are left out."""
     fields: list[str] = []
     for token in tokens:
         field = token[1:].strip(" ")
@@ -187,7 +187,7 @@ def _blank_end(tokens: list[Token], remarks: list[Remark]) -> None:
 
 
 def _tabbed(tokens: list[Token], remarks: list[Remark]) -> tuple[str, Token]:
-    """Give the word and the bracket without the tab that should stand between them."""
+    """Return the word and the bracket without the tab that should stand between them."""
     _, word, bracket = tokens
     column = bracket.column or 1
     if bracket[0] == "\t" and bracket[1] in "[{":
@@ -290,7 +290,7 @@ def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
 
 
 def _advice(line: str) -> str:
-    """Say how to write a line that begins with none of the letters; empty where that cannot be guessed."""
+    """Return how to write a line that begins with none of the letters; empty where that cannot be guessed."""
     if not line.replace("\t", " ").isprintable():
         return ""
     if line.startswith(FENCE):

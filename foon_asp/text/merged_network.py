@@ -10,7 +10,7 @@ from foon_asp.text.writer import write_motion, write_node
 
 
 def merged_text(network: Network, comment: str) -> Iterator[str]:
-    """Give the text piece by piece: a comment, then the units in order of first reading, in plain form.
+    """Yield the text piece by piece: a comment, then the units in order of first reading, in plain form.
 
     Above each unit stands a line ``# From:`` for every copy of it, with file, line and videos; a copy that
     is known twice, from a file and from what that was merged into, stands there once. Reading the text gives

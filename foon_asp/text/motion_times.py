@@ -18,7 +18,7 @@ def is_time(field: str) -> bool:
 
 
 def mended_time(field: str) -> str:
-    """Give the time that was meant where that is beyond doubt, and else the field as it is.
+    """Return the time that was meant where that is beyond doubt, and else the field as it is.
 
     Only a letter missing in ``Assumed`` and a bracket too many or too few are.
     """

@@ -6,9 +6,9 @@ is the label of an object node without states, to the letter; nothing in it is n
 
 import json
 from collections.abc import Iterable, Iterator
-from fractions import Fraction
+from functools import cache, lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.text.exact_number import read_price
@@ -29,16 +29,6 @@ if TYPE_CHECKING:
 _NEEDED = {"id", "inputs", "outputs"}
 _KEYS = {*_NEEDED, "price"}
 _TOLD = 65_536  # bytes from one report of progress to the next
-
-
-class NeutralUnit(NamedTuple):
-    """One unit as its line has it; ``price`` is an exact decimal, empty where it has none."""
-
-    id: str
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-    price: str
-    source: Source
 
 
 class NeutralLines(FoonJson):
@@ -70,26 +60,27 @@ class NeutralLines(FoonJson):
         return False
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
-        """Give the units of a file in order, a line at a time."""
-        return _read_units(_lines_of(file), str(file), reading)
+        """Yield the units of a file in order, a line at a time."""
+        return _priced(_units(_lines_of(file), str(file), reading), reading)
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Give the units of a text in order."""
-        return _read_units(split_lines(text), file, reading)
+        """Yield the units of a text in order."""
+        return _priced(_units(split_lines(text), file, reading), reading)
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-        """Give the units of a text in order, with the lines that they would have."""
-        for id_, *sides, price, source in read_neutral_units(split_lines(text), file, reading):
+        """Yield the units of a text in order, with the lines that they would have."""
+        for unit, price in _units(split_lines(text), file, reading):
             inputs, outputs = (
-                tuple(ObjectBlock(ObjectLine(name), (), source) for name in side) for side in sides
+                tuple(ObjectBlock(ObjectLine(node.label), (), unit.source) for node in side)
+                for side in (unit.inputs, unit.outputs)
             )
-            yield ListedUnit(MotionLine(id_), inputs, outputs, (source,), source, price)
+            yield ListedUnit(MotionLine(unit.motion), inputs, outputs, unit.sources, unit.source, price)
 
     def normalised(self, text: str, file: str, lenient: bool = False) -> str:
         """Return each line laid out anew; one that cannot be understood stays if ``lenient``."""
         lines = split_lines(text.removeprefix("\ufeff"))
         reading = Reading(lenient)
-        understood = {unit.source.line for unit in read_neutral_units(lines, file, reading)}
+        understood = {unit.source.line for unit, _ in _units(lines, file, reading)}
         reading.raise_errors()
         new = [on_one_line(line) if number in understood else line for number, line in enumerate(lines, 1)]
         if new[-1]:
@@ -97,7 +88,7 @@ class NeutralLines(FoonJson):
         return usual_line_end(text).join(new)
 
     def names(self, text: str, file: str) -> Iterator[Mention]:
-        """Give every mention of a name."""
+        """Yield every mention of a name."""
         return json_mentions(text)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
@@ -107,23 +98,18 @@ class NeutralLines(FoonJson):
         return NeutralWriter()
 
 
-def _read_units(lines: Iterable[str], file: str, reading: Reading) -> Iterator[ReadUnit]:
-    """Give units with their nodes; of copies with prices, the cheapest counts."""
-    nodes: dict[str, ObjectNode] = {}
-    prices: dict[str, Fraction] = {}
-    for id_, *sides, price, source in read_neutral_units(lines, file, reading):
-        inputs, outputs = (
-            [nodes.get(name) or nodes.setdefault(name, ObjectNode(name)) for name in side] for side in sides
-        )
+def _priced(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator[ReadUnit]:
+    """Yield units, and note their prices; of copies, the cheapest counts."""
+    exact = cache(read_price)
+    for unit, price in units:
         if price:
-            if price not in prices:
-                prices[price] = read_price(price)
-            reading.prices.add_least(FunctionalUnit.of(id_, inputs, outputs), prices[price])
-        yield ReadUnit(id_, inputs, outputs, (source,))
+            copy = FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs)
+            reading.prices.add_least(copy, exact(price))
+        yield unit
 
 
 def _lines_of(file: Path) -> Iterator[str]:
-    """Give the lines of a file as they are asked for.
+    """Yield the lines of a file as they are asked for.
 
     Raises :class:`InputError` with line and column of the first byte that is not UTF-8.
     """
@@ -142,22 +128,21 @@ def _lines_of(file: Path) -> Iterator[str]:
         tell(untold)
 
 
-def read_neutral_units(lines: Iterable[str], file: str, reading: Reading) -> Iterator[NeutralUnit]:
-    """Give the units in order; what there is to say about them is noted in ``reading``."""
-    known: set[str] = set()  # names that are as they should be
-    prices: dict[str, str] = {}  # without an exponent, by how they are written
+def _units(lines: Iterable[str], file: str, reading: Reading) -> Iterator[tuple[ReadUnit, str]]:
+    """Yield the units in order with their prices, exact decimals, which are empty where there is none."""
+    nodes: dict[str, ObjectNode] = {}
     for number, line in enumerate(lines, 1):
         line = line.rstrip("\r\n")  # noqa: PLW2901 (a fault at the end is on this line)
         if line.isspace() or not line:
             continue
         try:
-            unit = _unit(line, Source(file, number), known, prices)
+            unit, price = _unit(line, Source(file, number), nodes)
         except _LineError as fault:
             reading.reject("json", str(fault), Source(file, number, fault.column), line)
             continue
         if not unit.outputs:
-            reading.warn("no-outputs", f"the unit {unit.id!r} has no output objects", unit.source)
-        yield unit
+            reading.warn("no-outputs", f"the unit {unit.motion!r} has no output objects", unit.source)
+        yield unit, price
 
 
 class _LineError(Exception):
@@ -166,7 +151,7 @@ class _LineError(Exception):
         self.column = column
 
 
-def _unit(line: str, source: Source, known: set[str], prices: dict[str, str]) -> NeutralUnit:
+def _unit(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[ReadUnit, str]:
     try:
         value = DECODER.decode(line)
     except json.JSONDecodeError as problem:
@@ -185,27 +170,31 @@ def _unit(line: str, source: Source, known: set[str], prices: dict[str, str]) ->
         name = value[key]
         name = _name(name.text if isinstance(name, JsonNumber) else name, key)
         key = "inputs"
-        inputs = _names(value[key], key, known)
+        inputs = _side(value[key], key, nodes)
         key = "outputs"
-        outputs = _names(value[key], key, known)
+        outputs = _side(value[key], key, nodes)
         key = "price"
         price = value.get(key)
-        if not isinstance(price, JsonNumber):
-            return NeutralUnit(name, inputs, outputs, price_of(price), source)
-        if price.text not in prices:
-            prices[price.text] = price_of(price, exponents=True)
-        return NeutralUnit(name, inputs, outputs, prices[price.text], source)
+        written = _number_price(price.text) if isinstance(price, JsonNumber) else price_of(price)
+        return ReadUnit(name, inputs, outputs, (source,)), written
     except ValueError as problem:
         raise _LineError(str(problem), line.find(f'"{key}"') + 1 if key else 1) from None
 
 
-def _names(value: object, key: str, known: set[str]) -> tuple[str, ...]:
+@lru_cache(10_000)
+def _number_price(written: str) -> str:
+    return price_of(JsonNumber(written), exponents=True)
+
+
+def _side(value: object, key: str, nodes: dict[str, ObjectNode]) -> list[ObjectNode]:
     if not isinstance(value, list):
         raise ValueError(f'found {shown(value)} as "{key}", expected a list of names')
+    side = []
     for name in value:
-        if not isinstance(name, str) or name not in known:
-            known.add(_name(name, key))
-    return tuple(value)
+        if not isinstance(name, str) or name not in nodes:
+            nodes[name] = ObjectNode(_name(name, key))
+        side.append(nodes[name])
+    return side
 
 
 def _name(value: object, key: str) -> str:

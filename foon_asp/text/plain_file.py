@@ -29,7 +29,7 @@ def is_store(file: Path) -> bool:
 
 
 def read_beginning(file: Path, length: int) -> bytes:
-    """Give the first bytes of a file; nothing where it cannot be read, or can be once only, as a pipe."""
+    """Return the first bytes of a file; nothing where it cannot be read, or can be once only, as a pipe."""
     if not file.is_file():
         return b""
     try:
@@ -60,7 +60,7 @@ def _unreadable(file: Path, error: OSError) -> UserError:
 
 
 def text_pieces(file: Path, size: int) -> Iterator[str]:
-    """Give the text of a file in pieces of some ``size``, every line end as a line feed.
+    """Yield the text of a file in pieces of some ``size``, every line end as a line feed.
 
     Raises as :func:`read_plain_text` does, before it gives anything.
     """
@@ -83,7 +83,7 @@ def text_pieces(file: Path, size: int) -> Iterator[str]:
 
 
 def split_lines(text: str) -> list[str]:
-    """Give the lines of a text without their ends, whatever these are."""
+    """Return the lines of a text without their ends, whatever these are."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
@@ -118,7 +118,7 @@ def read_plain_text(file: Path) -> str:
 
 
 def plain_text(data: bytes, file: Path) -> str:
-    """Give the text of the bytes of a file, as :func:`read_plain_text` does."""
+    """Return the text of the bytes of a file, as :func:`read_plain_text` does."""
     if data.startswith(STORE_MAGIC):
         raise UserError(f"{file}: is a store, expected text; name a store only with --network")
     data = data.removeprefix(BOM_UTF8)
@@ -129,7 +129,7 @@ def plain_text(data: bytes, file: Path) -> str:
 
 
 def not_utf_8(data: bytes, error: UnicodeDecodeError, file: Path, line: int = 1) -> InputError:
-    """Give the error of bytes that are no UTF-8; ``line`` is the number of their first line."""
+    """Return the error of bytes that are no UTF-8; ``line`` is the number of their first line."""
     before = data[: error.start]
     start = before.rfind(b"\n") + 1
     column = len(before[start:].decode("utf-8-sig")) + 1

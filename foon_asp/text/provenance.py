@@ -12,7 +12,7 @@ _LINE_DIGITS = 9  # of a line number, at most
 
 
 def read_video(comment: str) -> str | None:
-    """Give the video that a comment line names; ``None`` for another comment, or one that names none."""
+    """Return the video that a comment line names; ``None`` for another comment, or one that names none."""
     if not comment.startswith(_VIDEO):
         return None
     return " ".join(_fields(comment[len(_VIDEO) :])) or None  # a tab ends it in a # From: line
@@ -24,7 +24,7 @@ def is_video(comment: str) -> bool:
 
 
 def read_copy(comment: str) -> Source | None:
-    """Give the place that a comment line above a merged unit names; ``None`` for another comment."""
+    """Return the place that a comment line above a merged unit names; ``None`` for another comment."""
     if not comment.startswith(_COPY):
         return None
     place, *videos = comment[len(_COPY) :].lstrip("\t ").split("\t")
@@ -35,10 +35,10 @@ def read_copy(comment: str) -> Source | None:
 
 
 def write_copy(source: Source) -> str:
-    """Give the comment line, with its line end, that :func:`read_copy` reads."""
+    """Return the comment line, with its line end, that :func:`read_copy` reads."""
     return "\t".join((f"{_COPY}\t{source.file}:{source.line}", *source.videos)) + "\n"
 
 
 def _fields(text: str) -> list[str]:
-    """Give what stands between tabs, without blanks around it: in linear time, whatever it is."""
+    """Return what stands between tabs, without blanks around it: in linear time, whatever it is."""
     return [field.strip() for field in text.split("\t") if field.strip()]

@@ -69,7 +69,7 @@ class FoonReader(Reading):
         return builder.build()
 
     def tree_units(self, text: str, file: str) -> list[tuple[FunctionalUnit, Source]]:
-        """Give the units of a text in listed order, copies included.
+        """Return the units of a text in listed order, copies included.
 
         Parameters:
             text: The FOON text.
@@ -87,7 +87,7 @@ class FoonReader(Reading):
         return units
 
     def file_units(self, file: Path) -> Iterator[ReadUnit]:
-        """Give the units of a file in order; one in the neutral form is read line by line.
+        """Yield the units of a file in order; one in the neutral form is read line by line.
 
         Parameters:
             file: The path of the file.
@@ -105,7 +105,7 @@ class FoonReader(Reading):
             self.diagnostics += error.diagnostics
 
     def text(self, file: Path, content: bytes | None = None) -> str:
-        """Give the text of a file; it is empty, and an error is noted, if the file is not text.
+        """Return the text of a file; it is empty, and an error is noted, if the file is not text.
 
         Parameters:
             file: The path of the file.
@@ -118,7 +118,7 @@ class FoonReader(Reading):
             return ""
 
     def units(self, text: str, file: str) -> Iterator[ReadUnit]:
-        """Give the units of a text in order.
+        """Yield the units of a text in order.
 
         Parameters:
             text: The FOON text.
@@ -127,7 +127,7 @@ class FoonReader(Reading):
         return format_of(text, file).units(text, file, self)
 
     def listed_units(self, text: str, file: str) -> Iterator[ListedUnit]:
-        """Give the units of a text in order, with their lines as written.
+        """Yield the units of a text in order, with their lines as written.
 
         Parameters:
             text: The FOON text.
@@ -136,7 +136,7 @@ class FoonReader(Reading):
         return format_of(text, file).listed_units(text, file, self)
 
     def object_blocks(self, text: str, file: str) -> list[ObjectBlock]:
-        """Give the object nodes of a text that lists them without motions: a kitchen, or goals.
+        """Return the object nodes of a text that lists them without motions: a kitchen, or goals.
 
         Parameters:
             text: The text.
@@ -145,7 +145,7 @@ class FoonReader(Reading):
         return TextUnits(["\n".join(split_lines(text))], file, self).objects()
 
     def parse(self, line: str) -> Line | LineError:
-        """Give what a line says, or its error; each distinct line is parsed once.
+        """Return what a line says, or its error; each distinct line is parsed once.
 
         Parameters:
             line: The line.

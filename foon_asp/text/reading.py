@@ -35,7 +35,7 @@ class Reading:
         self.repeated: list[RepeatedNode] = []
 
     def reject(self, code: str, message: str, source: Source, excerpt: str = "") -> None:
-        """Note what is not understood: an error, or with ``lenient`` a warning that it was left out."""
+        """Record what is not understood: an error, or with ``lenient`` a warning that it was left out."""
         severity = Severity.WARNING if self.lenient else Severity.ERROR
         message += "; left out" if self.lenient else ""
         self.diagnostics.append(Diagnostic(severity, code, message, source, excerpt))
@@ -43,7 +43,7 @@ class Reading:
     def warn(
         self, code: str, message: str, source: Source, excerpt: str = "", fix: str | None = None
     ) -> None:
-        """Note what was assumed."""
+        """Record what was assumed."""
         self.diagnostics.append(Diagnostic(Severity.WARNING, code, message, source, excerpt, fix))
 
     def raise_errors(self, earlier: int = 0) -> None:

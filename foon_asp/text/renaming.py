@@ -45,7 +45,7 @@ class Renaming:
             self.mentions += name_kind == kind and name == old
 
     def learn_ids(self, ids: Mapping[str, int]) -> None:
-        """Note how often which ids stand with the new name, where that is known already."""
+        """Record how often which ids stand with the new name, where that is known already."""
         self._ids.update(ids)
 
     def line(self, line: str) -> str:
@@ -100,7 +100,7 @@ class Renaming:
         return Contents(word, tuple(sorted(self._items(attribute.ingredients))))
 
     def _items(self, items: tuple[str, ...]) -> tuple[str, ...]:
-        """Give ingredients with the new name, once where it stands among them already."""
+        """Return ingredients with the new name, once where it stands among them already."""
         kind, old, new = self.rename
         if kind == NameKind.OBJECT and new in items:
             return tuple(item for item in items if item != old)

@@ -41,9 +41,9 @@ class SideTable(FoonText):
         return text
 
     def names(self, text: str, file: str) -> Iterator[Mention]:
-        """Give the names in the first column."""
+        """Yield the names in the first column."""
         for line in split_lines(text):
-            if line.strip() and line[:1] != "#":
+            if line.lstrip()[:1] not in {"", "#"}:
                 yield Mention(TABLES[PurePath(file).name].names, line.partition("\t")[0].strip())
 
     def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
@@ -57,7 +57,7 @@ class SideTable(FoonText):
 
 
 def _renamed_row(line: str, table: str, renaming: "Renaming") -> str:
-    if not line.strip() or line[:1] == "#":
+    if line.lstrip()[:1] in {"", "#"}:
         return line
     first, *fields = line.split("\t")
     if table == "tools.txt" and ";" in first:

@@ -32,7 +32,7 @@ def starter_files(
     goals: Iterable[ObjectNode],
     rates: Mapping[str, Fraction] | None = None,
 ) -> dict[str, str]:
-    """Give the texts of the files of a data folder by name.
+    """Return the texts of the files of a data folder by name.
 
     ``recipe`` is the text of the network. Without ``rates``, every motion gets 1, and a comment says that
     this is not known.
@@ -55,7 +55,7 @@ def _decimal(rate: Fraction) -> str:
 
 
 def _holders(nodes: Sequence[ObjectNode]) -> list[str]:
-    """Give the labels of what holds something, and is no ingredient itself."""
+    """Return the labels of what holds something, and is no ingredient itself."""
     holding = {node.label for node in nodes if node.ingredients}
     places = {relation.object for node in nodes for relation in node.relations}
     return sorted((holding & places).difference(item for node in nodes for item in node.ingredients))

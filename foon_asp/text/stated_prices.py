@@ -18,16 +18,16 @@ class StatedPrices:
         return len(self._copies.keys() | self._least.keys()) if self._copies else len(self._least)
 
     def add(self, unit: FunctionalUnit, price: Fraction, source: Source) -> None:
-        """Note the price of one copy, and where it is stated."""
+        """Record the price of one copy, and where it is stated."""
         self._copies.setdefault(unit, {}).setdefault(price, source)
 
     def add_least(self, unit: FunctionalUnit, price: Fraction) -> None:
-        """Note the price of one copy, of which the cheapest counts."""
+        """Record the price of one copy, of which the cheapest counts."""
         if self._least.setdefault(unit, price) > price:
             self._least[unit] = price
 
     def settled(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
-        """Give the one price of each unit; where copies disagree, it is the ``chosen`` one.
+        """Return the one price of each unit; where copies disagree, it is the ``chosen`` one.
 
         Of a unit with a copy of which the cheapest counts, it is the least.
 

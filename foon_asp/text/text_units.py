@@ -59,7 +59,7 @@ class TextUnits:
         self._sections = 0  # between separators, with anything in them, so far
 
     def units(self) -> Iterator[ReadUnit]:
-        """Give the units in order."""
+        """Yield the units in order."""
         for chunk, last in self._chunks():
             unit = None if last else self._clean_unit(chunk)
             if unit:
@@ -70,7 +70,7 @@ class TextUnits:
                 yield from (unit.identity for unit in self._line_by_line(chunk, last))
 
     def listed_units(self) -> Iterator[ListedUnit]:
-        """Give the units in order, with their lines as written."""
+        """Yield the units in order, with their lines as written."""
         for chunk, last in self._chunks():
             yield from self._line_by_line(chunk, last)
 
@@ -108,7 +108,7 @@ class TextUnits:
             tell(untold + len(waiting[0].encode()))
 
     def _reject_json(self, message: str, text: str) -> None:
-        """Note what stands before JSON, as the only fault of the file."""
+        """Record what stands before JSON, as the only fault of the file."""
         begins = text.lstrip()
         line = text[: len(text) - len(begins)].count("\n") + 1
         self.reading.reject("json", message, Source(self.file, line, 1), split_lines(begins)[0])

@@ -48,7 +48,7 @@ UNIT_PRICES = Table("unit-price", NameKind.MOTION, "a price", _row, "a second pr
 
 
 def write_unit_prices(prices: UnitPrices) -> str:
-    """Give the text of a file of prices."""
+    """Return the text of a file of prices."""
     lines = [f"{motion}\t{decimal_text(price)}\n" for motion, price in prices.motions.items()]
     for unit, price in prices.units.items():
         fields = [

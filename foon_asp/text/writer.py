@@ -14,7 +14,7 @@ from foon_asp.typed import typed
 
 
 def write_line(line: Line) -> str:
-    """Give the canonical text of a line: a line read without a remark comes out as it was.
+    """Return the canonical text of a line: a line read without a remark comes out as it was.
 
     Ids, fields and the order of ingredients are kept, and what a remark said was left out is not there.
     """
@@ -63,7 +63,7 @@ def _readable(line: Line) -> str | None:
 
 
 def write_unit(unit: FunctionalUnit) -> str:
-    """Give the lines of a unit, the closing ``//`` included.
+    """Return the lines of a unit, the closing ``//`` included.
 
     Raises :class:`UserError` for what nobody could read back: a unit without inputs, or with such names.
     """

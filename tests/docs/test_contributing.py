@@ -26,4 +26,4 @@ def test_files_that_are_named_are_there() -> None:
         path = ROOT / name
         assert path.exists() or ("NAME" in name and path.parent.is_dir()), name
     tables = re.findall(r"^\| file \| what \|\n\|---\|---\|\n((?:\|.*\n)+)", PAGE, re.MULTILINE)
-    assert len(tables) == 5
+    assert len(tables) == 6

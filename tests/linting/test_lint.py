@@ -115,6 +115,22 @@ def test_words_of_their_own(counts: str) -> None:
     assert list(near_names(mentions(counts))) == []
 
 
+@pytest.mark.parametrize(
+    ("counts", "known", "loose", "pairs"),
+    [
+        ("zwirbla: 30, zwirblo: 30", "zwirbla", "", [("zwirblo", "zwirbla")]),
+        ("zwirbla: 30, zwirblo: 30", "zwirbla, zwirblo", "", []),
+        ("zwirbla: 30, zwirblo: 30", "egg", "zwirblo", [("zwirblo", "zwirbla")]),
+        ("zwirbla: 30, zwirblo: 30", "egg", "zwirblo, zwirbla", []),
+        ("zwirbla: 30, zwirblo: 30", "egg", "", []),
+    ],
+)
+def test_names_that_are_known_or_never_made(
+    counts: str, known: str, loose: str, pairs: list[tuple[str, str]]
+) -> None:
+    assert list(near_names(mentions(counts), False, known.split(", "), loose.split(", "))) == pairs
+
+
 def test_endings_of_states_are_grammar() -> None:
     for rare, frequent in (("cube", "cubed"), ("juiced", "juice"), ("flakes", "flaked"), ("mixer", "mixed")):
         assert list(near_names({rare: 1, frequent: 200}, verbs=True)) == []
@@ -234,6 +250,8 @@ def test_lists_are_compared_with_networks_only(tmp_path: Path) -> None:
     assert found(tmp_path, fried, names=("goals.txt",)) == []
     assert codes(found(tmp_path, CHOP, fried, names=("a.txt", "goals.txt"))) == ["unmade-goal"]
     assert codes(found(tmp_path, CHOP, fried, names=("a.txt", "kitchen.txt"))) == ["unknown-item"]
+    (tmp_path / "goals").mkdir()
+    assert codes(found(tmp_path, CHOP, fried, names=("a.txt", "goals/kitchen.txt"))) == ["unknown-item"]
     whole = "O\tonion\nS\twhole\n"  # is a node, and made by nothing
     assert codes(found(tmp_path, CHOP, whole, names=("a.txt", "goals.txt"))) == ["unmade-goal"]
     assert found(tmp_path, CHOP, whole, names=("a.txt", "kitchen.txt")) == []

@@ -59,7 +59,7 @@ def test_settings_choose_codes_and_severities(folder: Path, cli: Cli) -> None:
     assert codes(cli, "recipes", "--ignore", here[0]) == []
     settings.write_text(
         f'{TABLE}select = ["space-for-tab"]\n'
-        '[tool.foon-asp.lint.per-file]\n"recipes/old" = ["space-for-tab"]\n'
+        '[tool.foon-asp.lint.per-file]\n"recipes/old" = ["space-for-tab"]\n"recipes" = ["syntax"]\n'
         '[tool.foon-asp.lint.severity]\nspace-for-tab = "note"\n'
     )
     assert codes(cli, "recipes") == [(here[0], "note")]
@@ -83,6 +83,7 @@ def test_settings_choose_codes_and_severities(folder: Path, cli: Cli) -> None:
         (f'{TABLE}severity = {{syntax = "bad", typo = "note"}}\n', ["2:13", "2:29"]),
         (f'{TABLE}severity = 3\nselect = [3]\r\nper-file = ["a"]\n', ["2:1", "3:1", "4:1"]),
         ('[tool.foon-asp]\nlint = "yes"\n', ["2:1"]),
+        (f'{TABLE}"\\u0069gnored" = []\n', ["1:7"]),  # spelt otherwise: where the table begins
     ],
 )
 def test_what_is_wrong_in_settings_is_said_with_its_place(folder: Path, text: str, places: list[str]) -> None:
@@ -121,6 +122,10 @@ def test_a_comment_that_silences_nothing_is_reported(folder: Path, cli: Cli) -> 
     file = write("a.txt", "# noqa: syntax\nO\tonion\n# noqa: typo\nM\tchop\nO\tonion\nS\tcut\n//\n# noqa\n")
     found = cli("lint", file, "--format", "json").json["findings"]
     assert [(f["code"], f["line"]) for f in found] == [("noqa", 1), ("noqa", 3), ("noqa", 8)]
+    nothing = write(
+        "c.txt", "# noqa: space-for-tab\n" + SLIP.replace("\t[gamelle]", "").replace("in [", "in\t[")
+    )
+    assert ("noqa", "warning") in codes(cli, nothing, write("b.txt", SLIP))
     # what is left out otherwise is there to be silenced
     file.write_text(SLIP.replace("S\tin", "# noqa: space-for-tab\nS\tin"))
     write("foon-asp.toml", f'{TABLE}ignore = ["space-for-tab", "unknown-container"]\n')
@@ -132,7 +137,7 @@ def test_a_comment_that_silences_nothing_is_reported(folder: Path, cli: Cli) -> 
 
 def test_only_new_findings_fail(folder: Path, cli: Cli) -> None:
     file = write("recipes/a.txt", SLIP)
-    assert cli("lint", file, "--baseline", "known.json").code == 2
+    assert "known.json: there is no such file, expected" in cli("lint", file, "--baseline", "known.json").err
     wrote = cli("lint", file, "--baseline", "known.json", "--write-baseline")
     assert (wrote.code, wrote.out) == (0, "")
     baseline = valid(json.loads(Path("known.json").read_text()))

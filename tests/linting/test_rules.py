@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from foon_asp.linting.linter import lint
 from tests.conftest import Cli
-from tests.linting.planted import CHOP, findings, unit
+from tests.linting.planted import CHOP, findings, unit, written
 
 # --- what is meant is left alone
 
@@ -90,6 +91,7 @@ def chained(*timed: tuple[str, str, str]) -> str:
         # made by two: the first counts, wherever it stands
         ([("a", "b", "1:00\t1:10"), ("d", "b", "0:20\t0:25"), ("b", "c", "0:30\t0:40")], ""),
         ([("d", "b", "0:20\t0:25"), ("a", "b", "1:00\t1:10"), ("b", "c", "0:30\t0:40")], ""),
+        ([("a", "b", "0:40\t0:45"), ("b", "c", "<0:10-0:20,0:30-0:50>")], ""),  # its end is the last
         # a step of odd times says nothing of others
         ([("a", "b", "1:00\t0:50"), ("b", "c", "0:30\t0:40")], "2:15 time-value"),
     ],
@@ -161,18 +163,6 @@ def test_ids_and_flags(tmp_path: Path, text: str, found: str) -> None:
     assert findings(tmp_path, text) == found
 
 
-def test_ids_are_told_with_the_names_that_have_them(tmp_path: Path, cli: Cli) -> None:
-    (tmp_path / "a.txt").write_text(WITH_ID * 2 + WITH_ID.replace("milk", "egg"))
-    assert "the object id O1 is that of 'egg' (twice) and of 'milk' (4 times, first on line 1)" in (
-        cli("lint", tmp_path / "a.txt").out
-    )
-    labels = ("salt", "flour", "milk", "eggs", "butter")
-    (tmp_path / "a.txt").write_text("".join(f"O1\t{label}\n" for label in labels) + "M\tmix\nO\tdough\n//\n")
-    assert "O1 is that of 5 names: 'salt' (1), 'flour' (1), 'milk' (1), ...;" in (
-        cli("lint", tmp_path / "a.txt").out
-    )
-
-
 # --- one object
 
 BESIDE = "O\tegg\n{}\nO\tpan\nO\tbowl\nM\tmix\nO\tegg\nS\tmixed\nO\tpan\nO\tbowl\n//\n"
@@ -196,20 +186,6 @@ BESIDE = "O\tegg\n{}\nO\tpan\nO\tbowl\nM\tmix\nO\tegg\nS\tmixed\nO\tpan\nO\tbowl
 )
 def test_lines_of_one_object(tmp_path: Path, lines: str, found: str) -> None:
     assert findings(tmp_path, BESIDE.format(lines)) == found
-
-
-def test_a_slip_under_one_object_is_told_once_in_a_file(tmp_path: Path, cli: Cli) -> None:
-    slip = BESIDE.format("S\tin\t[pan]\nS\tin\t[bowl]")
-    file = tmp_path / "a.txt"
-    file.write_text(slip + slip.replace("mix", "stir"))
-    ran = cli("lint", file)
-    assert (
-        "'egg' is 'in [bowl]' besides 'in [pan]'; both count: if one is outdated, take it out (twice in"
-        in (ran.out)
-    )
-    assert ran.out.count("second-relation") == 1
-    file.write_text(BESIDE.format("S\tcontains\t{pan}\nS\tcontains\t{bowl}"))
-    assert "'egg' has 'contains {bowl}' beside 'contains {pan}'" in cli("lint", file).out
 
 
 # --- brackets
@@ -311,6 +287,7 @@ def test_lists_of_another_network_are_told_once(
         ),
         (f"# From:\tsoup.txt:40\n{CHOP}# From:\tsoup.txt:90\n{CHOP}", "9:1 duplicate-unit"),
         (unit("egg, egg, milk", "mix", "egg;mixed, egg;mixed"), "2:3 repeated-object, 7:3 repeated-object"),
+        (unit("egg, egg", "mix", "egg;mixed") + unit("egg;mixed", "fry", "egg;fried"), "2:3 repeated-object"),
         (unit("egg, milk", "mix", "milk, egg"), "1:1 no-effect"),
         (unit("egg, milk", "mix", "milk, egg, egg"), "1:1 no-effect, 6:3 repeated-object"),
     ],
@@ -343,6 +320,7 @@ EGG = unit("egg, pan", "fry", "pan;contains {egg}")
         ),
         (unit(f"{MIXED}, egg", "zap", f"{MIXED};hot") + EGG, "7 7 0 0 0 0", "3:3 vanished"),
         (unit(f"{MIXED}, egg", "zap", f"{MIXED};hot") + EGG, "6 6 0 0 0 0", ""),
+        (unit(SHOWN, "zap", f"{MIXED}, salt"), "7 7 0 0 0 0", ""),  # it is taken out
         # where something loses and gains, or comes and goes, it is called otherwise
         (unit(SHOWN, "zap", "bowl;contains {flour,oil}"), "9 9 0 0 0 0", ""),
         (unit(f"{MIXED}, egg", "zap", f"{MIXED}, omelette") + EGG, "9 9 0 0 0 0", ""),
@@ -451,6 +429,7 @@ TAKE_WASHED = unit(f"leek;chopped;washed;{IN}", "eat", "bowl;dirty")
         # contents with one more, not with two
         ("bowl;contains {leek,oil,salt}", "bowl;contains {leek,salt}", 25, "both"),
         ("bowl;contains {leek,oil,salt}", "bowl;contains {leek}", 0, ""),
+        ("bowl;contains {leek,salt}", "bowl;contains {leek}", 0, ""),
         ("bowl;contains {leek,salt}", "bowl;contains {leak,salt}", 25, "both"),
         # two differences
         (f"leek;chopped;hot;{IN}", f"leek;diced;cold;{IN}", 0, ""),
@@ -489,8 +468,97 @@ def test_a_state_that_is_missed_where_the_other_node_is_taken_too(tmp_path: Path
             ),
             "5:3 left-out",
         ),
+        (
+            unit("leek, pan", "cut", "pan;contains {leek}")
+            + between(24)
+            + unit("pan;contains {leek}, leek;in [pan]", "fry", "pan;contains {leek}, leek;fried;in [pan]"),
+            "4:3 left-out",
+        ),
+        (
+            unit("leek, pan", "cut", "pan;contains {leek}")
+            + between(25)
+            + unit("pan;contains {leek}, leek;in [pan]", "fry", "pan;contains {leek}, leek;fried;in [pan]"),
+            "",
+        ),
     ],
 )
 def test_what_is_left_out(tmp_path: Path, text: str, found: str) -> None:
     told = findings(tmp_path, text).split(", ")
     assert ", ".join(each for each in told if each.endswith("left-out")) == found
+
+
+# --- messages
+
+PUT = unit("white rice, brown rice", "mix", "brown rice;in [xyrq]") + unit(
+    "egg", "put", "cup;contains {rice}"
+)
+IN_TWO = BESIDE.format("S\tin\t[pan]\nS\tin\t[bowl]")
+RING = "".join(unit(f"gate {n}", f"turn {n}", f"gate {(n + 1) % 6}") for n in range(6))
+
+
+@pytest.mark.parametrize(
+    ("files", "code", "message"),
+    [
+        (
+            {"a.txt": WITH_ID * 2 + WITH_ID.replace("milk", "egg")},
+            "id-of-two-names",
+            "the object id O1 is that of 'egg' (twice) and of 'milk' (4 times, first on line 1); one needs "
+            "another id",
+        ),
+        (
+            {"a.txt": "O1\tsalt\nO1\tflour\nO1\tmilk\nO1\teggs\nM\tmix\nO\tdough\n//\n"},
+            "id-of-two-names",
+            "the object id O1 is that of 4 names: 'salt' (1), 'flour' (1), 'milk' (1), ...; ids should tell "
+            "names apart, or be left out",
+        ),
+        (
+            {"a.txt": IN_TWO + IN_TWO.replace("mix", "stir")},
+            "second-relation",
+            "'egg' is 'in [bowl]' besides 'in [pan]'; both count: if one is outdated, take it out (twice in "
+            "this file)",
+        ),
+        (
+            {"a.txt": PUT, "b.txt": PUT},
+            "unknown-container",
+            "'xyrq' stands in [ ] twice in 2 files, and is never an object; no unit takes or makes it",
+        ),
+        (
+            {"a.txt": PUT + unit("brown rice", "wash", "brown rice;clean")},
+            "unknown-ingredient",
+            "'rice' is an ingredient once, and is never an object; is it 'brown rice' or 'white rice'?",
+        ),
+        (
+            {"a.txt": CHOP, "kitchen.txt": "O\tonion\nS\tred\n"},
+            "unknown-item",
+            "'onion; red' is no object node of the network; there is 'onion; whole' and 1 more called "
+            "'onion'",
+        ),
+        (
+            {"a.txt": unit("egg", "boil", "soup"), "kitchen.txt": "O\tegg\nS\tred\nO\tham\n"},
+            "unknown-item",
+            "'egg; red' is no object node of the network; there is 'egg'\n"
+            "'ham' is no object node of the network; none there is called 'ham'",
+        ),
+        (
+            {"a.txt": RING, "motion.txt": "turn 0\t0.5\nturn 1\t0.5\n"},
+            "missing-rate",
+            "4 motions of the network without a rate: 'turn 2', 'turn 3', 'turn 4', ...",
+        ),
+        (
+            {"a.txt": RING, "motion.txt": "turn 0\t0.5\nturn 1\t0.5\nturn 2\t0.5\n"},
+            "missing-rate",
+            "3 motions of the network without a rate: 'turn 3', 'turn 4', 'turn 5'",
+        ),
+        (
+            {"a.txt": RING},
+            "dead-cycle",
+            "only units that need 'gate 0' make it: from it 'turn 0' (line 1) makes 'gate 1', from that "
+            "'turn 1' (line 5) makes 'gate 2', from that 'turn 2' (line 9) makes 'gate 3', from that 2 more "
+            "steps, from that 'turn 5' (line 21) makes 'gate 0'; it has to be in the kitchen, or made in "
+            "another way",
+        ),
+    ],
+)
+def test_messages(tmp_path: Path, files: dict[str, str], code: str, message: str) -> None:
+    paths = written(tmp_path, *files.values(), names=tuple(files))
+    assert "\n".join(each.message for each in lint(paths) if each.code == code) == message

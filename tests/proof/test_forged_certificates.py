@@ -45,7 +45,7 @@ from tests.proof.forging import (
     require_its_check_alone,
     require_right,
 )
-from tests.support.handmade_certificate import Content, forbid, handmade, older
+from tests.support.handmade_certificate import Content, forbid, handmade
 
 # Nobody can make the end.
 LOST = recipe("pour: start > middle", "dig: rare > end")
@@ -161,9 +161,8 @@ FORGED: dict[str, Forged] = {
     # --- the frame
     "read_frame: expected an object with the keys of a certificate": Forged([], PLAIN, KIND),
     "read_frame: expected the format …": plain(format="a song"),
-    "read_frame: expected version … of the format": plain(version=99, stays=KIND),
+    "read_frame: expected version … of the format": plain(version=99),
     "read_frame: expected the keys …": plain(more=1),
-    "read_frame: _VERSION_1": plain(version=1, digests=older(PLAIN), containers="implied"),
     "read_frame: the seal does not match: something was changed": Forged(
         certificate() | {"seal": "0"}, PLAIN
     ),
@@ -333,17 +332,7 @@ FORGED: dict[str, Forged] = {
 # What one function refuses, in other places of a certificate.
 PLACES: dict[str, Forged] = {
     "expected amounts and their limit": plain(rules=[own((), [[{"1": [3]}, 1, 1]])]),
-    "weights: expected what has a weight by its number": plain(proof={"weights": [["0", ["1"]]]}),
     "expected the number of a rule": plain(**NO_TREE, rules=[SPOILED], cuts=[], proof={"broken": False}),
-    "limits: a weight is not above zero": plain(
-        rules=at_most(5), **BAKED, cuts=[], proof=weigh(limits=[[0, ["-1"]]])
-    ),
-    "expected the id of a kitchen item": plain(
-        **bound("1/2", objective=["kitchen"]),
-        cuts=[[START, END, MIDDLE]],
-        proof=branch(weigh("1/2"), weigh(), item=END),
-    ),
-    "expected the id of a unit": plain(proof=branch(LEAF, weigh(), unit=False)),
     "expected the number of a step": plain(
         rules=[INTERMEDIATE],
         **BAKED,
@@ -446,11 +435,6 @@ PARTS = {
         'waiting.append((node["others"], used, without.union(dear)))',
         "pass",
         plain(**TWO, proof={**DEAR, "others": weigh()}),
-    ),
-    "nothing was left out as too dear before version 5": Part(
-        ' and self.certificate["version"] >= _WITH_DEAR',
-        "",
-        plain(version=4, proof={**DEAR, "others": LEAF}),
     ),
     "a unit is used once": Part(
         "members = [*units, *(", "members = [*units[:1], *(", plain(tree=[1, 2], costs=[1])

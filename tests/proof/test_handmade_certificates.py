@@ -39,7 +39,7 @@ from tests.proof.by_hand import (
     refusal,
     weigh,
 )
-from tests.support.handmade_certificate import Content, check, forbid, handmade, older
+from tests.support.handmade_certificate import Content, check, forbid, handmade
 
 POURED: Content = {"tree": [POUR], "costs": [1]}
 BAKED: Content = {"tree": [MIX, BAKE], "costs": [2]}
@@ -81,9 +81,6 @@ def test_an_optimum_by_each_objective(
     exact = tuple(map(Fraction, costs))
     said = ("optimal", (END,), "strict", 3, tuple(objective), (), (), tuple(tree), exact, len(cuts))
     assert found == verify.Verified(*said)
-    for version in (1, 2):  # which say the same of strict containers, and know no prices
-        assert accepted(**values, version=version, digests=older(PLAIN)) == found
-        assert refusal(**values, version=version) == "expected the keys network, kitchen, rates, utensils"
 
 
 @pytest.mark.parametrize(
@@ -331,7 +328,7 @@ FILE = {"name": "mine.lp", "sha256": sha(":- use(1)."), "text": ":- use(1)."}
 @pytest.mark.parametrize(
     ("said", "wrong"),
     [
-        (VERSION, [{"version": each} for each in (0, 6, True, 2.0, "2")]),
+        (VERSION, [{"version": each} for each in (0, 4, 6, True, 5.0, "5")]),
         (LEVEL, [{"level": each} for each in (2, 3.0, None)]),
         (NO_GOALS, [{"goals": []}, {"goals": [A_GOAL] * 2}]),
         (NO_ID, [{"goals": [A_GOAL | {"id": each}]} for each in (6, -5, True)]),
@@ -357,10 +354,7 @@ FILE = {"name": "mine.lp", "sha256": sha(":- use(1)."), "text": ":- use(1)."}
         (PARTS, [{"bound": []}, {"bound": ["0", "0"]}]),
         (NUMBER, [{"bound": [each]} for each in (0, "1.5", "+1", "\u0661")]),
         (LOWEST, [{"bound": [each]} for each in ("-0", "2/4", "1/1")]),
-        (NAMES_ORDERED, [{"version": 3, "forbidden": {"motions": ["b", "a"], "objects": []}}]),
-        (NAMES_ORDERED, [{"version": 3, "forbidden": {"motions": [], "objects": ["a", "a"]}}]),
         (NAMES_ORDERED, [ruled({"rule": "only_sources", "allowed": ["b", "a"]})]),
-        (NAMES, [{"version": 3, "forbidden": {"motions": [1], "objects": []}}]),
         (NAMES, [ruled({"rule": "only_sources", "allowed": [1]}), ruled(claiming(library=[1]))]),
         (NAMES, [ruled(claiming(files=[FILE | {key: 1}])) for key in ("name", "text")]),
         ("expected a list", [{"rules": {}}]),
@@ -392,11 +386,10 @@ def test_right_values_beside_those() -> None:
     for values in (
         ruled(*forbid(f"sing {number:03}" for number in range(100))),
         ruled(claiming(files=[FILE])),
-        {"version": 2, "digests": older(PLAIN)},
     ):
         assert accepted(**bound("0") | values).claim == "bound"
     implied = replace(PLAIN, containers=ContainerRule.IMPLIED)
-    assert accepted(implied, **bound("0"), version=2, digests=older(implied)).containers == "implied"
+    assert accepted(implied, **bound("0")).containers == "implied"
     level_1 = replace(PLAIN, network=network_at_level(PLAIN.network, 1))
     assert accepted(level_1, **bound("0")).level == 1
     assert refusal(level_1, **bound("0"), level=True) == "not a claim about level 1"

@@ -15,16 +15,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import foon_asp
-from foon_asp.asp import Proof, Status
 from foon_asp.cli.verbs import VERBS, verb_command
 from foon_asp.network import NetworkBuilder, ObjectNode
 from foon_asp.planning import translator
-from foon_asp.problem import ContainerRule
-from foon_asp.proof.simulation import Verdict
 from foon_asp.results.plain import plain
 from foon_asp.results.schema_file import schema, schema_kinds
 from foon_asp.results.values_of import named_node
-from foon_asp.searches import Ending
 from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import json_text, read_json, schema_name
 from tests.conftest import Cli, valid
@@ -300,19 +296,6 @@ def test_a_schema_is_one(kind: str) -> None:
     }
     assert references == whole.get("$defs", {}).keys()
     assert whole["$schema"] == "https://json-schema.org/draft/2020-12/schema"
-
-
-def test_the_words_of_the_schemas_are_ours() -> None:
-    answer = schema("answer")
-    assert answer["properties"]["items"]["enum"] == ["lasting", "used-up"]
-    for enum, words in (
-        (answer["$defs"]["ContainerRule"], ContainerRule),
-        (answer["$defs"]["Status"], Status),
-        (answer["$defs"]["Proof"], Proof),
-        (schema("check")["$defs"]["Verdict"], Verdict),
-        (schema("search")["$defs"]["Ending"], Ending),
-    ):
-        assert sorted(enum["enum"]) == sorted(map(str, words))
 
 
 def test_the_verb_prints_them(cli: Cli) -> None:

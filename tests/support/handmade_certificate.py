@@ -31,27 +31,12 @@ def handmade(problem: Problem, **values: Any) -> Content:
         "proof": {"weights": []},
         **values,
     }
-    if content["version"] in (1, 2, 3):
-        content = before_rules(content)
     return {**content, "seal": verify.seal(content)}
-
-
-def before_rules(content: Content) -> Content:
-    """Give a certificate without rules the keys that it had before version 4, unsealed."""
-    old = {"forbidden": {"motions": [], "objects": []}, **content}
-    del old["rules"], old["measures"]
-    return {**old, "digests": {key: sha for key, sha in old["digests"].items() if key != "sources"}}
 
 
 def check(content: Any, problem: Problem) -> verify.Verified:
     """Verify a certificate against the data of a problem."""
     return verify.verify(content, subject_of(problem))
-
-
-def older(problem: Problem) -> dict[str, str]:
-    """Give the digests that certificates had before there were prices, and sources."""
-    digests = subject_of(problem).digests()
-    return {name: digest for name, digest in digests.items() if name not in ("prices", "sources")}
 
 
 def forbid(motions: Iterable[str] = (), labels: Iterable[str] = ()) -> list[dict[str, str]]:
