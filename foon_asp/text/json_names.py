@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
+from foon_asp.errors import UserError
 from foon_asp.text.json_layout import TOKEN
 from foon_asp.text.json_object import is_none
 from foon_asp.text.json_value import json_line
@@ -18,6 +19,7 @@ _LABELS = {"label", "object_label"}
 _STATES = {"states", "object_states"}
 _RELATED = {"relative_object", "related_object"}
 _NAMED = {*_LABELS, "state_label", "motion_label"}  # by the id beside it
+_CONTENTS = "contains"  # the word that listed ingredients are read under
 _IDS = {NameKind.OBJECT: "object_id", NameKind.MOTION: "motion_id"}
 
 
@@ -34,10 +36,17 @@ def json_mentions(text: str) -> Iterator[Mention]:
 def renamed_json(text: str, renaming: "Renaming") -> str:
     """Return a text that is JSON with the new name; everything else stays as it is written."""
     edits: list[tuple[int, int, str]] = []
-    for found in _json_names(text):
+    names = _json_names(text)
+    word = renaming.rename
+    if word.kind == NameKind.WORD and word.old == _CONTENTS and any(map(_is_word_of_list, names)):
+        raise UserError(
+            f"JSON lists ingredients under the word {_CONTENTS!r} alone, which cannot be renamed there; "
+            "convert the file to text before"
+        )
+    for found in names:
         name = found.name
         if _is_state_line(found):
-            spelt = renaming.line(f"S\t{name}").removeprefix("S\t")
+            spelt = renaming.line(f"S\t{name}").removeprefix("S\t").replace("\t", " ")
         else:
             spelt = renaming.name(found.kind, name)
         if spelt != name:
@@ -69,10 +78,14 @@ class _JsonName(NamedTuple):
 
 
 class _Level:
-    """A list or an object of JSON while it is read: the key at hand, and the key that it is the value of."""
+    """A list or an object of JSON while it is read: its current key, and the key that it is the value of.
 
-    def __init__(self, owner: str, is_list: bool) -> None:
-        self.owner, self.is_list = owner, is_list
+    ``first`` is how many names there were when it began.
+    """
+
+    def __init__(self, owner: str, is_list: bool, first: int = 0) -> None:
+        self.owner, self.is_list, self.first = owner, is_list, first
+        self.lists_ingredients = False
         self.key = owner if is_list else ""
         self.names: list[tuple[str, _JsonName]] = []
         self.ids: dict[str, tuple[str, tuple[int, int]]] = {}
@@ -86,9 +99,14 @@ def _json_names(text: str) -> list[_JsonName]:
     for match, after in zip(tokens, [*tokens[1:], None], strict=True):
         token, level = match[0], levels[-1]
         if token in {"{", "["}:
-            levels.append(_Level(level.key, token == "["))
+            levels.append(_Level(level.key, token == "[", len(found)))
         elif token in {"}", "]"}:
-            found += _with_ids(levels.pop())
+            levels.pop()
+            found += _with_ids(level)
+            if level.is_list and level.owner == "ingredients":
+                levels[-1].lists_ingredients = any(not is_none(each.name) for each in found[level.first :])
+            elif level.lists_ingredients:
+                _name_contents(found, level.first)
         elif token in {":", ","}:
             continue
         elif not level.is_list and after is not None and after[0] == ":":
@@ -111,6 +129,18 @@ def _with_ids(level: _Level) -> Iterator[_JsonName]:
         kind = NameKind.WORD if related and name.kind is NameKind.STATE else name.kind
         id_ = level.ids.get(_IDS.get(kind, "state_id")) if key in _NAMED else None
         yield name._replace(kind=kind, id=id_[0], id_span=id_[1]) if id_ else name._replace(kind=kind)
+
+
+def _is_word_of_list(name: _JsonName) -> bool:
+    return name.kind is NameKind.WORD and name.name == _CONTENTS
+
+
+def _name_contents(names: list[_JsonName], first: int) -> None:
+    """Make the state ``contains`` of an object that lists ingredients the word of its contents."""
+    for index in range(first, len(names)):
+        if names[index].kind is NameKind.STATE and names[index].name == _CONTENTS:
+            names[index] = names[index]._replace(kind=NameKind.WORD)
+            return
 
 
 def _is_state_line(found: _JsonName) -> bool:
