@@ -101,7 +101,7 @@ class Source:
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
         """Return the units that have no price, by motion."""
         network = self._network
-        known = UnitPrices(prices.motions or {}, prices.units).each(network)
+        known = UnitPrices(prices.motions or {}, prices.units).of_units(network)
         lacking = (unit for unit, price in enumerate(known) if price is None)
         return count_unpriced((network.motions[unit], network.sources[unit]) for unit in lacking)
 
