@@ -147,5 +147,5 @@ def listed(names: Names) -> list[str | ObjectNode]:
 
 def in_python(error: GoalError) -> str:
     """Return an error as text, with its candidates as Python strings."""
-    lines = [error.said, *(f"  {candidate!r}" for candidate in error.candidates)]
-    return "\n".join(lines + ([f"  ... and {error.more} more"] if error.more else []))
+    lines = [error.message, *(f"  {candidate!r}" for candidate in error.candidates)]
+    return "\n".join(lines + ([f"  ... and {error.hidden} more"] if error.hidden else []))
