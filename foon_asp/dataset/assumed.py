@@ -1,4 +1,4 @@
-"""Notes in words on the kitchen and the goals that were assumed because none were given."""
+"""Messages about the kitchen and the goals that were assumed because none were given."""
 
 from collections.abc import Iterable, Iterator, Sequence
 

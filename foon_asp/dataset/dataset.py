@@ -341,20 +341,20 @@ class Dataset:
     def posed_anew(
         self, problem: Problem, goals: Names | None, containers: str | None, changes: Changes
     ) -> Problem:
-        """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
+        """Pose a problem of the dataset with changes; see :meth:`Problem.vary`."""
         dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
         posed = dataset.nearby(ids, containers or problem.containers, problem.items)
         return _with_own_rates(posed, problem)
 
     def posed_whole(self, problem: Problem) -> Problem:
-        """Pose a problem of these data over the whole network."""
+        """Pose a problem of the dataset over the whole network."""
         dataset = self.with_kitchen_of(problem)
         posed = dataset.problem(_whole_goals(problem), problem.containers, True, problem.items)
         return _with_own_rates(posed, problem)
 
     def posed_about(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
-        """Pose a problem of these data over a part with its goals and these units."""
+        """Pose a problem of the dataset over a part with its goals and the given units."""
         dataset = self.with_kitchen_of(problem)
         data, goals = dataset.part(_whole_goals(problem), tree=units)
         return _with_own_rates(ask(data, goals, problem.containers, dataset, problem.items), problem)

@@ -85,7 +85,7 @@ class Nearby:
         """The relaxation of the question in which all open nodes are available.
 
         Of any tree of the whole network, the units read are a tree of the relaxation: their inputs are
-        available, made by another of these units, or open. So the optimum of the relaxation is a lower bound
+        available, made by another of the units, or open. So the optimum of the relaxation is a lower bound
         on that of the whole network, for objectives that only units add to.
 
         User rules see the kitchen without the open nodes. So they hold of units here as in the whole network,

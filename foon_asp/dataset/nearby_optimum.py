@@ -47,9 +47,7 @@ def solve_nearby(
     tighter = min if multiplies(first_objective) else max
     bounds_found: list[int | Fraction] = []  # on the first objective
     units_of_rules = set[int]()  # units, by number, on which the rules depend
-    smallest_tree: list[int] | None = (
-        None  # that keeps the rules, by number; ``None`` before it is searched for
-    )
+    smallest: list[int] | None = None  # with the rules, by number; ``None`` before the search
     unconstrained: Outcome | None = None
     if leave_a_rest(settings):  # the optimum without rules is needed anyway, and read quickly
         unconstrained = solve_nearby(nearby, objectives, without_rules, _OnlyWarnings(reporter))
@@ -76,8 +74,8 @@ def solve_nearby(
                 deadline.interrupt()
                 outcome = outcome._replace(proof=None, stopped=deadline.stopped)
             else:
-                if unconstrained is not None and smallest_tree is None:
-                    smallest_tree = (
+                if unconstrained is not None and smallest is None:
+                    smallest = (
                         []
                         if first_objective is Objective.UNITS
                         else _read_smallest_tree(nearby, with_rules, units_of_rules)
@@ -91,11 +89,9 @@ def solve_nearby(
             tree = solve(problem, objectives, with_rules, _OnlyWarnings(Reporter()))
             status = Status.UNKNOWN if tree.units is None else Status.FEASIBLE
             outcome = outcome._replace(status=status, units=tree.units, costs=tree.costs)
-        if outcome.status is Status.UNKNOWN and smallest_tree:
+        if outcome.status is Status.UNKNOWN and smallest:
             units = [
-                unit
-                for number in smallest_tree
-                if (unit := problem.network.unit_of_number(number)) is not None
+                unit for number in smallest if (unit := problem.network.unit_of_number(number)) is not None
             ]
             outcome = outcome._replace(
                 status=Status.FEASIBLE, units=executable_order(problem, units), costs=problem.costs(units)

@@ -4,7 +4,7 @@ Call the units read for the goals near, and all others far. Let c be the optimum
 :class:`~foon_asp.dataset.nearby.Nearby` without rules. A tree with a far unit v has units for the goals,
 which cost at least c, and units that lead to v. These cost at least the distance of v from the near units,
 which the outline of the store has for all units at once. So a tree that costs less than q has only far units
-whose distance is less than q - c. Once all of these that rules may require were read, with all units that
+whose distance is less than q - c. Once all such units that rules may require were read, with all units that
 lead to them, the units read of any such tree are a tree of the relaxation that keeps the rules. So no tree is
 better than both the optimum of that relaxation and q.
 """
@@ -24,11 +24,8 @@ from foon_asp.store.outline import FAR, Mask
 from foon_asp.store.unit_distances import UnitDistances, greatest_cost
 
 _MAX_UNITS = 30_000  # read one by one; for more, reading the whole store is faster
-_SEARCH_WIDTHS = (
-    (100, 0),
-    (1_000, 2),
-    (10_000, 6),
-)  # units of a kind, and steps of distance beyond the nearest
+# units of a kind, and steps of distance beyond the nearest unit
+_SEARCH_WIDTHS = (100, 0), (1_000, 2), (10_000, 6)
 
 
 def solve_nearby_under(
@@ -66,12 +63,8 @@ class _Search:
     def __init__(
         self, nearby: Nearby, unconstrained: Outcome, settings: Settings, reporter: Reporter
     ) -> None:
-        self._nearby, self._unconstrained, self._settings, self._reporter = (
-            nearby,
-            unconstrained,
-            settings,
-            reporter,
-        )
+        self._nearby, self._unconstrained = nearby, unconstrained
+        self._settings, self._reporter = settings, reporter
         self._order = levels(unconstrained.objectives)
         self.best = _unknown(nearby, unconstrained)  # the incumbent, without a proof
 

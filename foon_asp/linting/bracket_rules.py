@@ -35,7 +35,7 @@ def other_bracket(context: Context) -> Iterator[Diagnostic]:
         counts[attribute] += mention.often
     for mention, attribute in attributes:
         if not mention.line.remarks and (
-            message := _reason_for_other_bracket(attribute, counts, context.known)
+            message := _reason_for_other_bracket(attribute, counts, context.all_names)
         ):
             sheet = context.sheets[mention.sheet]
             suggestion = f"; is '{_in_other_bracket(attribute)}' meant?"
@@ -44,11 +44,11 @@ def other_bracket(context: Context) -> Iterator[Diagnostic]:
 
 
 def _reason_for_other_bracket(
-    attribute: Relation | Contents, counts: Counter[Relation | Contents], known: Vocabulary
+    attribute: Relation | Contents, counts: Counter[Relation | Contents], vocabulary: Vocabulary
 ) -> str:
     """Return the reason why the other bracket is probably meant, in words; empty if there is no reason."""
     other: Bracket = Contents if isinstance(attribute, Relation) else Relation
-    usual = known.usual_bracket(attribute.word)
+    usual = vocabulary.usual_bracket(attribute.word)
     if usual is other:
         return f"{attribute.word!r} stands with {'{ }' if other is Contents else '[ ]'} nearly everywhere"
     objects = _bracketed_objects(attribute)
@@ -58,7 +58,11 @@ def _reason_for_other_bracket(
     count, swapped_count = counts[attribute], counts[swapped]
     if swapped_count > count:
         return f"'{_in_other_bracket(attribute)}' stands {times(swapped_count)}, this {times(count)}"
-    if other is Relation and objects[0] in known.utensils and other in known.brackets(attribute.word):
+    if (
+        other is Relation
+        and objects[0] in vocabulary.utensils
+        and other in vocabulary.brackets(attribute.word)
+    ):
         return f"{objects[0]!r} is something that others are in or on"
     return ""
 
@@ -101,17 +105,17 @@ def misread_line(context: Context) -> Iterator[Diagnostic]:
 
 
 def _bracketed(state: str, context: Context) -> str:
-    """Return the relation or contents that a state is probably meant to be, empty if it is none."""
-    known, words = context.known, state.split(" ")
+    """Return the relation or contents that a state is probably meant to be; empty for a state."""
+    all_names, words = context.all_names, state.split(" ")
     for length in range(min(_MAX_WORDS, len(words) - 1), 0, -1):
         word, objects = " ".join(words[:length]), " ".join(words[length:])
-        brackets = list(known.brackets(word))
-        if not brackets or objects in known.names[Kind.STATE]:
+        brackets = list(all_names.brackets(word))
+        if not brackets or objects in all_names.names[Kind.STATE]:
             continue
         items = [item.strip() for item in objects.split(",")]
         if brackets[0] is Relation:
-            if objects in known.names[Kind.OBJECT]:
+            if objects in all_names.names[Kind.OBJECT]:
                 return f"{word} [{objects}]"
-        elif word == "contains" or known.names[Kind.OBJECT] >= set(items):
+        elif word == "contains" or all_names.names[Kind.OBJECT] >= set(items):
             return f"{word} {{{','.join(items)}}}"
     return ""

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from foon_asp.linting.habits import held
+from foon_asp.linting.habits import content_names
 from foon_asp.linting.linted_files import Copy
 from foon_asp.network import Network, ObjectNode
 from foon_asp.network.near_nodes import slip_between
@@ -65,13 +65,13 @@ class Chain:
 
     def _may_be_one(self, node: int, consumer: int, other: int, producer: int) -> bool:
         """Whether a node taken may be a node made; not if both have different locations that are listed."""
-        taken, made = self.objects[node], self.objects[other]
-        return _differ_little(taken, made, consumer - producer) and (
-            taken.relations == made.relations
-            or len(taken.relations) != len(made.relations)
-            or slip_between(taken, made) is not None
-            or not self._locations_listed(taken, consumer, 0)
-            or not self._locations_listed(made, producer, 1)
+        taken_node, made_node = self.objects[node], self.objects[other]
+        return _differ_little(taken_node, made_node, consumer - producer) and (
+            taken_node.relations == made_node.relations
+            or len(taken_node.relations) != len(made_node.relations)
+            or slip_between(taken_node, made_node) is not None
+            or not self._locations_listed(taken_node, consumer, 0)
+            or not self._locations_listed(made_node, producer, 1)
         )
 
     def _locations_listed(self, node: ObjectNode, position: int, side: int) -> bool:
@@ -79,30 +79,41 @@ class Chain:
         return self.labels(position, side).issuperset(related for _, related in node.relations)
 
 
-def _differ_little(taken: ObjectNode, made: ObjectNode, distance: int) -> bool:
+def _differ_little(taken_node: ObjectNode, made_node: ObjectNode, distance: int) -> bool:
     """Whether two nodes differ so little that they may be meant to be one; ``distance`` is in units."""
-    if taken.label != made.label:
-        return distance <= _SHORT_DISTANCE and _parts(taken) > 1 and taken[1:] == made[1:]
-    if slip_between(taken, made):
+    if taken_node.label != made_node.label:
+        return distance <= _SHORT_DISTANCE and _parts(taken_node) > 1 and taken_node[1:] == made_node[1:]
+    if slip_between(taken_node, made_node):
         return True
-    states, relations = taken.states ^ made.states, taken.relations ^ made.relations
-    contents_differ = taken.contents != made.contents
+    states, relations = taken_node.states ^ made_node.states, taken_node.relations ^ made_node.relations
+    contents_differ = taken_node.contents != made_node.contents
     if bool(states) + bool(relations) + contents_differ > 1:
         return False
     if contents_differ:
-        return len(held(taken) ^ held(made)) == 1 and min(len(held(taken)), len(held(made))) > 1
+        return (
+            len(content_names(taken_node) ^ content_names(made_node)) == 1
+            and min(len(content_names(taken_node)), len(content_names(made_node))) > 1
+        )
     if len(states) + len(relations) == 2:  # one replaced by another
-        return distance <= _MIDDLE_DISTANCE and _parts(taken) > 1 and _parts(taken) == _parts(made)
+        return (
+            distance <= _MIDDLE_DISTANCE
+            and _parts(taken_node) > 1
+            and _parts(taken_node) == _parts(made_node)
+        )
     # raw items are taken repeatedly: sugar, after other sugar was put into the bowl
-    moved = distance <= _SHORT_DISTANCE or bool(taken.relations or taken.contents)
+    moved = distance <= _SHORT_DISTANCE or bool(taken_node.relations or taken_node.contents)
     return len(states) == 1 or (len(relations) == 1 and moved)
 
 
-def _lacks_a_state(taken: ObjectNode, made: ObjectNode) -> bool:
+def _lacks_a_state(taken_node: ObjectNode, made_node: ObjectNode) -> bool:
     """Whether the node taken is the node made without one of its states."""
-    other_parts = taken.relations, taken.contents
-    same = taken.label == made.label and any(other_parts) and other_parts == (made.relations, made.contents)
-    return same and taken.states < made.states and len(made.states - taken.states) == 1
+    other_parts = taken_node.relations, taken_node.contents
+    same = (
+        taken_node.label == made_node.label
+        and any(other_parts)
+        and other_parts == (made_node.relations, made_node.contents)
+    )
+    return same and taken_node.states < made_node.states and len(made_node.states - taken_node.states) == 1
 
 
 def _parts(node: ObjectNode) -> int:

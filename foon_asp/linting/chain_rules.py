@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from foon_asp.linting.chain import MAX_DISTANCE, Chain
 from foon_asp.linting.context import Context
-from foon_asp.linting.habits import held
+from foon_asp.linting.habits import content_names
 from foon_asp.linting.place_rules import misplaced_nodes, only_after, unheld_nodes
 from foon_asp.linting.rule import WARNING, rule
 from foon_asp.text.diagnostics import Diagnostic
@@ -78,21 +78,21 @@ def left_out(context: Context) -> Iterator[Diagnostic]:
 def _producer_without(chain: Chain, node: int, consumer: int) -> tuple[int, int] | None:
     """Return the position of a unit that makes only a companion of a node, and the companion.
 
-    A companion is a container that has the node in it, or an object in the node. ``None`` if there is none.
+    A companion is a container that has the node in it, or an object in the node. ``None`` if no unit does so.
     """
-    taken = chain.objects[node]
+    unmade_node = chain.objects[node]
     for companion in chain.network.inputs[chain.units[consumer]]:
         other = chain.objects[companion]
-        is_inside = taken.label in held(other) and any(
-            related == other.label for _, related in taken.relations
+        is_inside = unmade_node.label in content_names(other) and any(
+            related == other.label for _, related in unmade_node.relations
         )
-        is_around = other.label in held(taken) and any(
-            related == taken.label for _, related in other.relations
+        is_around = other.label in content_names(unmade_node) and any(
+            related == unmade_node.label for _, related in other.relations
         )
         earlier = [position for position in chain.producers.get(companion, ()) if position < consumer]
         if not (is_inside or is_around) or not earlier or consumer - earlier[-1] > MAX_DISTANCE:
             continue
         input_labels, output_labels = (chain.labels(earlier[-1], side) for side in (0, 1))
-        if taken.label not in output_labels and (is_around or taken.label in input_labels):
+        if unmade_node.label not in output_labels and (is_around or unmade_node.label in input_labels):
             return earlier[-1], companion
     return None

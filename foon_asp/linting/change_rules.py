@@ -19,7 +19,7 @@ def _is_seldom(often: int, of: int) -> bool:
 def _units(context: Context) -> Iterator[tuple[int, str, Changes, Habit]]:
     """Yield each unit with its motion, its changes, and the habit of its motion."""
     for unit, motion in enumerate(context.network.motions):
-        yield unit, motion, context.habits.units[unit], context.known.habit(motion)
+        yield unit, motion, context.habits.units[unit], context.all_names.habit(motion)
 
 
 def _finding(context: Context, unit: int, side: int, node: int, message: str) -> Diagnostic:

@@ -43,14 +43,14 @@ class Context:
         return Habits(self.network)
 
     @cached_property
-    def known(self) -> Vocabulary:
-        """The vocabulary together with the names and habits of the files."""
+    def all_names(self) -> Vocabulary:
+        """The vocabulary, with the names and habits of the files added."""
         return self.vocabulary.plus(Vocabulary.of(self.names, self.habits))
 
     @cached_property
     def remarks(self) -> dict[str, list[Diagnostic]]:
         """The remarks of the reader, by code."""
-        return remarks_by_code(self.files, self.known)
+        return remarks_by_code(self.files, self.all_names)
 
     @cached_property
     def near_names(self) -> dict[Kind, list[tuple[str, str]]]:

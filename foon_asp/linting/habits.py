@@ -25,7 +25,7 @@ class Changes(NamedTuple):
     keeps: bool
 
 
-def held(node: ObjectNode) -> AbstractSet[str]:
+def content_names(node: ObjectNode) -> AbstractSet[str]:
     """Return the names of the contents of a node."""
     return _NOTHING if not node.contents else {item for _, items in node.contents for item in items}
 
@@ -34,7 +34,7 @@ def mentioned(nodes: Collection[ObjectNode]) -> set[str]:
     """Return every name in nodes: labels, contents and related objects."""
     names = {node.label for node in nodes}
     names.update(related_object for node in nodes for _, related_object in node.relations)
-    return names.union(*map(held, nodes))
+    return names.union(*map(content_names, nodes))
 
 
 class Habit(NamedTuple):
@@ -57,7 +57,7 @@ class Habits:
     def __init__(self, network: Network) -> None:
         self.network = network
         objects = network.objects
-        self.ingredients = {name for node in objects for name in held(node)}
+        self.ingredients = {name for node in objects for name in content_names(node)}
         containers = {node.label for node in objects if node.contents}
         self.foods = (
             self.ingredients
@@ -76,7 +76,11 @@ class Habits:
         inputs = {node: objects[node] for node in self.network.inputs[unit]}
         outputs = {node: objects[node] for node in self.network.outputs[unit]}
         input_names, output_names = mentioned(inputs.values()), mentioned(outputs.values())
-        emptied = {node.label for node in inputs.values() if held(node) and held(node) <= output_names}
+        emptied = {
+            node.label
+            for node in inputs.values()
+            if content_names(node) and content_names(node) <= output_names
+        }
         lost: dict[int, list[str]] = {}
         gained: dict[int, list[str]] = {}
         kept = list(_containers(inputs, outputs))
@@ -103,14 +107,14 @@ class Habits:
         if gone or not new:
             return Changes(lost, gained, [], [] if new else gone, bool(kept))
         # a product is among contents, or shares a word or contents with an input
-        products = {name for node in outputs.values() for name in held(node)}
+        products = {name for node in outputs.values() for name in content_names(node)}
         stems = words_in(input_names.union(*(node.states for node in inputs.values())))
         unrelated = [
             node
             for node, object_node in new.items()
             if object_node.label not in products
             and not _comes_from(object_node, input_names)
-            and input_names.isdisjoint(held(object_node))
+            and input_names.isdisjoint(content_names(object_node))
             and not any(
                 word.startswith(stem[:_STEM])
                 for word in words_in([object_node.label])
@@ -146,7 +150,7 @@ def _containers(
     for node, output in outputs.items():
         same_label = [other for other in inputs.values() if other.label == output.label]
         if len(same_label) == 1 and sum(other.label == output.label for other in outputs.values()) == 1:
-            old_contents, new_contents = held(same_label[0]), held(output)
+            old_contents, new_contents = content_names(same_label[0]), content_names(output)
             if old_contents & new_contents:
                 yield node, old_contents, new_contents
 

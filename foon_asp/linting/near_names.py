@@ -92,7 +92,7 @@ def _without_a_letter(name: str) -> Iterable[str]:
 
 
 def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) -> str | None:
-    """Return the known word for which an unknown one is likely a slip, ``None`` if there is none.
+    """Return the known word for which an unknown one is likely a slip, else ``None``.
 
     ``deletions`` is the :func:`deletion_index` of the known words.
     """

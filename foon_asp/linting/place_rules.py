@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator
 
 from foon_asp.linting.context import Context, Side
-from foon_asp.linting.habits import Habits, held, words_in
+from foon_asp.linting.habits import Habits, content_names, words_in
 from foon_asp.linting.rule import WARNING, rule
 from foon_asp.network import ObjectNode
 from foon_asp.text.diagnostics import Diagnostic
@@ -28,7 +28,7 @@ def unheld(context: Context) -> Iterator[Diagnostic]:
 def unheld_nodes(side: Side, habits: Habits) -> Faults:
     """Yield the one object that is in a container, and is not among its contents."""
     for holder in side.nodes:
-        contents = held(holder)
+        contents = content_names(holder)
         if not contents or holder.label in habits.ingredients:
             continue
         if sum(node.label == holder.label for node in side.nodes) > 1:
@@ -41,9 +41,9 @@ def unheld_nodes(side: Side, habits: Habits) -> Faults:
             if node.label in habits.foods
             and node.label not in contents
             and node.label not in holder_places
-            and not any(node.label in held(other) for other in side.nodes)
-            and not any(held(other) for other in inside if other.label in contents)
-            and not held(node)
+            and not any(node.label in content_names(other) for other in side.nodes)
+            and not any(content_names(other) for other in inside if other.label in contents)
+            and not content_names(node)
             and words_in([node.label]).isdisjoint(words_in(contents))
         ]
         if len(extra) == 1:
@@ -80,25 +80,27 @@ def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Faul
     """Yield the objects in or on something that the unit has not, while something else contains them."""
     labels_of_side = {node.label for node in side.nodes}
     for node in side.nodes:
-        for word, place in node.relations:
+        for word, related_object in node.relations:
             if (
                 word not in _PLACES
-                or place in labels_of_side
-                or place not in labels
-                or place in habits.ingredients
+                or related_object in labels_of_side
+                or related_object not in labels
+                or related_object in habits.ingredients
             ):
                 continue
-            holders = sorted({other.label for other in side.nodes if node.label in held(other)})
-            if any(other.label in holders and (word, place) in other.relations for other in side.nodes):
+            holders = sorted({other.label for other in side.nodes if node.label in content_names(other)})
+            if any(
+                other.label in holders and (word, related_object) in other.relations for other in side.nodes
+            ):
                 continue
             if not holders or not habits.ingredients.isdisjoint(holders):
                 continue
-            if words_in([place]).isdisjoint(words_in(holders)):
+            if words_in([related_object]).isdisjoint(words_in(holders)):
                 which = "outputs" if side.number else "inputs"
                 yield (
                     node,
-                    f"{node.label!r} is {word} {place!r}, which the {which} have not, and {holders[0]!r} "
-                    "contains it",
+                    f"{node.label!r} is {word} {related_object!r}, which the {which} have not, and "
+                    f"{holders[0]!r} contains it",
                 )
 
 
@@ -108,7 +110,7 @@ def _places_are_usual(context: Context) -> bool:
     for side in context.sides:
         for holder in side.nodes:
             for node in side.nodes if holder.contents else ():
-                if node.label in held(holder):
+                if node.label in content_names(holder):
                     placed += any(related_object == holder.label for _, related_object in node.relations)
                     unplaced += not node.relations
     return placed > _USUAL * unplaced
@@ -122,7 +124,7 @@ def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Faults:
     for node in side.nodes:
         if node.relations or node.contents or node.label not in habits.foods:
             continue
-        holders = [other for other in side.nodes if node.label in held(other)]
+        holders = [other for other in side.nodes if node.label in content_names(other)]
         if len(holders) != 1 or sum(other.label == node.label for other in side.nodes) > 1:
             continue
         holder = holders[0].label
@@ -131,7 +133,7 @@ def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Faults:
             and any(related_object == holder for _, related_object in other.relations)
             for other in side.others
         )
-        if holder in places and (len(held(holders[0])) > 1 or not is_put):
+        if holder in places and (len(content_names(holders[0])) > 1 or not is_put):
             yield node, f"{holder!r} contains {node.label!r}, which is in no place here"
 
 
@@ -139,7 +141,7 @@ def only_after(side: Side) -> Faults:
     """Yield an input for each thing that it is in or on, where only the outputs have that."""
     own_labels, other_labels = ({node.label for node in nodes} for nodes in (side.nodes, side.others))
     for node in side.nodes:
-        for word, place in node.relations:
-            if word in _PLACES and place in other_labels and place not in own_labels:
-                own_labels.add(place)
-                yield node, f"{node.label!r} is {word} {place!r}, which the outputs"
+        for word, related_object in node.relations:
+            if word in _PLACES and related_object in other_labels and related_object not in own_labels:
+                own_labels.add(related_object)
+                yield node, f"{node.label!r} is {word} {related_object!r}, which the outputs"

@@ -117,10 +117,10 @@ class Sheet:
 
     def where(self, index: int, current_sheet: "Sheet | None" = None) -> str:
         """Name a line for a message: by its number, and by its file unless that is ``current_sheet``."""
-        line = self.place(index).line
+        line = self.source_of(index).line
         return f"line {line}" if current_sheet is self else str(Source(self.file, line))
 
-    def place(self, index: int, column: int = 1) -> Source:
+    def source_of(self, index: int, column: int = 1) -> Source:
         """Return the place of a line in the file."""
         return self.places[index] if self.places is not None else Source(self.file, index + 1, column)
 
@@ -130,12 +130,12 @@ class Sheet:
             source, line = self._in_json(index, name)
         else:
             line = self.lines[index]
-            source = self.place(index, _column(line, name) if name else column)
+            source = self.source_of(index, _column(line, name) if name else column)
         return Diagnostic(Severity.NOTE, "", message, source, line)
 
     def _in_json(self, index: int, name: str) -> tuple[Source, str]:
         """Return the place and line of a name, in quotes, behind the place where its unit or entry begins."""
-        start = self.place(index)
+        start = self.source_of(index)
         positions = self._quoted.get(name, [])
         number = bisect_left(positions, (start.line, start.column))
         if number == len(positions):

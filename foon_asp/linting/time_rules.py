@@ -100,7 +100,7 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
 
     def odd_clock(clock: _Clock) -> str:
         parts = clock.text.split(":")
-        if any(int(part) >= _MINUTE for part in parts[1:]):
+        if any(int(number) >= _MINUTE for number in parts[1:]):
             return f"{clock.text!r} has more than 59 seconds or minutes"
         if len(parts) == 3 and not has_hours and clock.seconds > _LATER * latest:
             minutes, seconds, fraction = parts

@@ -95,7 +95,7 @@ class Vocabulary:
         return indexes
 
     def slip(self, kind: Kind, name: str) -> tuple[str, str] | None:
-        """Return an unknown word of a name and the known word probably meant; ``None`` if there is none."""
+        """Return an unknown word of a name and the known word probably meant, else ``None``."""
         if name in self.names[kind]:
             return None
         for word in words_of(name):

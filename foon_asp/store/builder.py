@@ -32,9 +32,7 @@ from foon_asp.text.repeated_node import RepeatedNode
 from foon_asp.text.unit_price_list import UnitPriceList
 
 _ROWS_PER_WRITE = 1_000  # of one table
-_MAX_CACHED_NODES = (
-    50_000  # ids by node, which spare writing it as JSON; copies of a node are mostly close together
-)
+_MAX_CACHED_NODES = 50_000  # ids by node, for nodes met lately: copies are mostly close together
 
 
 class StoreBuilder:
@@ -253,7 +251,7 @@ class StoreBuilder:
         return number
 
     def _write_starting(self) -> None:
-        """Write the starting kitchen: the union of those of the files."""
+        """Write the starting kitchen: the union of the starting kitchens of the files."""
         for file in self._files.values():
             rows = self._database.execute(UNITS_OF_FILE, (file,))
             units = {unit: (ids_of(inputs), ids_of(outputs)) for unit, inputs, outputs in rows}

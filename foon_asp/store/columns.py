@@ -17,7 +17,7 @@ _MAX_DIGITS = 4000  # of a rate or price; Python reads numbers of up to 4,300 di
 
 
 class NodeColumns(NamedTuple):
-    """The parts of an object node as JSON; certificates name digests of lists of these."""
+    """The parts of an object node as JSON; certificates name digests of lists of nodes in this form."""
 
     label: str
     states: str

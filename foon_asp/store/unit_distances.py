@@ -16,7 +16,7 @@ _SCALE = 2**40  # of logarithms of success rates, which are whole numbers
 class UnitDistances:
     """The distances of all units of a network: what a tree that has a unit costs at least.
 
-    ``kitchen`` is the mask of the available nodes, ``skipped`` of those that units may do without. Costs are
+    ``kitchen`` is the mask of the available nodes, ``skipped`` of nodes that units may do without. Costs are
     units, or negative logarithms of success rates if the objective is ``success``, rounded down. The distance
     of a unit is its cost plus the largest distance of its inputs, where the distance of a node is the least
     of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001).

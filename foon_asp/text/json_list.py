@@ -182,7 +182,7 @@ def begins_json(text: str) -> bool:
 
 
 def before_json(text: str) -> str:
-    """Return an error message about text before JSON; empty if there is none."""
+    """Return an error message about text before JSON; empty for other texts."""
     begins = text[:_BEGINNING].lstrip(_BLANKS)
     first = begins.split("\n", 1)[0].rstrip()
     if not _JSON_LINE.search(begins) or begins_json(begins) or _FOON_LINE.match(first):

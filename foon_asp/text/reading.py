@@ -71,7 +71,7 @@ def telling(report: Report) -> Iterator[None]:
 
 
 def progress_report() -> Report | None:
-    """Return the function that receives reports of progress, ``None`` if there is none."""
+    """Return the function that receives reports of progress, if any."""
     return _report.get()
 
 
