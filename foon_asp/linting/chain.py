@@ -65,13 +65,13 @@ class Chain:
 
     def _may_be_one(self, node: int, consumer: int, other: int, producer: int) -> bool:
         """Whether a node taken may be a node made; not if both have different locations that are listed."""
-        taken_node, made_node = self.objects[node], self.objects[other]
-        return _differ_little(taken_node, made_node, consumer - producer) and (
-            taken_node.relations == made_node.relations
-            or len(taken_node.relations) != len(made_node.relations)
-            or slip_between(taken_node, made_node) is not None
-            or not self._locations_listed(taken_node, consumer, 0)
-            or not self._locations_listed(made_node, producer, 1)
+        needed, made = self.objects[node], self.objects[other]
+        return _differ_little(needed, made, consumer - producer) and (
+            needed.relations == made.relations
+            or len(needed.relations) != len(made.relations)
+            or slip_between(needed, made) is not None
+            or not self._locations_listed(needed, consumer, 0)
+            or not self._locations_listed(made, producer, 1)
         )
 
     def _locations_listed(self, node: ObjectNode, position: int, side: int) -> bool:
@@ -79,41 +79,33 @@ class Chain:
         return self.labels(position, side).issuperset(related for _, related in node.relations)
 
 
-def _differ_little(taken_node: ObjectNode, made_node: ObjectNode, distance: int) -> bool:
+def _differ_little(needed: ObjectNode, made: ObjectNode, distance: int) -> bool:
     """Whether two nodes differ so little that they may be meant to be one; ``distance`` is in units."""
-    if taken_node.label != made_node.label:
-        return distance <= _SHORT_DISTANCE and _parts(taken_node) > 1 and taken_node[1:] == made_node[1:]
-    if slip_between(taken_node, made_node):
+    if needed.label != made.label:
+        return distance <= _SHORT_DISTANCE and _parts(needed) > 1 and needed[1:] == made[1:]
+    if slip_between(needed, made):
         return True
-    states, relations = taken_node.states ^ made_node.states, taken_node.relations ^ made_node.relations
-    contents_differ = taken_node.contents != made_node.contents
+    states, relations = needed.states ^ made.states, needed.relations ^ made.relations
+    contents_differ = needed.contents != made.contents
     if bool(states) + bool(relations) + contents_differ > 1:
         return False
     if contents_differ:
         return (
-            len(content_names(taken_node) ^ content_names(made_node)) == 1
-            and min(len(content_names(taken_node)), len(content_names(made_node))) > 1
+            len(content_names(needed) ^ content_names(made)) == 1
+            and min(len(content_names(needed)), len(content_names(made))) > 1
         )
     if len(states) + len(relations) == 2:  # one replaced by another
-        return (
-            distance <= _MIDDLE_DISTANCE
-            and _parts(taken_node) > 1
-            and _parts(taken_node) == _parts(made_node)
-        )
+        return distance <= _MIDDLE_DISTANCE and _parts(needed) > 1 and _parts(needed) == _parts(made)
     # raw items are taken repeatedly: sugar, after other sugar was put into the bowl
-    moved = distance <= _SHORT_DISTANCE or bool(taken_node.relations or taken_node.contents)
+    moved = distance <= _SHORT_DISTANCE or bool(needed.relations or needed.contents)
     return len(states) == 1 or (len(relations) == 1 and moved)
 
 
-def _lacks_a_state(taken_node: ObjectNode, made_node: ObjectNode) -> bool:
+def _lacks_a_state(needed: ObjectNode, made: ObjectNode) -> bool:
     """Whether the node taken is the node made without one of its states."""
-    other_parts = taken_node.relations, taken_node.contents
-    same = (
-        taken_node.label == made_node.label
-        and any(other_parts)
-        and other_parts == (made_node.relations, made_node.contents)
-    )
-    return same and taken_node.states < made_node.states and len(made_node.states - taken_node.states) == 1
+    other_parts = needed.relations, needed.contents
+    same = needed.label == made.label and any(other_parts) and other_parts == (made.relations, made.contents)
+    return same and needed.states < made.states and len(made.states - needed.states) == 1
 
 
 def _parts(node: ObjectNode) -> int:

@@ -31,7 +31,7 @@ def with_tables(paths: Iterable[Path], files: Iterable[Path]) -> list[Path]:
 
 
 class Copy(NamedTuple):
-    """One copy of a unit: the number of its sheet, the index of its first line, and the nodes it lists."""
+    """A copy of a unit: the number of its sheet, the index of its first line, and counts of its nodes."""
 
     sheet: int
     at: int

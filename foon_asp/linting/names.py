@@ -34,7 +34,7 @@ class Names:
         self.mentions: dict[Kind, dict[str, list[Mention]]] = {kind: {} for kind in Kind}
         self.counts: dict[Kind, dict[str, int]] = {kind: {} for kind in Kind}
         self.objects: dict[str, int] = {}
-        """How often each label stands on an object line."""
+        """The number of object lines with each label."""
         for number, sheet in enumerate(files.sheets):
             for line, index, often in sheet.distinct_lines:
                 mention = Mention(number, line, index, often)

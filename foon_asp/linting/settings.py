@@ -21,7 +21,7 @@ _WORD = re.compile(r"""#[^\n]*|\"{3}.*?\"{3}|'{3}.*?'{3}|"(?:[^"\\\n]|\\.)*"|'[^
 
 @dataclass(frozen=True)
 class LintSettings:
-    """Which findings are reported, and with which severity.
+    """The settings of linting: the findings that are reported, and their severities.
 
     ``select`` are the codes that are reported, empty for all; ``ignore`` those that are left out,
     and ``per_file`` those that are left out in files under ``folder`` whose path matches a pattern.

@@ -23,7 +23,7 @@ _QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)("?)')
 
 
 class Entry(NamedTuple):
-    """One object of a kitchen or of a list of goals, and the index of its object line."""
+    """An entry of a kitchen or of a list of goals, and the index of its object line."""
 
     pattern: NodePattern
     at: int

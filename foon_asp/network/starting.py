@@ -149,7 +149,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
 
     @property
     def file_count(self) -> int:
-        """How many files the units are from."""
+        """The number of files that the units are from."""
         return len(self._files)
 
     def makers(self, o: int) -> list[int]:

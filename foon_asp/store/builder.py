@@ -66,12 +66,12 @@ class StoreBuilder:
 
     @property
     def units(self) -> int:
-        """How many distinct units there are so far."""
+        """The number of distinct units so far."""
         return len(self._units)
 
     @property
     def objects(self) -> int:
-        """How many distinct object nodes there are so far."""
+        """The number of distinct object nodes so far."""
         return len(self._nodes)
 
     def add(

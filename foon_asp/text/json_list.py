@@ -19,7 +19,7 @@ _FOON_LINE = re.compile(r"[OSM]\d*[ \t]|//|#")
 
 
 class JsonElement(NamedTuple):
-    """One element of a list and the place where it begins."""
+    """An element of a list, and the place where it begins."""
 
     value: object
     source: Source

@@ -1,4 +1,4 @@
-"""One object node in JSON, in either of the published forms."""
+"""Reading object nodes from JSON, in either of the published forms."""
 
 import json
 from collections.abc import Iterator

@@ -8,7 +8,7 @@ from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine
 
 
 class ObjectBlock(NamedTuple):
-    """One mention of an object node: its object line, the state lines under it, and where it begins."""
+    """A mention of an object node: its object line, the state lines under it, and its source."""
 
     object: ObjectLine
     states: tuple[StateLine, ...]
@@ -26,7 +26,7 @@ class ObjectBlock(NamedTuple):
 
 
 class ReadUnit(NamedTuple):
-    """One copy of a unit: its motion, its nodes in the order listed, and its sources.
+    """A copy of a unit: its motion, its nodes in the order listed, and its sources.
 
     ``sources`` has one entry, unless a merged file says from which copies the unit came.
     """
@@ -43,7 +43,7 @@ class ReadUnit(NamedTuple):
 
 
 class ListedUnit(NamedTuple):
-    """One copy of a functional unit with its lines as read, nodes in the order listed.
+    """A copy of a functional unit with its lines as read, nodes in the order listed.
 
     ``sources`` has one entry, unless a merged file says from which copies the unit came;
     ``motion_source`` is the place of its motion. ``price`` is that of this copy as written,

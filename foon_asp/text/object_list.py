@@ -11,7 +11,7 @@ from foon_asp.text.reading import Reading
 
 
 class ListedObject(NamedTuple):
-    """One entry of a kitchen or goals file and the place where it stands."""
+    """An entry of a kitchen or goals file, and its source."""
 
     pattern: NodePattern
     source: Source

@@ -27,7 +27,7 @@ _OBJECT_LINE = re.compile(r"^(?:\ufeff)?O\d*[\t ]", re.MULTILINE)
 
 
 class Duration(NamedTuple):
-    """How many ``seconds`` a motion takes; a ``passive`` one needs nobody to stand by, as baking does.
+    """The duration of a motion in ``seconds``; a ``passive`` one needs nobody to stand by, as baking does.
 
     Example:
         >>> foon_asp.Duration(1500, passive=True).seconds

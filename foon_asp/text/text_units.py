@@ -45,7 +45,7 @@ def _clean_nodes(blocks: str) -> list[ObjectNode] | None:
 
 
 class TextUnits:
-    """One pass over the text of a file, which may come in pieces whose lines end with a line feed."""
+    """A pass over the text of a file, which may come in pieces whose lines end with a line feed."""
 
     def __init__(self, pieces: Iterable[str], file: str, reading: Reading) -> None:
         self.reading = reading
