@@ -1,12 +1,12 @@
-r"""Text that may be shown: whatever a name holds, a terminal and a log are sent nothing but letters.
+r"""Escaped text: whatever a name holds, terminals and logs receive only printable characters.
 
-What is not shown as it is gets ``\uXXXX``. That is JSON's way too: a JSON text stays one, and says the same.
+Other characters become ``\uXXXX``, as in JSON: an escaped JSON text is JSON with the same value.
 """
 
 import re
 
 # Control characters (C0 without tab and line feed, delete, C1), marks that turn the direction of writing,
-# what has no width, line and paragraph separators, halves of characters, and tags.
+# characters without width, line and paragraph separators, halves of characters, and tags.
 _UNSAFE = (
     "\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
     "\ud800-\udfff\U000e0000-\U000e007f"
@@ -14,7 +14,7 @@ _UNSAFE = (
 UNSAFE = re.compile(f"[{_UNSAFE}]")  # within a text of several lines
 # Patterns as text are compiled when they are needed.
 _IN_A_LINE = f"[{_UNSAFE}\n\t]"
-# What moves over a line that keeps changing goes back to its beginning first.
+# A progress line that is overwritten begins with a carriage return and an escape sequence.
 _UNSAFE_BUT_ESCAPE = f"[{_UNSAFE}]|\r(?!\x1b)".replace("\x0b-\x1f", "\x0b\x0c\x0e-\x1a\x1c-\x1f")
 # Commands of GitHub's and Azure's logs: ``::error::`` at the beginning of a line, ``##[error]`` anywhere.
 _COMMAND = r"(?m)^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))"
@@ -50,12 +50,12 @@ def _has(encoding: str, letter: str) -> bool:
     return True
 
 
-def _escape(found: re.Match[str]) -> str:
-    return _code(found[0])
+def _escape(match: re.Match[str]) -> str:
+    return _code(match[0])
 
 
-def _without_command(found: re.Match[str]) -> str:
-    return f"{found[1] or ''}{_code(found[0][-1])}"
+def _without_command(match: re.Match[str]) -> str:
+    return f"{match[1] or ''}{_code(match[0][-1])}"
 
 
 def _code(letter: str) -> str:

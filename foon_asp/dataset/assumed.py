@@ -1,4 +1,4 @@
-"""What was assumed because nobody said it, in words: the kitchen, and the goals."""
+"""Messages about the kitchen and the goals that were assumed because none were given."""
 
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -11,7 +11,7 @@ _SHOWN = 6  # assumed items that a unit makes too, named in the line
 
 
 def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) -> Iterator[str]:
-    """Return one line on the starting kitchen: how many items the goals can use, and which units make too.
+    """Yield one line on the starting kitchen: how many items the goals can use, and which of them units make.
 
     ``verbose`` adds a line for each item.
     """
@@ -24,10 +24,10 @@ def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) 
     count = f"{counted(len(used), 'item')} used" + ("" if verbose or not used else "; -v lists them")
     line = f"No kitchen given: assuming what the recipe does not make is available ({count})"
     if made_too:
-        named = [str(used[number]) for number in sorted(made_too)[:_SHOWN]]
+        shown = [str(used[number]) for number in sorted(made_too)[:_SHOWN]]
         if len(made_too) > _SHOWN:
-            named.append(f"{len(made_too) - _SHOWN} more")
-        line += f", and of what a unit makes too: {', '.join(named)}"
+            shown.append(f"{len(made_too) - _SHOWN} more")
+        line += f", and of what a unit makes too: {', '.join(shown)}"
     yield line
     if verbose:
         for number in sorted(used):
@@ -35,13 +35,15 @@ def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) 
 
 
 def goal_lines(dataset: Dataset, goals: Sequence[ObjectNode], verbose: bool) -> Iterator[str]:
-    """Return one line on the goals assumed, and why; ``verbose`` adds a line for each of several."""
-    why = {"": "of the goals file", MARKED: "marked in the files"}.get(dataset.goals_from)
+    """Yield one line on the goals assumed and their origin; ``verbose`` adds a line for each of several."""
+    origin = {"": "of the goals file", MARKED: "marked in the files"}.get(dataset.goals_from)
     if len(goals) == 1:
-        said = f"the goal {why}" if why else "what the last unit makes"
-        yield f"No --goal: using {said}: {goals[0]}"
+        assumed = f"the goal {origin}" if origin else "what the last unit makes"
+        yield f"No --goal: using {assumed}: {goals[0]}"
         return
-    said = f"the {len(goals)} goals {why}" if why else f"what the last unit makes ({len(goals)} goals)"
-    yield f"No --goal: using {said}, each by itself" + ("" if verbose else "; -v lists them")
+    assumed = (
+        f"the {len(goals)} goals {origin}" if origin else f"what the last unit makes ({len(goals)} goals)"
+    )
+    yield f"No --goal: using {assumed}, each by itself" + ("" if verbose else "; -v lists them")
     if verbose:
         yield from (f"  {goal}" for goal in goals)

@@ -1,4 +1,4 @@
-"""Data that was read, and the problems that are posed of it."""
+"""Datasets: data that was read, and the problems posed of it."""
 
 import shlex
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -51,17 +51,17 @@ from foon_asp.warning import warn
 
 if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.proof.verify import Subject
-    from foon_asp.store.elsewhere import Elsewhere
+    from foon_asp.store.unit_distances import UnitDistances
 
 
 FIRST = 1000
-"""About as many units of a store are read at first, for a question that can need many."""
+"""The number of units that are read at first, about, of a store for goals that can need more."""
 
 
 def ask(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
-    """Ask for goals of the network under a container rule, of data that belong to others."""
+    """Return the problem of goals, by id in the network of ``data``, a part of the dataset ``origin``."""
     if items is not None:
         refuse_repeated(data.repeated)
     unrated = origin.unrated
@@ -83,16 +83,15 @@ def ask(
 
 @dataclass(frozen=True, eq=False)
 class Dataset:
-    """Data that was read, of a ``source``: text, or a store, which is read as far as each question goes.
+    """Data read from a ``source``: text, or a store, of which each problem reads only its part.
 
-    Whoever asks it for goals and problems leaves the rest to it; :attr:`data` is everything, for those that
-    need it. Ids are those of the whole network. ``listed`` are the entries of the goals file, ``rates`` the
-    success rates of motions, ``None`` where none are known, and ``utensils`` the labels that the container
-    rule ``implied`` looks at. ``kitchen_items`` are the entries of the kitchen file, ``None`` for those in
-    the store. ``starting`` says that the starting kitchen is at hand, as far as it was not changed.
-    ``goals_from`` says what the entries were assumed from if no file lists goals. ``remarks`` are what was
-    assumed while reading, in words, and ``brief`` the same in few lines; ``has_kitchen`` says that a kitchen
-    was given, even an empty one. ``measures`` are the user's own, by name.
+    :attr:`data` is all of it. Ids are those of the whole network. ``listed`` are the entries of the goals
+    file, ``rates`` the success rates of motions, ``None`` without such a file, and ``utensils`` the labels
+    that count for the container rule ``implied``. ``kitchen_items`` are the entries of the kitchen file,
+    ``None`` for those in the store. ``starting`` says that the kitchen is the starting kitchen, with or
+    without changes. ``goals_from`` says what the entries were assumed from if no file lists goals.
+    ``remarks`` are the assumptions made while reading, in words, and ``brief`` is a summary of them;
+    ``has_kitchen`` says that a kitchen was given, even an empty one. ``measures`` are user measures, by name.
     """
 
     source: Source
@@ -111,7 +110,7 @@ class Dataset:
 
     @classmethod
     def of(cls, data: Data, seconds: float = 0.0) -> Self:
-        """Return data that were read whole, which took some seconds."""
+        """Return the dataset of data that are in memory; ``seconds`` is how long reading them took."""
         return cls(
             Source(data.network, seconds, data.left_out, data.repeated),
             Kitchen(data.kitchen),
@@ -125,17 +124,17 @@ class Dataset:
         )
 
     def close(self) -> None:
-        """Close the files that are read only as far as questions go, for all data that vary this too."""
+        """Close the store, if the source is one, for all datasets that share it."""
         self.source.close()
 
     @property
     def names(self) -> NamesAndUnits:
-        """What object nodes and units are looked up in."""
+        """The names of object nodes and units."""
         return self.source.names
 
     @property
     def read_seconds(self) -> float:
-        """How many seconds reading took so far."""
+        """The seconds that reading took so far."""
         return self.source.seconds
 
     @cached_property
@@ -147,7 +146,7 @@ class Dataset:
 
     @cached_property
     def data(self) -> Data:
-        """Everything there is: a store is read whole."""
+        """All data; a store is read whole."""
         network = self.source.whole()
         items = self.source.kitchen_items() if self.kitchen_items is None else self.kitchen_items
         return self._data(network, self.kitchen.ids)._replace(kitchen_items=items)
@@ -156,8 +155,8 @@ class Dataset:
         """Return the data of a part of the network, or of all of it where it is in memory."""
         if network is self.names:
             return self.data
-        at_hand = (place for place, o in enumerate(network.object_numbers) if o in self.kitchen)
-        return self._data(network, frozenset(at_hand))
+        kitchen = (local_id for local_id, o in enumerate(network.object_numbers) if o in self.kitchen)
+        return self._data(network, frozenset(kitchen))
 
     def _data(self, network: Network, kitchen: frozenset[int]) -> Data:
         return Data(
@@ -184,7 +183,7 @@ class Dataset:
 
     @property
     def whole_network(self) -> Network:
-        """The whole network; of a store, units and nodes are read when they are looked at."""
+        """The whole network; of a store, units and nodes are read on access."""
         return self.source.touched()
 
     @property
@@ -202,17 +201,17 @@ class Dataset:
         return o in self.kitchen
 
     def made_too(self, objects: Iterable[int]) -> list[int]:
-        """Return those of some nodes of a starting kitchen that a unit makes out of others."""
+        """Return the nodes of a starting kitchen that a unit makes out of others."""
         return [o for o in objects if self.source.starting.makers(o)]
 
     def for_goals(self, goals: Iterable[int]) -> "Dataset":
-        """Return the data with the kitchen for goals: a starting kitchen withholds these."""
+        """Return the dataset with the kitchen for goals, which a starting kitchen withholds."""
         if not self.starting:
             return self
-        assumed = self.source.starting
-        added, lacking = assumed.changes(goals)
-        # what was taken out stays out
-        added = frozenset(o for o in added if o in self.kitchen or o not in assumed.nodes)
+        starting = self.source.starting
+        added, lacking = starting.changes(goals)
+        # nodes that the user removed stay removed
+        added = frozenset(o for o in added if o in self.kitchen or o not in starting.nodes)
         if not added and not lacking:
             return self
         return replace(self, kitchen=self.kitchen.changed(added, lacking))
@@ -220,7 +219,7 @@ class Dataset:
     def goals(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
         """Find the goals by name; without a name, the goals file has to hold exactly one.
 
-        Without a file, they are all that were assumed.
+        Without a file, all assumed goals are returned.
         """
         if not names and self.goals_from and not self.listed:
             raise UserError(
@@ -268,46 +267,46 @@ class Dataset:
         return self._varied(listed=tuple(goals), goals_from="", has_kitchen=self.has_kitchen)
 
     def with_starting_kitchen(self) -> "Dataset":
-        """Return the same data with what makes the units of each file run at hand."""
+        """Return the same data with the starting kitchen."""
         return self._varied(kitchen=Kitchen(self.source.starting.nodes), kitchen_items=(), starting=True)
 
     def _varied(self, **changes: Any) -> "Dataset":
-        """Return data of which nothing was assumed while reading."""
+        """Return the data with changes, and without remarks on assumptions made while reading."""
         return replace(self, **{"remarks": (), "brief": (), "has_kitchen": True, **changes})
 
     def remarked(
         self, warnings: Iterable[str], brief: Iterable[str], remarks: Sequence[str], has_kitchen: bool
     ) -> "Dataset":
-        """Return the same data with what was assumed in reading: warnings, also in few lines, and remarks."""
-        told, in_brief = (*warnings, *remarks), (*brief, *remarks)
-        return replace(self, remarks=told, brief=in_brief, has_kitchen=has_kitchen)
+        """Return the same data with remarks; ``brief`` is a summary of the warnings."""
+        all_remarks, brief_remarks = (*warnings, *remarks), (*brief, *remarks)
+        return replace(self, remarks=all_remarks, brief=brief_remarks, has_kitchen=has_kitchen)
 
     def measured(self, measures: Mapping[str, Measure]) -> "Dataset":
-        """Return the same data with other measures of the user's."""
+        """Return the same data with other user measures."""
         return replace(self, measures=measures)
 
     def varied(
         self,
-        more: Collection[int],
-        less: Collection[int],
+        added: Collection[int],
+        removed: Collection[int],
         only: Collection[int] | None,
     ) -> "Dataset":
-        """Return the same data with these object nodes, by id, put into the kitchen and taken out of it.
+        """Return the same data with object nodes, by id, added to the kitchen and removed from it.
 
-        ``only`` are all that is in the kitchen before that, where it is not ``None``.
+        ``only``, unless ``None``, replaces the whole kitchen first.
         """
         if only is None:
-            return self._varied(kitchen=self.kitchen.changed(more, less))
-        return self._varied(kitchen=Kitchen(only, more, less), kitchen_items=(), starting=False)
+            return self._varied(kitchen=self.kitchen.changed(added, removed))
+        return self._varied(kitchen=Kitchen(only, added, removed), kitchen_items=(), starting=False)
 
     def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> "Dataset":
-        """Return the same data with some success rates and some prices changed; of units, ids are read."""
+        """Return the same data with some success rates and some prices of motions and units changed."""
         if rates is None and unit_prices is None:
             return self
         motions, units, _ = prices = self.prices
         if unit_prices is not None:
-            known = UnitPrices(motions or {}, units)
-            motions, units = changed_prices(known, unit_prices, self.motions, self.names)
+            listed_prices = UnitPrices(motions or {}, units)
+            motions, units = changed_prices(listed_prices, unit_prices, self.motions, self.names)
             prices = prices._replace(motions=motions, units=units)
         return self._varied(rates=changed_rates(self.rates, rates, self.motions), prices=prices)
 
@@ -316,7 +315,7 @@ class Dataset:
         kitchen, adding, without, rates, unit_prices, measures = changes
         dataset = self.valued(rates, unit_prices)
         if measures is not None:
-            # takes the facts for rules along, which most questions do without
+            # imports the facts for rules, which most questions do without
             from foon_asp.rules.measure import read_measures  # noqa: PLC0415
 
             dataset = dataset.measured(read_measures(measures))
@@ -334,38 +333,39 @@ class Dataset:
                     warn(str(kitchen_item_warning(item)))
         elif kitchen is not None:
             only = frozenset(node_ids(self, kitchen, "kitchen item"))
-        more = frozenset(node_ids(self, adding, "kitchen item"))
-        with_more = dataset.varied(more, frozenset(), only)
-        less = frozenset(item_id(with_more, name) for name in listed(without))
-        return with_more.varied((), less, None) if less else with_more
+        added = frozenset(node_ids(self, adding, "kitchen item"))
+        with_added = dataset.varied(added, frozenset(), only)
+        removed = frozenset(item_id(with_added, name) for name in listed(without))
+        return with_added.varied((), removed, None) if removed else with_added
 
     def posed_anew(
         self, problem: Problem, goals: Names | None, containers: str | None, changes: Changes
     ) -> Problem:
-        """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
+        """Pose a problem of the dataset with changes; see :meth:`Problem.vary`."""
         dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
         posed = dataset.nearby(ids, containers or problem.containers, problem.items)
         return _with_own_rates(posed, problem)
 
     def posed_whole(self, problem: Problem) -> Problem:
-        """Pose a problem of these data over the whole network."""
+        """Pose a problem of the dataset over the whole network."""
         dataset = self.with_kitchen_of(problem)
         posed = dataset.problem(_whole_goals(problem), problem.containers, True, problem.items)
         return _with_own_rates(posed, problem)
 
     def posed_about(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
-        """Pose a problem of these data over what its goals and these units are made of."""
+        """Pose a problem of the dataset over a part with its goals and the given units."""
         dataset = self.with_kitchen_of(problem)
         data, goals = dataset.part(_whole_goals(problem), tree=units)
         return _with_own_rates(ask(data, goals, problem.containers, dataset, problem.items), problem)
 
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
-        """Return what a certificate speaks about: all of it, or of a store what is read when it is looked at.
+        """Return the subject of a certificate: all data, or a store that is read on access.
 
-        Then the digests of the network and of what was imported beside it are those that the store states.
-        All is read, too, where a starting kitchen or other prices count, which is that for these ``goals``.
-        Raises :class:`UserError` where that shows that a digest that is stated is not true.
+        The subject of a store has the digests that the store states. Unless ``everything`` is false, the
+        kitchen is not a starting kitchen and the prices are those of the store, all data are read, and
+        :class:`UserError` is raised if a stated digest is not true. A starting kitchen is the one for
+        ``goals``.
         """
         from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
 
@@ -389,41 +389,45 @@ class Dataset:
 
         Without a name, the goals file has to hold exactly one.
         """
-        found = tuple(dict.fromkeys(node_ids(self, names, "goal")))
-        if found:
-            return found
+        named = tuple(dict.fromkeys(node_ids(self, names, "goal")))
+        if named:
+            return named
         if self.goals_from:
-            each = self.each_goal(())
-            if len(each) == 1:
-                return tuple(each)
-            known = ", ".join(repr(str(self.names.node(o))) for o in each)
-            raise UserError(f"name a goal; no file lists goals, and taken for them are {known}")
+            assumed = self.each_goal(())
+            if len(assumed) == 1:
+                return tuple(assumed)
+            choices = ", ".join(repr(str(self.names.node(o))) for o in assumed)
+            raise UserError(f"name a goal; no file lists goals, and taken for them are {choices}")
         if len(self.listed) == 1:
             return (listed_goal(self.listed[0], self.names),)
-        known = ", ".join(map(repr, entry_names(self.listed, self.names)))
-        raise UserError("name a goal" + (f"; the goals file has {known}" if known else ""))
+        choices = ", ".join(map(repr, entry_names(self.listed, self.names)))
+        raise UserError("name a goal" + (f"; the goals file has {choices}" if choices else ""))
 
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
-        """Return the same data with the kitchen that a problem posed of it has."""
+        """Return the same data with the kitchen of a problem posed of it."""
         from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
 
-        more, less = self.kitchen_changes(shown(problem), _whole_goals(problem))
-        return self.varied(more, less, None) if more or less else self
+        added, removed = self.kitchen_changes(shown(problem), _whole_goals(problem))
+        return self.varied(added, removed, None) if added or removed else self
 
     def kitchen_changes(
         self, problem: Problem, goals: Iterable[int]
     ) -> tuple[frozenset[int], frozenset[int]]:
-        """Return what a problem posed of this data has in its kitchen beyond it, and what it lacks.
+        """Return the nodes that a problem posed of this data adds to its kitchen, and those that it lacks.
 
         Ids are those of the whole network, those of its ``goals`` too.
         """
-        at_hand, network = self.for_goals(goals).kitchen, problem.network
+        kitchen, network = self.for_goals(goals).kitchen, problem.network
         if not network.object_numbers:
-            ours, theirs = at_hand.ids, problem.kitchen
-            return (frozenset(), frozenset()) if ours is theirs else (theirs - ours, ours - theirs)
-        theirs = frozenset(map(network.object_number, problem.kitchen))
-        ours = frozenset(o for o in network.object_numbers if o in at_hand)
-        return theirs - ours, ours - theirs
+            own_items, problem_items = kitchen.ids, problem.kitchen
+            return (
+                (frozenset(), frozenset())
+                if own_items is problem_items
+                else (problem_items - own_items, own_items - problem_items)
+            )
+        problem_items = frozenset(map(network.object_number, problem.kitchen))
+        own_items = frozenset(o for o in network.object_numbers if o in kitchen)
+        return problem_items - own_items, own_items - problem_items
 
     def unpriced(self) -> Sequence[Unpriced]:
         """Return the units that have no price, by motion."""
@@ -436,33 +440,33 @@ class Dataset:
         everything: bool = False,
         items: UsedUp | None = None,
     ) -> Problem:
-        """Ask for goals, which are those of the problem in the same order, under a container rule.
+        """Return the problem of goals, in the same order, under a container rule.
 
-        ``everything`` asks for units that no goal needs to be there too. ``items`` says that items are used
-        up, if they are.
+        With ``everything``, it has units too that no goal needs. ``items`` says how items are used up,
+        ``None`` that they last.
         """
-        stocked = self.for_goals(goals)
+        dataset = self.for_goals(goals)
         if everything:
-            return ask(stocked.data, goals, containers, self, items)
-        # of what may run out, more may have to be made
-        counted = {self.names.object_id(node) for node in (items.stock if items else ())}
-        at_hand = stocked.kitchen.changed((), [o for o in counted if o is not None])
-        cone = self.source.cone(goals, container_rule(containers), self.utensils, at_hand, None)
+            return ask(dataset.data, goals, containers, self, items)
+        # items of the stock may run out, and then have to be made
+        stocked_ids = {self.names.object_id(node) for node in (items.stock if items else ())}
+        kitchen = dataset.kitchen.changed((), [o for o in stocked_ids if o is not None])
+        cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, None)
         network = self.source.whole() if cone is None else self.source.part(cone.units, goals)
-        return ask(stocked._data_of(network), _places(network, goals), containers, self, items)
+        return ask(dataset._data_of(network), _local_ids(network, goals), containers, self, items)
 
     def nearby(
         self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = FIRST
     ) -> Problem:
-        """Ask for goals that can need many units, of which of a store at ``first`` so many are read.
+        """Return the problem of goals; of a store, about ``first`` units near them are read now.
 
-        Where they need more than these, the rest is read when it is looked at. Where no kitchen was given,
-        all that they need is read, since what is taken to be at hand is listed.
+        Further units are read on access. Without a given kitchen, all units that the goals can need are read,
+        since the items of the starting kitchen are listed.
         """
         cone = None
         if items is None and self.has_kitchen:
-            at_hand = self.for_goals(goals).kitchen
-            cone = self.source.cone(goals, container_rule(containers), self.utensils, at_hand, first)
+            kitchen = self.for_goals(goals).kitchen
+            cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, first)
         if cone is None:
             return self.problem(goals, containers, items=items)
         from foon_asp.dataset.nearby import Nearby, NearbyProblem  # noqa: PLC0415 (text does without)
@@ -470,25 +474,26 @@ class Dataset:
         return NearbyProblem.of(Nearby(self, cone, containers), first)
 
     def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
-        """Ask for goals over a part of a network that has these units."""
+        """Return the problem of goals over a part of the network with these units."""
         network = self.source.part(units, goals)
-        return ask(self.for_goals(goals)._data_of(network), _places(network, goals), containers, self)
+        return ask(self.for_goals(goals)._data_of(network), _local_ids(network, goals), containers, self)
 
-    def elsewhere(self, containers: str, objective: Objective) -> "Elsewhere | None":
-        """Look at all units of a store, unless all would have to be read to know what is at hand."""
+    def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
+        """Return the distances of all units of a store; ``None`` for text and with a starting kitchen."""
         if self.starting:
             return None
         implied = container_rule(containers) is ContainerRule.IMPLIED
-        return self.source.elsewhere(
+        return self.source.unit_distances(
             self.kitchen.ids, self.utensils if implied else (), self.rates, objective
         )
 
     def part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()
     ) -> tuple[Data, tuple[int, ...]]:
-        """Return data with at least these goals, these units by id, and what a tree is made of.
+        """Return data with at least these goals, units by id, and the units and nodes of a tree.
 
-        With it come the ids that the goals have there. Raises :class:`UserError` for ids of no unit.
+        The second value are the ids of the goals in that data. Raises :class:`UserError` for an id that no
+        unit has.
         """
         units, names = list(units), self.names
         for unit in units:
@@ -496,19 +501,19 @@ class Dataset:
                 count = self.source.unit_count
                 raise UserError(f"there is no unit {unit}: the network has units 0 to {count - 1}")
         tree = list(tree)
-        known = [number for unit in tree if (number := names.unit_id(unit)) is not None]
+        tree_ids = [number for unit in tree if (number := names.unit_id(unit)) is not None]
         nodes = {node for unit in tree for node in (*unit.inputs, *unit.outputs)}
         objects = [o for node in nodes if (o := names.object_id(node)) is not None]
-        network = self.source.part([*units, *known], [*goals, *objects])
-        return self.for_goals(goals)._data_of(network), _places(network, goals)
+        network = self.source.part([*units, *tree_ids], [*goals, *objects])
+        return self.for_goals(goals)._data_of(network), _local_ids(network, goals)
 
 
-def _places(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
-    """Return the ids that goals have in a network that may be a part."""
+def _local_ids(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
+    """Return the ids of goals in a network that may be a part of the whole one."""
     if not network.object_numbers:
         return tuple(goals)
-    places = {o: place for place, o in enumerate(network.object_numbers)}
-    return tuple(places[goal] for goal in goals)
+    local_ids = {o: local_id for local_id, o in enumerate(network.object_numbers)}
+    return tuple(local_ids[goal] for goal in goals)
 
 
 def left_out(count: int) -> str:
@@ -525,9 +530,9 @@ def _whole_goals(problem: Problem) -> tuple[int, ...]:
 
 
 def _with_own_rates(posed: Problem, problem: Problem) -> Problem:
-    """Return a problem with the rates that units of another one over the same network have of their own."""
+    """Return ``posed`` with the success rates of single units that ``problem`` has."""
     if not problem.own_rates:
         return posed
     numbered = {problem.network.unit_number(unit): rate for unit, rate in problem.own_rates.items()}
-    own = {posed.network.unit_of_number(number): rate for number, rate in numbered.items()}
-    return replace(posed, own_rates={unit: rate for unit, rate in own.items() if unit is not None})
+    own_rates = {posed.network.unit_of_number(number): rate for number, rate in numbered.items()}
+    return replace(posed, own_rates={unit: rate for unit, rate in own_rates.items() if unit is not None})

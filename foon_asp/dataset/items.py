@@ -1,4 +1,4 @@
-"""Items that are used up, as somebody asks for them of data that were read."""
+"""Items that are used up: the options of a question, checked against the data."""
 
 from collections.abc import Mapping
 from os import PathLike
@@ -20,7 +20,7 @@ Stays = str | PathLike[str] | Mapping[str | ObjectNode, bool]
 
 
 def items_of(dataset: Dataset, items: str, stock: Stock | None, stays: Stays | None) -> UsedUp | None:
-    """Read how items are meant; ``None`` if they last.
+    """Return how items are used up; ``None`` if they last.
 
     Raises :class:`UserError` for another word, a stock or an exception where items last, a node that the
     kitchen does not have, a name that the network does not have, and below level 3.
@@ -29,12 +29,12 @@ def items_of(dataset: Dataset, items: str, stock: Stock | None, stays: Stays | N
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
     if items == "lasting":
         if stock is not None or stays is not None:
-            given = "a stock" if stock is not None else "what stays"
-            raise UserError(f"{given} is for items that are used up: add --items used-up (items='used-up')")
+            option = "a stock" if stock is not None else "what stays"
+            raise UserError(f"{option} is for items that are used up: add --items used-up (items='used-up')")
         return None
     require_contents(dataset.names.level)
-    told = {} if stays is None else _told(dataset, stays)
-    return UsedUp(told, {} if stock is None else _stock(dataset, stock))
+    exceptions = {} if stays is None else _exceptions(dataset, stays)
+    return UsedUp(exceptions, {} if stock is None else _copies(dataset, stock))
 
 
 def require_contents(level: int) -> None:
@@ -46,32 +46,34 @@ def require_contents(level: int) -> None:
         )
 
 
-def _told(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
+def _exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
     if isinstance(stays, str | PathLike):
-        found = STAYS.read(Path(stays))
+        exceptions = STAYS.read(Path(stays))
     else:
         try:
-            found = {stated_name(n) if isinstance(n, str) else n: bool(told) for n, told in stays.items()}
+            exceptions = {
+                stated_name(n) if isinstance(n, str) else n: bool(lasts) for n, lasts in stays.items()
+            }
         except LineError as error:
             raise UserError(f"what stays: {error}") from None
-    for name in found:
+    for name in exceptions:
         if isinstance(name, ObjectNode):
             node_id(dataset, name, "item that stays or goes")
         elif not dataset.names.labelled(name)[0]:
             raise UserError(f"what stays: no object node of the network has the label {name!r}")
-    return found
+    return exceptions
 
 
-def _stock(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
+def _copies(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
     if isinstance(stock, str | PathLike):
-        found = read_stock(Path(stock))
+        copies = read_stock(Path(stock))
     else:
-        found = {}
+        copies = {}
         for name, count in stock.items():
             if not isinstance(count, int) or isinstance(count, bool) or count < 0:
                 raise UserError(f"found the stock {count!r} of {str(name)!r}, expected a whole number from 0")
-            found[dataset.names.node(node_id(dataset, name, "kitchen item"))] = count
-    for node in found:
+            copies[dataset.names.node(node_id(dataset, name, "kitchen item"))] = count
+    for node in copies:
         if not dataset.at_hand(node_id(dataset, node, "kitchen item")):
             raise UserError(f"the stock counts {str(node)!r}, which the kitchen does not have")
-    return found
+    return copies

@@ -1,28 +1,28 @@
-"""The object nodes at hand."""
+"""The kitchen: the object nodes available from the start."""
 
 from collections.abc import Collection, Iterable, Iterator
 from functools import cached_property
 
 
 class Kitchen(Collection[int]):
-    """The object nodes at hand, by id in the whole network: those of a ``base``, some more, and some less.
+    """The available object nodes, by id in the whole network: a ``base`` with nodes added and removed.
 
-    Of a store, the base is read as far as it is looked at.
+    The base of a store is read on access.
     """
 
-    def __init__(self, base: Collection[int], more: Iterable[int] = (), less: Iterable[int] = ()) -> None:
-        self._base, self._more, self._less = base, frozenset(more), frozenset(less)
+    def __init__(self, base: Collection[int], added: Iterable[int] = (), removed: Iterable[int] = ()) -> None:
+        self._base, self._added, self._removed = base, frozenset(added), frozenset(removed)
 
-    def changed(self, more: Collection[int], less: Collection[int]) -> "Kitchen":
-        """Return a kitchen that has some nodes more and some less."""
-        return Kitchen(self, more, less) if more or less else self
+    def changed(self, added: Collection[int], removed: Collection[int]) -> "Kitchen":
+        """Return the kitchen with nodes added and removed."""
+        return Kitchen(self, added, removed) if added or removed else self
 
     def is_all_of(self, base: Collection[int] | None) -> bool:
-        """Whether it is a base without changes."""
-        return self._base is base and not self._more and not self._less
+        """Whether the kitchen is this base without changes."""
+        return self._base is base and not self._added and not self._removed
 
     def __contains__(self, o: object) -> bool:
-        return o not in self._less and (o in self._more or o in self._base)
+        return o not in self._removed and (o in self._added or o in self._base)
 
     def __iter__(self) -> Iterator[int]:
         return iter(self.ids)
@@ -32,6 +32,6 @@ class Kitchen(Collection[int]):
 
     @cached_property
     def ids(self) -> frozenset[int]:
-        """All of them."""
+        """The ids of all nodes of the kitchen."""
         base = self._base.ids if isinstance(self._base, Kitchen) else frozenset(self._base)
-        return base.union(self._more).difference(self._less) if self._more or self._less else base
+        return base.union(self._added).difference(self._removed) if self._added or self._removed else base

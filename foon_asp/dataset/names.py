@@ -1,4 +1,4 @@
-"""Names that callers of Python write, looked up in data."""
+"""Lookup of names that Python callers pass: object nodes, motions, units."""
 
 from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
@@ -18,18 +18,18 @@ class Named(Protocol):
 
     @property
     def names(self) -> NodeNames:
-        """What object nodes are looked up in."""
+        """The names of object nodes."""
 
     @property
     def listed(self) -> Sequence[ListedObject]:
-        """The entries of the goals file, which a goal may be called by."""
+        """The entries of the goals file, whose names mean goals."""
 
     def at_hand(self, o: int) -> bool:
         """Whether the kitchen has an object node, by id."""
 
 
 class NamesAndUnits(NodeNames, Protocol):
-    """What nodes and units are looked up in."""
+    """The names of object nodes and units."""
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
         """Return the id of a unit, or ``None`` where the network does not have it."""
@@ -42,10 +42,10 @@ def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
     """
     names = dataset.names
     if isinstance(name, ObjectNode):
-        found = names.object_id(node_at_level(name, names.level))
-        if found is None:
+        number = names.object_id(node_at_level(name, names.level))
+        if number is None:
             raise UserError(f"no object node of the network is the {what} {str(name)!r}")
-        return found
+        return number
     try:
         return find_goal(name, names, dataset.listed if what == "goal" else (), Wording(what, ""))
     except GoalError as error:
@@ -65,28 +65,28 @@ def item_id(dataset: Named, name: str | ObjectNode) -> int:
     names = dataset.names
     label = None if isinstance(name, ObjectNode) else _label(name)
     if label is not None:
-        plain = names.object_id(ObjectNode(label))
-        if plain is not None and dataset.at_hand(plain):
-            return plain
-        count, found = names.labelled(label)
-        if count > len(found):
+        bare_node = names.object_id(ObjectNode(label))
+        if bare_node is not None and dataset.at_hand(bare_node):
+            return bare_node
+        count, ids = names.labelled(label)
+        if count > len(ids):
             raise UserError(f"{count} object nodes have the label {label!r}: name the one you mean in full")
-        there = [o for o in found if dataset.at_hand(o)]
-        if len(there) > 1:
-            said = f"the kitchen has {len(there)} items with the label {label!r}; name those you mean"
-            raise UserError(in_python(GoalError(said, [str(names.node(o)) for o in there])))
+        items = [o for o in ids if dataset.at_hand(o)]
+        if len(items) > 1:
+            message = f"the kitchen has {len(items)} items with the label {label!r}; name those you mean"
+            raise UserError(in_python(GoalError(message, [str(names.node(o)) for o in items])))
         if count:
-            if not there:
+            if not items:
                 raise UserError(f"the kitchen has nothing with the label {label!r}")
-            return there[0]
-    found_one = node_id(dataset, name, "kitchen item")
-    if not dataset.at_hand(found_one):
+            return items[0]
+    item = node_id(dataset, name, "kitchen item")
+    if not dataset.at_hand(item):
         raise UserError(f"the kitchen does not have {str(name)!r}")
-    return found_one
+    return item
 
 
 def _label(name: str) -> str | None:
-    """Return the label that a name is alone, as it is where it cannot be read; ``None`` for a whole node."""
+    """Return the label that a name is, unread if it is not valid notation; ``None`` for a whole node."""
     try:
         named = parse_name(name)
     except LineError:
@@ -95,31 +95,31 @@ def _label(name: str) -> str | None:
 
 
 def changed_rates(
-    known: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None, motions: Collection[str]
+    rates: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None, motions: Collection[str]
 ) -> Mapping[str, Fraction] | None:
     """Return success rates by motion with some of them changed; ``motions`` are those of the network."""
     if changed is None:
-        return known
-    rates = dict(known or {})
-    for motion, given in changed.items():
-        rate = success_rate(given, f"the success rate of {motion!r}")
-        if known is not None and motion not in known and motion not in motions:
-            import difflib  # noqa: PLC0415 (for a fault alone)
+        return rates
+    by_motion = dict(rates or {})
+    for motion, value in changed.items():
+        rate = success_rate(value, f"the success rate of {motion!r}")
+        if rates is not None and motion not in rates and motion not in motions:
+            import difflib  # noqa: PLC0415 (only for an error message)
 
-            near = difflib.get_close_matches(motion, known, n=3, cutoff=0.6)
-            similar = f"; similar are {', '.join(map(repr, near))}" if near else ""
+            similar_names = difflib.get_close_matches(motion, rates, n=3, cutoff=0.6)
+            similar = f"; similar are {', '.join(map(repr, similar_names))}" if similar_names else ""
             raise UserError(f"no motion {motion!r} has a success rate{similar}")
-        rates[motion] = rate
-    return rates
+        by_motion[motion] = rate
+    return by_motion
 
 
 def changed_prices(
-    known: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NamesAndUnits
+    prices: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NamesAndUnits
 ) -> UnitPrices:
     """Return prices of units with some changed; ``names`` has the units, and ``motions`` are theirs."""
-    by_motion, by_unit = dict(known.motions), dict(known.units)
-    for named, given in changed.items():
-        price = unit_price(given, f"the price of {str(named)!r}")
+    by_motion, by_unit = dict(prices.motions), dict(prices.units)
+    for named, value in changed.items():
+        price = unit_price(value, f"the price of {str(named)!r}")
         if isinstance(named, FunctionalUnit):
             number = names.unit_id(named)
             if number is None:
@@ -131,10 +131,10 @@ def changed_prices(
         elif named in motions:
             by_motion[named] = price
         else:
-            import difflib  # noqa: PLC0415 (for a fault alone)
+            import difflib  # noqa: PLC0415 (only for an error message)
 
-            near = difflib.get_close_matches(named, motions, n=3, cutoff=0.6)
-            similar = f"; similar are {', '.join(map(repr, near))}" if near else ""
+            similar_names = difflib.get_close_matches(named, motions, n=3, cutoff=0.6)
+            similar = f"; similar are {', '.join(map(repr, similar_names))}" if similar_names else ""
             raise UserError(f"no unit has the motion {named!r}{similar}")
     return UnitPrices(by_motion, by_unit)
 
@@ -146,6 +146,6 @@ def listed(names: Names) -> list[str | ObjectNode]:
 
 
 def in_python(error: GoalError) -> str:
-    """Return the candidates of an error as Python has them."""
-    lines = [error.said, *(f"  {candidate!r}" for candidate in error.candidates)]
-    return "\n".join(lines + ([f"  ... and {error.more} more"] if error.more else []))
+    """Return an error as text, with its candidates as Python strings."""
+    lines = [error.message, *(f"  {candidate!r}" for candidate in error.candidates)]
+    return "\n".join(lines + ([f"  ... and {error.hidden} more"] if error.hidden else []))

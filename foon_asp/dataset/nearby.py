@@ -1,4 +1,4 @@
-"""A question to a large store, of which only the units near the goals are read, until that is enough."""
+"""A question to a large store, of which only the units near the goals are read, and more as needed."""
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import fields, replace
@@ -11,32 +11,33 @@ from foon_asp.store.cone import Cone
 
 if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.proof.verify import Subject
-    from foon_asp.store.elsewhere import Elsewhere
+    from foon_asp.store.unit_distances import UnitDistances
 
 
 class UnreadData(Protocol):
-    """Data that questions are posed of, over as much as was read; ids are those of the whole network."""
+    """Data that problems are posed of over a part of the network; ids are those of the whole network."""
 
     def problem(self, goals: Sequence[int], containers: str) -> Problem:
-        """Ask for goals over all that they can need."""
+        """Return the problem of goals over all units that they can need."""
 
     def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
-        """Ask for goals over a part of the network that has these units."""
+        """Return the problem of goals over a part of the network with these units."""
 
     def nearby(self, goals: Sequence[int], containers: str, items: UsedUp | None, first: int) -> Problem:
-        """Ask for goals, for which ``first`` units are read."""
+        """Return the problem of goals, for which about ``first`` units are read."""
 
-    def elsewhere(self, containers: str, objective: Objective) -> "Elsewhere | None":
-        """Look at all units, what they cost being counted by an objective."""
+    def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
+        """Return the distances of all units by an objective, ``None`` if they are not known."""
 
     def subject(self, everything: bool, goals: Iterable[int]) -> "Subject":
-        """Return what a certificate speaks about."""
+        """Return the subject of a certificate."""
 
 
 class Nearby:
-    """A question over the units near its goals; what the others are good for is not known yet.
+    """A question over the units near its goals, which can read more of them.
 
-    ``data`` are asked under a container rule, and ``cone`` is what was read of the units that goals can need.
+    ``data`` are the data asked under the container rule ``containers``, and ``cone`` is the part read so far
+    of the units that the goals can need.
     """
 
     def __init__(self, data: UnreadData, cone: Cone, containers: str) -> None:
@@ -51,7 +52,7 @@ class Nearby:
         return self._cone.goals
 
     def copied(self) -> "Nearby":
-        """Return the same question, to be read on by itself."""
+        """Return a copy that reads more units independently."""
         other = Nearby(self.data, self._cone.copied(), self.containers)
         other._problem, other._relaxed = self._problem, self._relaxed
         return other
@@ -64,71 +65,72 @@ class Nearby:
         return self._problem
 
     def among(self, units: Iterable[int]) -> Problem:
-        """Return the question over any units, by id in the whole network."""
+        """Return the question over the given units, by id in the whole network."""
         return self.data.among(units, self.goals, self.containers)
 
-    def elsewhere(self, objective: Objective) -> "Elsewhere | None":
-        """Look at all units, what they cost being counted by an objective; ``None`` if that cannot be."""
-        return self.data.elsewhere(self.containers, objective)
+    def unit_distances(self, objective: Objective) -> "UnitDistances | None":
+        """Return the distances of all units by an objective, ``None`` if they are not known."""
+        return self.data.unit_distances(self.containers, objective)
 
     def subject(self) -> "Subject":
-        """Return what a certificate of the answer speaks about."""
+        """Return the subject of a certificate of the answer."""
         return self.data.subject(False, self.goals)
 
     def whole(self) -> Problem:
-        """Read all that the goals can need."""
+        """Return the question over all units that the goals can need."""
         return self.data.problem(self.goals, self.containers) if self._cone.open else self.problem
 
     @property
     def relaxed(self) -> Problem:
-        """The same question where all is at hand besides that units not read may make.
+        """The relaxation of the question in which all open nodes are available.
 
-        The units read of any tree are enough for the goals there: what they need is at hand, made by one of
-        them, or open. So there is no tree in the whole network that costs less than the best here, by
-        objectives that only units add to.
+        Of any tree of the whole network, the units read are a tree of the relaxation: their inputs are
+        available, made by another of the units, or open. So the optimum of the relaxation is a lower bound
+        on that of the whole network, for objectives that only units add to.
 
-        Rules of the user's do not see what is taken to be at hand, but the kitchen as it is: so they say of
-        units here what they say of them in the whole network, if they do not ask what is available.
+        User rules see the kitchen without the open nodes. So they hold of units here as in the whole network,
+        if they do not depend on what is available.
         """
         if self._relaxed is None:
-            problem, open_ = self.problem, self._cone.open
-            places = (o for o, number in enumerate(problem.network.object_numbers) if number in open_)
-            kitchen = problem.kitchen.union(places)
+            problem, open_nodes = self.problem, self._cone.open
+            local_ids = (o for o, number in enumerate(problem.network.object_numbers) if number in open_nodes)
+            kitchen = problem.kitchen.union(local_ids)
             self._relaxed = replace(problem, kitchen=kitchen, as_seen=problem, origin=None)
         return self._relaxed
 
     def lacking(self, units: Iterable[int]) -> list[int]:
-        """Return what a tree of the relaxed question takes that may not be there, by id in the whole network.
+        """Return the open nodes that a tree of the relaxation uses without making them.
 
-        ``units`` are in an order that executes there. A tree that lacks nothing is one of the question.
+        ``units`` are in an order that executes there; the ids returned are those of the whole network. A tree
+        that lacks nothing is a tree of the question.
         """
         problem = self.problem
-        there, lacking = set(problem.kitchen), set[int]()
+        available, lacking = set(problem.kitchen), set[int]()
         for unit in units:
-            lacking.update(o for o in problem.needs[unit] if o not in there)
-            there.update(problem.gives[unit])
-        lacking.update(goal for goal in problem.goals if goal not in there)
+            lacking.update(o for o in problem.needs[unit] if o not in available)
+            available.update(problem.gives[unit])
+        lacking.update(goal for goal in problem.goals if goal not in available)
         return sorted(map(problem.network.object_number, lacking))
 
     def grow(self, objects: Iterable[int], quickly: bool = False) -> None:
-        """Read a tenth more units, or a fifth, which lead to these open objects, by id in the network."""
+        """Read a tenth more units, a fifth if ``quickly``, that lead to open objects, by id in the whole."""
         self._cone.grow(objects, len(self._cone.units) // (5 if quickly else 10) + 1)
         self._problem = self._relaxed = None
 
     @property
     def units(self) -> int:
-        """How many units were read."""
+        """The number of units read."""
         return len(self._cone.units)
 
     def open_to(self, units: Iterable[int]) -> list[int]:
-        """Return what units need, or are asked for, that may not be there, by id in the whole network."""
-        problem, open_ = self.problem, self._cone.open
+        """Return the open nodes among the goals and the inputs of units, by id in the whole network."""
+        problem, open_nodes = self.problem, self._cone.open
         needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
-        return sorted(open_.intersection(map(problem.network.object_number, needed)))
+        return sorted(open_nodes.intersection(map(problem.network.object_number, needed)))
 
 
 class _ReadLater:
-    """A field of a problem that is read when it is first looked at, unless the problem has its own value."""
+    """A field of a problem that is read on first access, unless the problem has its own value."""
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name, self._own = name, f"_own_{name}"
@@ -143,10 +145,10 @@ class _ReadLater:
 
 
 class NearbyProblem(Problem):
-    """A question to a large store: what its goals can need is read when it is first looked at.
+    """A question to a large store, of which all that its goals can need is read on first access.
 
-    :meth:`near` has what is near the goals, for those that can do with it. One that is made of another with
-    changes has values of its own.
+    :meth:`nearby` is the question over the units near the goals, for searches that need no more. A problem
+    made of another with changes has its own values.
     """
 
     network: Network = _ReadLater()  # type: ignore[assignment]
@@ -155,12 +157,12 @@ class NearbyProblem(Problem):
     unit_prices: UnitPrices | None = _ReadLater()  # type: ignore[assignment]
 
     start: Nearby | None = None
-    """What is near the goals at first, as long as no more is read."""
+    """The question over the units read at first; ``None`` for a problem with its own values."""
     units_at_first: int = 0
 
     @classmethod
     def of(cls, start: Nearby, units_at_first: int) -> "NearbyProblem":
-        """Make it of what is near its goals, for which about so many units are read at first."""
+        """Make the problem of the question over units near its goals, about ``units_at_first`` units."""
         problem = cls(**{field.name: getattr(start.problem, field.name) for field in fields(Problem)})
         for name, value in (("start", start), ("units_at_first", units_at_first)):
             object.__setattr__(problem, name, value)
@@ -173,16 +175,16 @@ class NearbyProblem(Problem):
 
     @cached_property
     def read(self) -> Problem:
-        """The question over all that the goals can need."""
+        """The question over all units that the goals can need."""
         assert self.start is not None
         return self.start.whole()
 
-    def near(self) -> Nearby | None:
-        """Return what is near the goals, for one question to read on from; ``None`` where all was read."""
+    def nearby(self) -> Nearby | None:
+        """Return a copy of the question over units near the goals; ``None`` if all units were read."""
         return None if self.start is None or "read" in vars(self) else self.start.copied()
 
     def each_goal(self) -> list[Problem]:
-        """Return the question for each goal by itself, read as far as this one."""
+        """Return the question for each goal by itself, with as many units read as for this one."""
         start = self.start
         if start is None or "read" in vars(self):
             return [replace(self, goals=(goal,)) for goal in self.goals]
@@ -197,7 +199,7 @@ class NearbyProblem(Problem):
 
     @property
     def conditions(self) -> str:
-        """What every claim about this question holds under, in a few words."""
+        """The conditions of every claim about this question, in a few words."""
         return super().conditions if self.first is None else self.first.conditions
 
     def require_known_for(self, objectives: Collection[Objective]) -> None:
@@ -209,7 +211,7 @@ class NearbyProblem(Problem):
 
 
 def shown(problem: Problem) -> Problem:
-    """Return a problem that has the goals of another, without reading more."""
+    """Return a problem with the goals and kitchen of another, without reading more units."""
     if isinstance(problem, NearbyProblem):
         return problem.first or problem
     return problem

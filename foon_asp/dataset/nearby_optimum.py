@@ -1,4 +1,4 @@
-"""The best tree for a question to a large store, of which no more is read than it takes to prove it."""
+"""Optimal trees for a question to a large store, of which only the units that a proof needs are read."""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -16,131 +16,145 @@ if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.dataset.nearby import Nearby
 
 
-def near_goals(problem: Problem, objectives: Sequence[Objective], how: Settings) -> "Nearby | None":
-    """Return what is near the goals of a large store, where an answer may not need the whole."""
-    near: Callable[[], Nearby | None] | None = getattr(problem, "near", None)
-    if near is None or how.reductions != ALL or how.clingo_options:
+def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> "Nearby | None":
+    """Return the question over units near the goals of a large store; ``None`` if all may be needed."""
+    nearby_of: Callable[[], Nearby | None] | None = getattr(problem, "nearby", None)
+    if nearby_of is None or settings.reductions != ALL or settings.clingo_options:
         return None
-    only_units_add = all(each in Objective and not each.row.item for each in objectives)
-    return near() if only_units_add and hold_for_parts(how) else None
+    only_units_add = all(objective in Objective and not objective.row.item for objective in objectives)
+    return nearby_of() if only_units_add and hold_for_parts(settings) else None
 
 
 def solve_nearby(
-    near: "Nearby", objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
+    nearby: "Nearby", objectives: Sequence[Objective], settings: Settings, reporter: Reporter | None = None
 ) -> Outcome | None:
-    """Solve a question to a large store, of which no more is read than it takes to prove the answer.
+    """Solve a question to a large store by relaxation and refinement, reading only units that a proof needs.
 
-    What units that were not read may make is taken to be at hand. If the best tree takes nothing of that, it
-    is a tree of the whole network, and none there costs less; else more is read of what leads to what it
-    takes. In the end everything is read. Rules of the user's have to hold for parts of trees; what the best
-    tree without them takes is read before they are asked about, and then more each time: first what the tree
-    of the fewest units takes that keeps to them. ``None`` where there is no tree even so, and rules are not
-    all that there is to it: why is then a question about all that could lead to the goals.
+    Each round solves the relaxation in which open nodes are available. If its optimal tree uses none of them,
+    it is optimal in the whole network too; else more units that lead to these nodes are read. In the end all
+    are read. User rules have to hold for parts of trees. Units of the optimal tree without rules are read
+    first, then those of the smallest tree that keeps the rules, then more in each round. ``None`` where there
+    is no tree, unless rules alone are the reason: the explanation needs all units that could lead to the
+    goals.
     """
     reporter = reporter or Reporter()
-    if how.constraints:
-        program_of(near.problem, how, reporter.warning)  # whose names may be beyond what is read here
-    deadline = how.begun
-    alone = how._replace(deadline=deadline)
-    free = alone._replace(constraints=(), constants=())
-    first = levels(tuple(objectives))[0]
-    tighter = min if multiplies(first) else max
-    known: list[int | Fraction] = []  # bounds on the first objective
-    mattered = set[int]()  # units, by number, that say what keeps to the rules
-    few: list[int] | None = None  # a tree that keeps to them, by number, once it was asked for
-    without: Outcome | None = None
-    if leave_a_rest(how):  # the best tree without them is needed anyway, and quick to read
-        without = solve_nearby(near, objectives, free, _OnlyWarnings(reporter))
-        if without is None:
+    if settings.constraints:
+        program_of(nearby.problem, settings, reporter.warning)  # warns of names that the rules alone have
+    deadline = settings.begun
+    with_rules = settings._replace(deadline=deadline)
+    without_rules = with_rules._replace(constraints=(), constants=())
+    first_objective = levels(tuple(objectives))[0]
+    tighter = min if multiplies(first_objective) else max
+    bounds_found: list[int | Fraction] = []  # on the first objective
+    units_of_rules = set[int]()  # units, by number, on which the rules depend
+    smallest: list[int] | None = None  # with the rules, by number; ``None`` before the search
+    unconstrained: Outcome | None = None
+    if leave_a_rest(settings):  # the optimum without rules is needed anyway, and read quickly
+        unconstrained = solve_nearby(nearby, objectives, without_rules, _OnlyWarnings(reporter))
+        if unconstrained is None:
             return None
-        known += [bound for each, bound in without.bounds.items() if each == first]
+        bounds_found += [
+            bound for objective, bound in unconstrained.bounds.items() if objective == first_objective
+        ]
     while True:
-        problem = near.problem
-        found = solve(near.relaxed, objectives, alone, _OnlyWarnings(reporter), mattered)
-        if found.status is Status.INFEASIBLE:
-            rules_alone = without is not None or (bool(how.constraints) and _leads(near, deadline))
-            return found._replace(problem=near.problem) if rules_alone else None
-        known += [bound for each, bound in found.bounds.items() if each == first]
-        lacking = [] if found.units is None else near.lacking(found.units)
-        if lacking and found.status is Status.OPTIMAL:
+        problem = nearby.problem
+        outcome = solve(nearby.relaxed, objectives, with_rules, _OnlyWarnings(reporter), units_of_rules)
+        if outcome.status is Status.INFEASIBLE:
+            rules_alone = unconstrained is not None or (
+                bool(settings.constraints) and _has_tree(nearby, deadline)
+            )
+            return outcome._replace(problem=nearby.problem) if rules_alone else None
+        bounds_found += [bound for objective, bound in outcome.bounds.items() if objective == first_objective]
+        lacking = [] if outcome.units is None else nearby.lacking(outcome.units)
+        if lacking and outcome.status is Status.OPTIMAL:
             try:
-                with deadline.watched("reading"):  # and not late, so that there is time for a tree
-                    near.grow(lacking, quickly=without is not None)
+                with deadline.watched("reading"):  # stops early, so that time for a tree remains
+                    nearby.grow(lacking, quickly=unconstrained is not None)
             except KeyboardInterrupt:
                 deadline.interrupt()
-                found = found._replace(proof=None, stopped=deadline.stopped)
+                outcome = outcome._replace(proof=None, stopped=deadline.stopped)
             else:
-                if without is not None and few is None:
-                    few = [] if first is Objective.UNITS else _fewest(near, alone, mattered)
+                if unconstrained is not None and smallest is None:
+                    smallest = (
+                        []
+                        if first_objective is Objective.UNITS
+                        else _read_smallest_tree(nearby, with_rules, units_of_rules)
+                    )
                 continue
-        bounds = {**found.bounds, first: tighter(known)} if known else found.bounds
-        found = found._replace(problem=problem, bounds=bounds)
-        if lacking:  # at a limit: the bound holds, and what was read may have a tree of its own
-            tree = solve(problem, objectives, alone, _OnlyWarnings(Reporter()))
+        bounds = (
+            {**outcome.bounds, first_objective: tighter(bounds_found)} if bounds_found else outcome.bounds
+        )
+        outcome = outcome._replace(problem=problem, bounds=bounds)
+        if lacking:  # at a limit: the bound holds, and the units read may have a tree
+            tree = solve(problem, objectives, with_rules, _OnlyWarnings(Reporter()))
             status = Status.UNKNOWN if tree.units is None else Status.FEASIBLE
-            found = found._replace(status=status, units=tree.units, costs=tree.costs)
-        if found.status is Status.UNKNOWN and few:
-            units = [unit for number in few if (unit := problem.network.unit_of_number(number)) is not None]
-            found = found._replace(
+            outcome = outcome._replace(status=status, units=tree.units, costs=tree.costs)
+        if outcome.status is Status.UNKNOWN and smallest:
+            units = [
+                unit for number in smallest if (unit := problem.network.unit_of_number(number)) is not None
+            ]
+            outcome = outcome._replace(
                 status=Status.FEASIBLE, units=executable_order(problem, units), costs=problem.costs(units)
             )
-        if found.units is not None:
-            holds = Postconditions(problem, levels(tuple(objectives)), how)
-            found = found._replace(units=holds.tree(found.units))
-            assert found.costs is not None
-            reporter.tree(found.costs)
-        return found
+        if outcome.units is not None:
+            holds = Postconditions(problem, levels(tuple(objectives)), settings)
+            outcome = outcome._replace(units=holds.tree(outcome.units))
+            assert outcome.costs is not None
+            reporter.tree(outcome.costs)
+        return outcome
 
 
-def _leads(near: "Nearby", deadline: Deadline) -> bool:
-    """Whether there is a tree without rules, or at a limit, whether there may be one."""
+def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
+    """Whether there is a tree without rules, or at a limit, may be."""
     while True:
-        relaxed = near.relaxed
-        found = reach(relaxed)
-        tree = follow(relaxed.goals, found.makers, relaxed.needs, relaxed.kitchen)
+        relaxed = nearby.relaxed
+        reached = reach(relaxed)
+        tree = follow(relaxed.goals, reached.makers, relaxed.needs, relaxed.kitchen)
         if tree is None:
             return False
-        lacking = near.lacking(unit for unit in found.units if unit in tree)
+        lacking = nearby.lacking(unit for unit in reached.units if unit in tree)
         if not lacking:
             return True
         try:
             with deadline.watched("reading"):
-                near.grow(lacking, quickly=True)
+                nearby.grow(lacking, quickly=True)
         except KeyboardInterrupt:
             deadline.interrupt()
             return True
 
 
-def _fewest(near: "Nearby", how: Settings, mattered: set[int]) -> list[int]:
-    """Read what the tree of the fewest units takes that keeps to the rules.
+def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: set[int]) -> list[int]:
+    """Read and return the smallest tree that keeps the rules, by number in the whole network.
 
-    That is asked sooner than by other objectives, tells as well where there is none, and what better trees
-    take is mostly near that. Gives it by number; nothing where there is none, or at a limit.
+    Counting units is faster than other objectives and shows infeasibility as well, and better trees mostly
+    use units near this tree. Empty where there is no tree, or at a limit.
     """
     while True:
-        found = solve(near.relaxed, (Objective.UNITS,), how, known=mattered)
-        if found.status is not Status.OPTIMAL or found.units is None:
+        outcome = solve(nearby.relaxed, (Objective.UNITS,), settings, known=units_of_rules)
+        if outcome.status is not Status.OPTIMAL or outcome.units is None:
             return []
-        lacking = near.lacking(found.units)
+        lacking = nearby.lacking(outcome.units)
         if not lacking:
-            return [*map(near.problem.network.unit_number, found.units)]
+            return [*map(nearby.problem.network.unit_number, outcome.units)]
         try:
-            with how.begun.watched("reading"):
-                near.grow(lacking, quickly=True)
+            with settings.begun.watched("reading"):
+                nearby.grow(lacking, quickly=True)
         except KeyboardInterrupt:
-            how.begun.interrupt()
+            settings.begun.interrupt()
             return []
 
 
-def least_with_more(costs: Costs, order: Sequence[Objective], units: int = 1) -> tuple[int | Fraction, ...]:
-    """Return the key that no tree is better than which has more units than one that costs this or more."""
-    least = dict(zip(order, costs.key(order), strict=True))
-    least[Objective.UNITS] += units
-    return tuple(least.values())
+def least_with_more(
+    costs: Costs, order: Sequence[Objective], extra_units: int = 1
+) -> tuple[int | Fraction, ...]:
+    """Return a lower bound on the key of trees with more units than trees that cost ``costs`` or more."""
+    least_costs = dict(zip(order, costs.key(order), strict=True))
+    least_costs[Objective.UNITS] += extra_units
+    return tuple(least_costs.values())
 
 
 class _OnlyWarnings(Reporter):
-    """Passes on what is true of the whole network when a part of it is asked about."""
+    """Passes on warnings and bounds, which a part of a network shares with the whole."""
 
     def __init__(self, reporter: Reporter) -> None:
         self.warning = reporter.warning  # type: ignore[method-assign]

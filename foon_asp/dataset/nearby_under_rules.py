@@ -1,13 +1,12 @@
-"""The best tree under rules that may ask for units of a large store that lead to no goal.
+"""Optimal trees under rules that may require units of a large store that lead to no goal.
 
-Besides what was read near the goals, units elsewhere are read that may matter. Let c be the least cost of the
-relaxed question of :class:`~foon_asp.dataset.nearby.Nearby` without rules. A tree that has a unit v from
-elsewhere has what leads to the goals, which costs at least c, and what leads to v. The outline of the store
-tells, for all units at once, what the dearest way to a unit costs besides all that was read. So a tree that
-costs less than some q has no unit with which this and c come to q or more. Where all others were read that
-rules may ask for, and all that leads to what they ask for, near the goals as well, then what was read of such
-a tree is one of the relaxed question that keeps to the rules: so nothing is better than the best of these, or
-than q.
+Call the units read for the goals near, and all others far. Let c be the optimum of the relaxation of
+:class:`~foon_asp.dataset.nearby.Nearby` without rules. A tree with a far unit v has units for the goals,
+which cost at least c, and units that lead to v. These cost at least the distance of v from the near units,
+which the outline of the store has for all units at once. So a tree that costs less than q has only far units
+whose distance is less than q - c. Once all such units that rules may require were read, with all units that
+lead to them, the units read of any such tree are a tree of the relaxation that keeps the rules. So no tree is
+better than both the optimum of that relaxation and q.
 """
 
 from collections.abc import Sequence
@@ -21,168 +20,185 @@ from foon_asp.dataset.nearby import Nearby
 from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.reduce import reduce
-from foon_asp.store.elsewhere import Elsewhere, most_cost
 from foon_asp.store.outline import FAR, Mask
+from foon_asp.store.unit_distances import UnitDistances, greatest_cost
 
-_MOST = 30_000  # units, beyond which it is not worth reading them one by one
-_TRIED = (100, 0), (1_000, 2), (10_000, 6)  # so many units that are asked for, how much dearer than the first
+_MAX_UNITS = 30_000  # read one by one; for more, reading the whole store is faster
+# units of a kind, and steps of distance beyond the nearest unit
+_SEARCH_WIDTHS = (100, 0), (1_000, 2), (10_000, 6)
 
 
 def solve_nearby_under(
-    problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter
+    problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
 ) -> Outcome | None:
-    """Solve a question to a large store under rules, as far as what is near the goals tells.
+    """Solve a question to a large store under rules, reading units near the goals and units for the rules.
 
-    Without a proof, the tree is one of which it is not known whether it is the best; only at a limit,
-    ``stopped`` says so. ``None`` where there is none, or nothing was asked.
+    A tree without a proof may not be optimal; ``stopped`` is set only at a limit. ``None`` where no tree was
+    found or the method does not apply.
     """
-    if not how.constraints or reach_of_rules(how) is ReachOfRules.ALL:
+    if not settings.constraints or reach_of_rules(settings) is ReachOfRules.ALL:
         return None
-    plain = how._replace(constraints=(), constants=())
-    near = near_goals(problem, objectives, plain)
-    free = None if near is None else solve_nearby(near, objectives, plain)
-    if near is None or free is None or (free.units is None and not free.stopped):
+    without_rules = settings._replace(constraints=(), constants=())
+    nearby = near_goals(problem, objectives, without_rules)
+    unconstrained = None if nearby is None else solve_nearby(nearby, objectives, without_rules)
+    if nearby is None or unconstrained is None or (unconstrained.units is None and not unconstrained.stopped):
         return None
-    program_of(near.problem, how, reporter.warning)
-    if free.status is not Status.OPTIMAL:
-        return _unknown(near, free)
-    search = _Search(near, free, how, reporter)
+    program_of(nearby.problem, settings, reporter.warning)
+    if unconstrained.status is not Status.OPTIMAL:
+        return _unknown(nearby, unconstrained)
+    search = _Search(nearby, unconstrained, settings, reporter)
     try:
-        found = search.result()
+        outcome = search.result()
     except KeyboardInterrupt:  # a limit, too
-        how.begun.interrupt()
-        return search.best._replace(stopped=how.begun.stopped)
-    if found is None or (found.units is None and not found.stopped and found.proof is None):
+        settings.begun.interrupt()
+        return search.best._replace(stopped=settings.begun.stopped)
+    if outcome is None or (outcome.units is None and not outcome.stopped and outcome.proof is None):
         return None
-    return found
+    return outcome
 
 
 class _Search:
-    """A search for a tree that is proved to be the best, where ``free`` is the best without rules."""
+    """A search for a tree that is proved optimal; ``unconstrained`` is the optimum without rules."""
 
-    def __init__(self, near: Nearby, free: Outcome, how: Settings, reporter: Reporter) -> None:
-        self._near, self._free, self._how, self._reporter = near, free, how, reporter
-        self._order = levels(free.objectives)
-        self.best = _unknown(near, free)  # that was found so far, without a proof
+    def __init__(
+        self, nearby: Nearby, unconstrained: Outcome, settings: Settings, reporter: Reporter
+    ) -> None:
+        self._nearby, self._unconstrained = nearby, unconstrained
+        self._settings, self._reporter = settings, reporter
+        self._order = levels(unconstrained.objectives)
+        self.best = _unknown(nearby, unconstrained)  # the incumbent, without a proof
 
     def result(self) -> Outcome | None:
-        """Return it, or what a limit left of it; ``None`` where what matters elsewhere cannot be told.
+        """Return the optimum, or the incumbent at a limit; ``None`` if relevant far units cannot be told.
 
         Raises :class:`LimitError`.
         """
-        how, near = self._how, self._near
-        rules = varying_available(how)
+        settings, nearby = self._settings, self._nearby
+        rules = varying_available(settings)
         if rules is None or not rules.local:
             return None
-        with how.begun.watched("reading"):
-            first = self._order[0]
-            elsewhere = near.elsewhere(first if first is Objective.SUCCESS else Objective.UNITS)
-            if elsewhere is None:
+        with settings.begun.watched("reading"):
+            first_objective = self._order[0]
+            distances = nearby.unit_distances(
+                first_objective if first_objective is Objective.SUCCESS else Objective.UNITS
+            )
+            if distances is None:
                 return None
-            asked = rules.wanted
-            wanted = None if asked is None else [elsewhere.wanted(each.rows) for each in asked]
-        if asked is None or wanted is None:  # only the units of a tree say whether it keeps to the rules
-            tree = self._solved(near.problem)
+            requests = rules.wanted
+            kinds = None if requests is None else [distances.matching(request.rows) for request in requests]
+        if requests is None or kinds is None:  # the rules depend only on the units of a tree
+            tree = self._solved(nearby.problem)
         else:
-            tree = self._some_tree(elsewhere, wanted, [each.always for each in asked])
+            tree = self._some_tree(distances, kinds, [request.always for request in requests])
             if tree.status is Status.INFEASIBLE:
                 return tree
-        problem = None if tree.stopped else self._enough(tree, elsewhere, wanted)
+        problem = None if tree.stopped else self._with_better_trees(tree, distances, kinds)
         if problem is None:
             return self.best._replace(stopped=tree.stopped)
-        found = self._solved(problem)
-        if found.status is not Status.OPTIMAL:
-            return self.best._replace(stopped=found.stopped)
-        return self._proved(found)
+        outcome = self._solved(problem)
+        if outcome.status is not Status.OPTIMAL:
+            return self.best._replace(stopped=outcome.stopped)
+        return self._proved(outcome)
 
     def _solved(self, problem: Problem) -> Outcome:
-        """Solve a part of the question, and remember the tree."""
-        found = solve(problem, self._free.objectives, self._how)
-        if found.units is not None:
+        """Solve a part of the question, and make its tree the incumbent."""
+        outcome = solve(problem, self._unconstrained.objectives, self._settings)
+        if outcome.units is not None:
             self.best = self.best._replace(
-                problem=problem, status=Status.FEASIBLE, units=found.units, costs=found.costs
+                problem=problem, status=Status.FEASIBLE, units=outcome.units, costs=outcome.costs
             )
-        return found
+        return outcome
 
-    def _some_tree(self, elsewhere: Elsewhere, wanted: Sequence[Mask], always: Sequence[bool]) -> Outcome:
-        """Find a tree that keeps to the rules: the best without them, and units asked for that are near it.
+    def _some_tree(
+        self, distances: UnitDistances, kinds: Sequence[Mask], is_required: Sequence[bool]
+    ) -> Outcome:
+        """Find a tree that keeps the rules among the tree without rules and the nearest units of each kind.
 
-        Its status is ``infeasible`` where nothing that can execute is what is asked for, and else unknown
-        where none was found.
+        Without a tree, its status is ``infeasible`` if a required kind has no unit that can execute, else
+        ``unknown``.
         """
-        tree = _numbers(self._free)
-        for most, more in _TRIED:
-            with self._how.begun.watched("reading"):
-                units, costs = elsewhere.nearest(wanted, tree, most, more)
-                problem = self._near.among({*tree, *units})
-            found = self._solved(problem)
-            if found.units is not None or found.stopped:
-                return found
-            if any(cost >= FAR and each for cost, each in zip(costs, always, strict=True)):
-                return found
-        return found._replace(status=Status.UNKNOWN)
+        tree = _numbers(self._unconstrained)
+        for max_units, max_steps in _SEARCH_WIDTHS:
+            with self._settings.begun.watched("reading"):
+                units, least_distances = distances.nearest(kinds, tree, max_units, max_steps)
+                problem = self._nearby.among({*tree, *units})
+            outcome = self._solved(problem)
+            if outcome.units is not None or outcome.stopped:
+                return outcome
+            if any(
+                least_distance >= FAR and required
+                for least_distance, required in zip(least_distances, is_required, strict=True)
+            ):
+                return outcome
+        return outcome._replace(status=Status.UNKNOWN)
 
-    def _enough(self, tree: Outcome, elsewhere: Elsewhere, wanted: Sequence[Mask] | None) -> Problem | None:
-        """Read all that a better tree than one that was found can have, or a tree as good as that.
+    def _with_better_trees(
+        self, tree: Outcome, distances: UnitDistances, kinds: Sequence[Mask] | None
+    ) -> Problem | None:
+        """Return the question over all units that a tree as good as ``tree``, or a better one, can have.
 
-        ``None`` where that is too much.
+        ``None`` if these are too many.
         """
         if tree.costs is None or tree.units is None:
             return None
-        within = self._within(tree.costs)
-        with self._how.begun.watched("reading"):
-            kept = self._kept(tree.costs)
-            others = [] if kept is None else elsewhere.mattering(wanted, kept, within)
-            if kept is None or len(others) > _MOST:
+        max_cost = self._max_far_cost(tree.costs)
+        with self._settings.begun.watched("reading"):
+            near_units = self._read_near_units(tree.costs)
+            far_units = [] if near_units is None else distances.relevant(kinds, near_units, max_cost)
+            if near_units is None or len(far_units) > _MAX_UNITS:
                 return None
-            return self._near.among({*kept, *others, *_numbers(tree)})
+            return self._nearby.among({*near_units, *far_units, *_numbers(tree)})
 
-    def _kept(self, costs: Costs) -> set[int] | None:
-        """Read on until all is there that trees for the goals have which cost no more than this.
+    def _read_near_units(self, costs: Costs) -> set[int] | None:
+        """Read all units of trees for the goals that cost no more than ``costs``, and maybe more units.
 
-        Gives these units, by number, and maybe more; ``None`` where that are too many.
+        Returns them by number, ``None`` if they are too many.
         """
-        near, deadline = self._near, self._how.begun
-        while near.units <= _MOST:
-            relaxed = near.relaxed
-            wide = reduce(relaxed, self._order, expired=lambda: deadline.passed, brief=True).wide
-            if wide is None:
+        nearby, deadline = self._nearby, self._settings.begun
+        while nearby.units <= _MAX_UNITS:
+            relaxed = nearby.relaxed
+            subproblem = reduce(relaxed, self._order, expired=lambda: deadline.passed, brief=True).wide
+            if subproblem is None:
                 return None
-            kept = wide.within(wide.costs.of(costs), lambda: deadline.passed)
+            units = subproblem.within(subproblem.costs.of(costs), lambda: deadline.passed)
             deadline.check()
-            missing = near.open_to(kept)
-            if not missing:
-                return {*map(relaxed.network.unit_number, kept)}
-            near.grow(missing, quickly=True)
+            open_nodes = nearby.open_to(units)
+            if not open_nodes:
+                return {*map(relaxed.network.unit_number, units)}
+            nearby.grow(open_nodes, quickly=True)
         return None
 
-    def _within(self, costs: Costs) -> int:
-        """Return what a unit elsewhere may cost in a tree that is better than one that costs this."""
-        order, least = self._order, self._free.costs
-        assert least is not None
+    def _max_far_cost(self, costs: Costs) -> int:
+        """Return the greatest distance of a far unit in a tree that is better than ``costs``."""
+        order, least_costs = self._order, self._unconstrained.costs
+        assert least_costs is not None
         key = costs.key(order)
         if order[0] is Objective.SUCCESS:
-            rates = costs.measure(order[0]), least.measure(order[0])
-            return most_cost(Fraction(rates[0]) / rates[1])
-        if key[: order.index(Objective.UNITS)] > least.key(order)[: order.index(Objective.UNITS)]:
+            rates = costs.measure(order[0]), least_costs.measure(order[0])
+            return greatest_cost(Fraction(rates[0]) / rates[1])
+        if key[: order.index(Objective.UNITS)] > least_costs.key(order)[: order.index(Objective.UNITS)]:
             return FAR - 1
-        return next(more for more in count() if key <= least_with_more(least, order, more + 1))
+        return next(extra for extra in count() if key <= least_with_more(least_costs, order, extra + 1))
 
-    def _proved(self, found: Outcome) -> Outcome:
-        assert found.costs is not None
-        self._reporter.tree(found.costs)
-        proofs = self._free.proof, found.proof
-        proof = next((each for each in proofs if each is not Proof.CUTS), Proof.CUTS)
-        return found._replace(proof=proof, cuts=(), cases=None)
-
-
-def _numbers(found: Outcome) -> list[int]:
-    return [*map(found.problem.network.unit_number, found.units or ())]
+    def _proved(self, outcome: Outcome) -> Outcome:
+        assert outcome.costs is not None
+        self._reporter.tree(outcome.costs)
+        proofs = self._unconstrained.proof, outcome.proof
+        proof = next((proof for proof in proofs if proof is not Proof.CUTS), Proof.CUTS)
+        return outcome._replace(proof=proof, cuts=(), cases=None)
 
 
-def _unknown(near: Nearby, free: Outcome) -> Outcome:
-    """Return the bound of the best tree without rules, and no tree."""
-    first = levels(free.objectives)[0]
-    bounds = {each: bound for each, bound in free.bounds.items() if each == first}
-    blank = free._replace(status=Status.UNKNOWN, units=None, costs=None, proof=None, cuts=(), cases=None)
-    return blank._replace(problem=near.problem, bounds=bounds)
+def _numbers(outcome: Outcome) -> list[int]:
+    return [*map(outcome.problem.network.unit_number, outcome.units or ())]
+
+
+def _unknown(nearby: Nearby, unconstrained: Outcome) -> Outcome:
+    """Return an outcome without a tree, with the bound of the optimum without rules."""
+    first_objective = levels(unconstrained.objectives)[0]
+    bounds = {
+        objective: bound for objective, bound in unconstrained.bounds.items() if objective == first_objective
+    }
+    blank = unconstrained._replace(
+        status=Status.UNKNOWN, units=None, costs=None, proof=None, cuts=(), cases=None
+    )
+    return blank._replace(problem=nearby.problem, bounds=bounds)

@@ -1,19 +1,19 @@
-"""Paths as callers of Python write them."""
+"""Paths that Python callers pass."""
 
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
 File = str | PathLike[str]
-"""A path; for a constraint also a rule, or the name of one of ours, such as ``forbid_motion``."""
+"""A path; for a constraint also a rule, or the name of a built-in one, such as ``forbid_motion``."""
 
 Files = File | Iterable[File]
 
 
-def files(given: Files) -> tuple[Path, ...]:
-    """Read one path or several."""
-    one = isinstance(given, str | PathLike)
-    return tuple(map(as_path, [given] if one else given))  # type: ignore[arg-type]
+def files(paths: Files) -> tuple[Path, ...]:
+    """Return one path or several as a tuple."""
+    is_single = isinstance(paths, str | PathLike)
+    return tuple(map(as_path, [paths] if is_single else paths))  # type: ignore[arg-type]
 
 
 def as_path(file: File) -> Path:

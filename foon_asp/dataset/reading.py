@@ -13,11 +13,11 @@ from foon_asp.text.repeated_node import repeated_note
 def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dataset:
     """Read text files, or open the store that is named in their place.
 
-    Raises :class:`UserError` for what is not understood; what was assumed is in ``remarks``.
+    Raises :class:`UserError` for input that is not understood. ``remarks`` has the assumptions made.
     """
     began = time.perf_counter()
     if any(map(is_store, files.network)):
-        # stores take SQLite along, which text does without
+        # imports SQLite, which text does without
         from foon_asp.dataset.reading_store import read_stored  # noqa: PLC0415
 
         return read_stored(files, level)
@@ -27,5 +27,5 @@ def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dat
         remarks += unrated_remarks(first_places(data.network), data.rates)
     remarks += repeated_note(data.repeated)
     dataset = Dataset.of(data, time.perf_counter() - began)
-    given = files.kitchen is not None
-    return dataset.remarked(summarize(data.warnings), in_brief(data.warnings), remarks, given)
+    has_kitchen = files.kitchen is not None
+    return dataset.remarked(summarize(data.warnings), in_brief(data.warnings), remarks, has_kitchen)

@@ -1,4 +1,4 @@
-"""Opening a store as data."""
+"""Opening a store as a dataset."""
 
 import time
 
@@ -26,9 +26,9 @@ from foon_asp.text.unit_price_list import read_unit_prices
 
 
 def read_stored(files: DataFiles, level: int) -> Dataset:
-    """Open the store that is named instead of networks; what is named beside it replaces what is in it.
+    """Open the store that is named in place of networks; other files replace the data imported with it.
 
-    Below level 3 it is read whole, since its nodes become others there.
+    Below level 3 it is read whole, since its nodes are merged there.
     """
     if len(files.network) > 1:
         raise UserError(
@@ -41,12 +41,13 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
     warnings: list[Diagnostic] = []
     prices = source.prices
     if files.unit_prices:
-        read = read_unit_prices(files.unit_prices)
-        units = {unit: price for unit, price in read.units.items() if store.unit_id(unit) is not None}
+        price_list = read_unit_prices(files.unit_prices)
+        units = {unit: price for unit, price in price_list.units.items() if store.unit_id(unit) is not None}
         warnings += [
-            unit_price_warning(unit, read.sources[unit]) for unit in read.units.keys() - units.keys()
+            unit_price_warning(unit, price_list.sources[unit])
+            for unit in price_list.units.keys() - units.keys()
         ]
-        prices = DataPrices(read.motions, units)
+        prices = DataPrices(price_list.motions, units)
     dataset = Dataset(
         source,
         Kitchen(source.kitchen),

@@ -1,4 +1,4 @@
-"""What data are read from: a network in memory, or a store."""
+"""Sources of data: a network in memory, or a store."""
 
 from collections.abc import Collection, Container, Iterable, Mapping, Sequence
 from fractions import Fraction
@@ -15,11 +15,11 @@ from foon_asp.text.repeated_node import RepeatedNode
 
 if TYPE_CHECKING:  # text does without SQLite
     from foon_asp.store.cone import Cone
-    from foon_asp.store.elsewhere import Elsewhere
+    from foon_asp.store.unit_distances import UnitDistances
 
 
 class Source:
-    """A network in memory; a :class:`~foon_asp.dataset.store_source.StoreSource` reads it part by part.
+    """A network in memory; the subclass :class:`~foon_asp.dataset.store_source.StoreSource` is a store.
 
     Ids are those of the whole network. ``names`` has its nodes and units, ``unit_count`` counts these.
     ``seconds`` are those that reading took so far, ``left_out`` counts lines that were not understood, and
@@ -54,7 +54,7 @@ class Source:
         return self._network.different_motions
 
     def motion_places(self) -> Iterable[tuple[str, Place]]:
-        """Return the motions with the places of units that have them, the first of each among them."""
+        """Return motions with sources of units that have them, among them the first of each motion."""
         return first_places(self._network)
 
     def whole(self) -> Network:
@@ -62,7 +62,7 @@ class Source:
         return self._network
 
     def touched(self) -> Network:
-        """Return the whole network, of which a store reads what is looked at."""
+        """Return the whole network, which a store reads on access."""
         return self._network
 
     def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
@@ -74,24 +74,24 @@ class Source:
         goals: Sequence[int],
         containers: ContainerRule,
         utensils: frozenset[str],
-        at_hand: Container[int],
-        most: int | None,
+        available: Container[int],
+        max_units: int | None,
     ) -> "Cone | None":
-        """Return what goals can need, or about ``most`` units of it; ``None`` where all was read."""
+        """Return the cone of goals, or about ``max_units`` units of it; ``None`` for a network in memory."""
         return None
 
-    def elsewhere(
+    def unit_distances(
         self,
         kitchen: Collection[int],
         utensils: Collection[str],
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
-    ) -> "Elsewhere | None":
-        """Look at all units, which skip the ``utensils``; ``None`` where all was read."""
+    ) -> "UnitDistances | None":
+        """Return the distances of all units, without ``utensils``; ``None`` if the network is in memory."""
         return None
 
     def true_digests(self) -> dict[str, str]:
-        """Compute the digests that are stated; raises :class:`UserError` where one is not true."""
+        """Compute the digests that are stated; raises :class:`UserError` if one is not true."""
         return {}
 
     def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
@@ -101,13 +101,13 @@ class Source:
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
         """Return the units that have no price, by motion."""
         network = self._network
-        known = UnitPrices(prices.motions or {}, prices.units).each(network)
-        lacking = (unit for unit, price in enumerate(known) if price is None)
-        return count_unpriced((network.motions[unit], network.sources[unit]) for unit in lacking)
+        unit_prices = UnitPrices(prices.motions or {}, prices.units).of_units(network)
+        unpriced = (unit for unit, price in enumerate(unit_prices) if price is None)
+        return count_unpriced((network.motions[unit], network.sources[unit]) for unit in unpriced)
 
     def kitchen_items(self) -> tuple[ListedObject, ...]:
         """Return the entries of the kitchen that was imported."""
         return ()
 
     def close(self) -> None:
-        """Close the files that are read only as far as questions go."""
+        """Close the store, if the source is one."""

@@ -1,4 +1,4 @@
-"""What is in data, counted at each level of detail."""
+"""Statistics of data at each level of FOON."""
 
 from foon_asp.network import LEVELS, network_at_level
 from foon_asp.network.statistics import Statistics, count
@@ -6,9 +6,9 @@ from foon_asp.text.data_folder import Data, kitchen_nodes
 
 
 def count_levels(data: Data) -> list[Statistics]:
-    """Count what is in a network, and what cannot be made from its kitchen: at the levels 1 to 3.
+    """Return the statistics of a network and its kitchen at the levels 1 to 3.
 
-    A network below level 3 is counted at its own level.
+    A network below level 3 is counted at its own level only.
     """
     whole = data.network
     networks = [whole] if whole.level < max(LEVELS) else [network_at_level(whole, level) for level in LEVELS]

@@ -1,4 +1,4 @@
-"""A store as what data are read from: as far as each question goes."""
+"""A store as a source of data, of which each question reads its part."""
 
 import time
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
@@ -21,11 +21,11 @@ from foon_asp.store.touched_network import TouchedNetwork
 from foon_asp.text.object_list import ListedObject
 
 if TYPE_CHECKING:  # few answers need numpy
-    from foon_asp.store.elsewhere import Elsewhere
+    from foon_asp.store.unit_distances import UnitDistances
 
 
 class StoreSource(Source):
-    """A store, of which all that vary the same data share what was read."""
+    """A store; all variants of a dataset share what was read of it."""
 
     names: Store
     kitchen: StoredIds
@@ -69,7 +69,7 @@ class StoreSource(Source):
         return self._whole[0]
 
     def touched(self) -> Network:
-        """Return the whole network, read when it is looked at unless it was before."""
+        """Return the whole network, read on access unless it is in memory already."""
         return self._whole[0] if "_whole" in vars(self) else TouchedNetwork.of(self.names)
 
     def cone(
@@ -77,48 +77,48 @@ class StoreSource(Source):
         goals: Sequence[int],
         containers: ContainerRule,
         utensils: frozenset[str],
-        at_hand: Container[int],
-        most: int | None,
+        available: Container[int],
+        max_units: int | None,
     ) -> Cone:
-        """Read what goals can need, or about ``most`` units of it."""
+        """Read the cone of goals, or about ``max_units`` units of it."""
         with self._timed():
-            return self.names.cone(goals, containers, utensils, at_hand, most)
+            return self.names.cone(goals, containers, utensils, available, max_units)
 
     def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
-        """Read some units, the nodes in them, and some further nodes."""
+        """Read units with their nodes, and the given further nodes."""
         with self._timed():
             return self.names.part(units, objects)
 
-    def elsewhere(
+    def unit_distances(
         self,
         kitchen: Collection[int],
         utensils: Collection[str],
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
-    ) -> "Elsewhere":
-        """Look at all units; they skip the ``utensils``."""
-        from foon_asp.store.elsewhere import Elsewhere  # noqa: PLC0415 (few answers need numpy)
+    ) -> "UnitDistances":
+        """Return the distances of all units, which do without the ``utensils``."""
+        from foon_asp.store.unit_distances import UnitDistances  # noqa: PLC0415 (few answers need numpy)
 
         outline = self.names.outline
-        at_hand, skipped = outline.nodes(kitchen), outline.labelled(utensils)
-        return Elsewhere(outline, at_hand, skipped, rates, objective)
+        available, skipped = outline.nodes(kitchen), outline.labelled(utensils)
+        return UnitDistances(outline, available, skipped, rates, objective)
 
     def true_digests(self) -> dict[str, str]:
-        """Compute the digests that the store states, of all that is in it; refuse those that are not true."""
+        """Compute the digests that the store states; raises :class:`UserError` if one is not true."""
         from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
 
         store, (network, kitchen) = self.names, self._whole
         single = self.unit_prices(network, self.prices.from_file)
-        known = self.prices.motions is not None or single is not None
-        prices = UnitPrices(self.prices.motions or {}, single or {}) if known else None
-        found = Subject(network, kitchen, None, frozenset(), prices).digests()
+        has_prices = self.prices.motions is not None or single is not None
+        prices = UnitPrices(self.prices.motions or {}, single or {}) if has_prices else None
+        computed = Subject(network, kitchen, None, frozenset(), prices).digests()
         for name, stated in store.digests.items():
-            if stated != found[name]:
+            if stated != computed[name]:
                 raise UserError(
                     f"{store.name}: the digest of the {name} that the store states is not that of what is in "
                     "it, so it was changed after the import; import its source files again"
                 )
-        return {name: found[name] for name in store.digests}
+        return {name: computed[name] for name in store.digests}
 
     def motion_places(self) -> Iterable[tuple[str, Place]]:
         """Read the motions of the network, with the place of the first unit that has each."""

@@ -1,1 +1,1 @@
-"""What is wrong with FOON files, or worth a look: everything an annotator may have slipped on."""
+"""Linting of FOON files: rules that find errors and probable slips of annotators."""

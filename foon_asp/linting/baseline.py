@@ -1,4 +1,4 @@
-"""Findings that are known: they are not reported again, wherever in its file their line stands by now."""
+"""Baselines: known findings, which are not reported again even if their line has moved in its file."""
 
 import os
 from collections import Counter
@@ -33,18 +33,18 @@ class Baseline(Struct, frozen=True, tag_field="schema", tag=schema_name("lint-ba
 
     @classmethod
     def of(cls, file: Path, findings: Iterable[Diagnostic]) -> "Baseline":
-        """Return the baseline of a file by which these findings are known."""
+        """Return the baseline that knows these findings, to be written to a file."""
         counts = Counter(_key(file, finding) for finding in findings)
         return cls(tuple(KnownFinding(*key, count) for key, count in sorted(counts.items())))
 
     def compared(self, file: Path, findings: Iterable[Diagnostic]) -> tuple[list[Diagnostic], int]:
-        """Return the findings that the baseline of a file does not know, and how many of its own are gone.
+        """Return the findings that the baseline of a file does not know, and the number of those missing.
 
         Where a line has more findings of a code than are known, the last ones are new.
         """
         remaining = Counter[tuple[str, str, str]]()
-        for each in self.known:
-            remaining[each.file, each.code, each.text] += each.count
+        for known_finding in self.known:
+            remaining[known_finding.file, known_finding.code, known_finding.text] += known_finding.count
         new = []
         for finding in findings:
             key = _key(file, finding)
@@ -67,7 +67,7 @@ def read_baseline(file: Path) -> Baseline:
 
 
 def check_replaceable(file: Path) -> None:
-    """Raise :class:`UserError` where a baseline would replace neither an empty file nor a baseline."""
+    """Raise :class:`UserError` if a file is neither empty nor a baseline."""
     if file.is_file() and read_content(file):
         try:
             read_baseline(file)
@@ -78,5 +78,5 @@ def check_replaceable(file: Path) -> None:
 
 
 def _key(file: Path, finding: Diagnostic) -> tuple[str, str, str]:
-    within = Path(os.path.relpath(finding.source.file, file.parent)).as_posix()
-    return within, finding.code, finding.excerpt or finding.message
+    relative_path = Path(os.path.relpath(finding.source.file, file.parent)).as_posix()
+    return relative_path, finding.code, finding.excerpt or finding.message

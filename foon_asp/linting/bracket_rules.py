@@ -1,4 +1,4 @@
-"""Brackets of another kind than a word has elsewhere, and lines without them or with a wrong letter."""
+"""Rules about brackets: the wrong kind, missing ones, and lines with a wrong letter."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -22,50 +22,58 @@ def other_bracket(context: Context) -> Iterator[Diagnostic]:
     In the files and in the vocabulary, the word stands with the other bracket nearly always, or the same
     thing does.
     """
-    mentions = [each for listed in context.names.mentions[Kind.WORD].values() for each in listed]
-    clean = [
-        (each, each.line.attribute)
-        for each in mentions
-        if isinstance(each.line, StateLine) and not isinstance(each.line.attribute, str)
+    mentions = [
+        mention for name_mentions in context.names.mentions[Kind.WORD].values() for mention in name_mentions
+    ]
+    attributes = [
+        (mention, mention.line.attribute)
+        for mention in mentions
+        if isinstance(mention.line, StateLine) and not isinstance(mention.line.attribute, str)
     ]
     counts = Counter[Relation | Contents]()
-    for mention, attribute in clean:
+    for mention, attribute in attributes:
         counts[attribute] += mention.often
-    for mention, attribute in clean:
-        if not mention.line.remarks and (message := _other_is_meant(attribute, counts, context.known)):
+    for mention, attribute in attributes:
+        if not mention.line.remarks and (
+            message := _reason_for_other_bracket(attribute, counts, context.all_names)
+        ):
             sheet = context.sheets[mention.sheet]
-            meant = f"; is '{_in_other_bracket(attribute)}' meant?"
+            suggestion = f"; is '{_in_other_bracket(attribute)}' meant?"
             column = sheet.lines[mention.first].rfind("\t") + 2
-            yield sheet.finding(message + meant, mention.first, column=column)
+            yield sheet.finding(message + suggestion, mention.first, column=column)
 
 
-def _other_is_meant(
-    attribute: Relation | Contents, counts: Counter[Relation | Contents], known: Vocabulary
+def _reason_for_other_bracket(
+    attribute: Relation | Contents, counts: Counter[Relation | Contents], vocabulary: Vocabulary
 ) -> str:
-    """Return why the other bracket is probably meant; empty where nothing speaks for it."""
+    """Return the reason why the other bracket is probably meant, in words; empty if there is no reason."""
     other: Bracket = Contents if isinstance(attribute, Relation) else Relation
-    usual = known.usual_bracket(attribute.word)
+    usual = vocabulary.usual_bracket(attribute.word)
     if usual is other:
         return f"{attribute.word!r} stands with {'{ }' if other is Contents else '[ ]'} nearly everywhere"
-    held = _held(attribute)
-    if len(held) > 1 or usual is not None:
+    objects = _bracketed_objects(attribute)
+    if len(objects) > 1 or usual is not None:
         return ""
-    swapped = Contents(attribute.word, held) if other is Contents else Relation(attribute.word, held[0])
-    here, there = counts[attribute], counts[swapped]
-    if there > here:
-        return f"'{_in_other_bracket(attribute)}' stands {times(there)}, this {times(here)}"
-    if other is Relation and held[0] in known.utensils and other in known.brackets(attribute.word):
-        return f"{held[0]!r} is something that others are in or on"
+    swapped = Contents(attribute.word, objects) if other is Contents else Relation(attribute.word, objects[0])
+    count, swapped_count = counts[attribute], counts[swapped]
+    if swapped_count > count:
+        return f"'{_in_other_bracket(attribute)}' stands {times(swapped_count)}, this {times(count)}"
+    if (
+        other is Relation
+        and objects[0] in vocabulary.utensils
+        and other in vocabulary.brackets(attribute.word)
+    ):
+        return f"{objects[0]!r} is something that others are in or on"
     return ""
 
 
-def _held(attribute: Relation | Contents) -> tuple[str, ...]:
+def _bracketed_objects(attribute: Relation | Contents) -> tuple[str, ...]:
     return attribute.ingredients if isinstance(attribute, Contents) else (attribute.object,)
 
 
 def _in_other_bracket(attribute: Relation | Contents) -> str:
-    held = ",".join(_held(attribute))
-    return f"{attribute.word} " + (f"{{{held}}}" if isinstance(attribute, Relation) else f"[{held}]")
+    objects = ",".join(_bracketed_objects(attribute))
+    return f"{attribute.word} " + (f"{{{objects}}}" if isinstance(attribute, Relation) else f"[{objects}]")
 
 
 @rule("misread-line", WARNING, "a line that is read as a state or an object, and is probably something else")
@@ -82,14 +90,14 @@ def misread_line(context: Context) -> Iterator[Diagnostic]:
             for sheet, index, _ in names.by_sheet(Kind.STATE, state):
                 message = f"{state!r} is read as a state; is {meant!r} meant, with brackets behind a tab?"
                 yield sheet.finding(message, index, state)
-    for kind, other, here, there in (
+    for kind, other, counts, other_counts in (
         (Kind.STATE, "an object", states, objects),
         (Kind.OBJECT, "a state", objects, states),
     ):
-        for name, count in here.items():
-            known_elsewhere = there.get(name, 0) > count or name in vocabulary.utensils
-            is_other = known_elsewhere and name not in vocabulary.names[kind]
-            for sheet, index, _ in names.by_sheet(kind, name) if is_other else ():
+        for name, count in counts.items():
+            is_known_other = other_counts.get(name, 0) > count or name in vocabulary.utensils
+            is_misread = is_known_other and name not in vocabulary.names[kind]
+            for sheet, index, _ in names.by_sheet(kind, name) if is_misread else ():
                 # JSON has no letters; the name may be that of a container or an ingredient first
                 if sheet.places is None and sheet.lines[index][0] == _LETTERS[kind]:
                     message = f"{name!r} is known as {other}; is it {other} here, and the letter wrong?"
@@ -97,17 +105,17 @@ def misread_line(context: Context) -> Iterator[Diagnostic]:
 
 
 def _bracketed(state: str, context: Context) -> str:
-    """Return the relation or the contents that a state may be, which begins as one and ends with objects."""
-    known, words = context.known, state.split(" ")
+    """Return the relation or contents that a state is probably meant to be; empty for a state."""
+    all_names, words = context.all_names, state.split(" ")
     for length in range(min(_MAX_WORDS, len(words) - 1), 0, -1):
-        word, held = " ".join(words[:length]), " ".join(words[length:])
-        brackets = list(known.brackets(word))
-        if not brackets or held in known.names[Kind.STATE]:
+        word, objects = " ".join(words[:length]), " ".join(words[length:])
+        brackets = list(all_names.brackets(word))
+        if not brackets or objects in all_names.names[Kind.STATE]:
             continue
-        items = [item.strip() for item in held.split(",")]
+        items = [item.strip() for item in objects.split(",")]
         if brackets[0] is Relation:
-            if held in known.names[Kind.OBJECT]:
-                return f"{word} [{held}]"
-        elif word == "contains" or known.names[Kind.OBJECT] >= set(items):
+            if objects in all_names.names[Kind.OBJECT]:
+                return f"{word} [{objects}]"
+        elif word == "contains" or all_names.names[Kind.OBJECT] >= set(items):
             return f"{word} {{{','.join(items)}}}"
     return ""

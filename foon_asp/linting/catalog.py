@@ -2,7 +2,7 @@
 
 from difflib import get_close_matches
 
-from foon_asp.linting import (  # noqa: F401 (each has some of the rules)
+from foon_asp.linting import (  # noqa: F401 (each defines rules)
     bracket_rules,
     chain_rules,
     change_rules,
@@ -25,7 +25,7 @@ CATALOG = dict(sorted(RULES.items()))
 
 
 def unknown_code(code: str) -> str:
-    """Return the error message about a code that is none, with the nearest that there is."""
-    near = get_close_matches(code, CATALOG, n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
+    """Return the error message about an unknown code, with the most similar code."""
+    similar_codes = get_close_matches(code, CATALOG, n=1)
+    hint = f"; did you mean {similar_codes[0]!r}?" if similar_codes else ""
     return f"there is no code {code!r}; docs/lint.md lists them{hint}"

@@ -1,19 +1,20 @@
-"""The units of one file in order, and how objects come from one to the other."""
+"""Chains: the units of one file in order, and which of them make and take each object node."""
 
 from collections.abc import Iterator
 
-from foon_asp.linting.habits import held
+from foon_asp.linting.habits import content_names
 from foon_asp.linting.linted_files import Copy
 from foon_asp.network import Network, ObjectNode
 from foon_asp.network.near_nodes import slip_between
 
-_NEAR, _MIDDLE, FAR = 2, 8, 25  # units between making and taking
+_SHORT_DISTANCE, _MIDDLE_DISTANCE, MAX_DISTANCE = 2, 8, 25  # units from making to taking
 
 
 class Chain:
-    """The units of one sheet, each where it first stands; their places are those in this order.
+    """The units of one sheet in order of their first copies; positions are those in this order.
 
-    ``makers`` and ``takers`` have the places of the units that make and take each node, in order.
+    ``producers`` and ``consumers`` have by node the positions of the units that make and take it, in order.
+    ``made`` has by position the nodes that a unit makes.
     """
 
     def __init__(self, network: Network, copies: list[tuple[Copy, int]]) -> None:
@@ -23,80 +24,88 @@ class Chain:
             firsts.setdefault(unit, copy)
         self.units, self.copies = list(firsts), list(firsts.values())
         self.made: list[set[int]] = []
-        self.makers: dict[int, list[int]] = {}
-        self.takers: dict[int, list[int]] = {}
-        for place, unit in enumerate(self.units):
+        self.producers: dict[int, list[int]] = {}
+        self.consumers: dict[int, list[int]] = {}
+        for position, unit in enumerate(self.units):
             inputs = set(network.inputs[unit])
             self.made.append(set(network.outputs[unit]) - inputs)
-            for node in self.made[place]:
-                self.makers.setdefault(node, []).append(place)
+            for node in self.made[position]:
+                self.producers.setdefault(node, []).append(position)
             for node in inputs:
-                self.takers.setdefault(node, []).append(place)
+                self.consumers.setdefault(node, []).append(position)
 
     def unmade(self) -> Iterator[tuple[int, int]]:
-        """Yield each node that is taken and made by no unit, with the first place where it is taken."""
-        return ((node, places[0]) for node, places in self.takers.items() if node not in self.makers)
-
-    def labels(self, place: int, side: int) -> set[str]:
-        """Return the labels of the inputs (0) or outputs (1) of the unit at a place."""
-        sides = self.network.inputs, self.network.outputs
-        return {self.objects[node].label for node in sides[side][self.units[place]]}
-
-    def nearest(self, node: int, taker: int) -> tuple[int, int] | None:
-        """Return the place where what an unmade node may be meant to be is made, and the node made there."""
-        taken = self.objects[node]
-        for between in range(1, min(taker, FAR) + 1):
-            maker = taker - between
-            near = [
-                other
-                for other in self.made[maker]
-                if (other not in self.takers and self._may_be_one(node, taker, other, maker))
-                or (between <= _MIDDLE and _lacks_a_state(taken, self.objects[other]))
-            ]
-            if near:
-                return maker, min(near)
-        return None
-
-    def _may_be_one(self, node: int, taker: int, other: int, maker: int) -> bool:
-        """Whether a node that is taken may be meant to be one that is made; not where each has its place."""
-        taken, made = self.objects[node], self.objects[other]
-        return _differ_little(taken, made, taker - maker) and (
-            taken.relations == made.relations
-            or len(taken.relations) != len(made.relations)
-            or slip_between(taken, made) is not None
-            or not self._has_place(taken, taker, 0)
-            or not self._has_place(made, maker, 1)
+        """Yield each node that is taken and made by no unit, with the position of its first consumer."""
+        return (
+            (node, positions[0]) for node, positions in self.consumers.items() if node not in self.producers
         )
 
-    def _has_place(self, node: ObjectNode, place: int, side: int) -> bool:
-        """Whether everything that a node is in or on is on that side of the unit, too."""
-        return self.labels(place, side).issuperset(related for _, related in node.relations)
+    def labels(self, position: int, side: int) -> set[str]:
+        """Return the labels of the inputs (0) or outputs (1) of the unit at a position."""
+        nodes_by_side = self.network.inputs, self.network.outputs
+        return {self.objects[node].label for node in nodes_by_side[side][self.units[position]]}
+
+    def nearest(self, node: int, consumer: int) -> tuple[int, int] | None:
+        """Return the position of the last unit before ``consumer`` that makes a similar node, and that node.
+
+        ``None`` where no unit makes a node that may be meant.
+        """
+        wanted = self.objects[node]
+        for distance in range(1, min(consumer, MAX_DISTANCE) + 1):
+            producer = consumer - distance
+            candidates = [
+                other
+                for other in self.made[producer]
+                if (other not in self.consumers and self._may_be_one(node, consumer, other, producer))
+                or (distance <= _MIDDLE_DISTANCE and _lacks_a_state(wanted, self.objects[other]))
+            ]
+            if candidates:
+                return producer, min(candidates)
+        return None
+
+    def _may_be_one(self, node: int, consumer: int, other: int, producer: int) -> bool:
+        """Whether a node taken may be a node made; not if both have different locations that are listed."""
+        needed, made = self.objects[node], self.objects[other]
+        return _differ_little(needed, made, consumer - producer) and (
+            needed.relations == made.relations
+            or len(needed.relations) != len(made.relations)
+            or slip_between(needed, made) is not None
+            or not self._locations_listed(needed, consumer, 0)
+            or not self._locations_listed(made, producer, 1)
+        )
+
+    def _locations_listed(self, node: ObjectNode, position: int, side: int) -> bool:
+        """Whether all objects that a node is in or on are on a side of the unit, too."""
+        return self.labels(position, side).issuperset(related for _, related in node.relations)
 
 
-def _differ_little(taken: ObjectNode, made: ObjectNode, between: int) -> bool:
-    """Whether two nodes, so many units apart, differ in so little that they may be meant to be the same."""
-    if taken.label != made.label:
-        return between <= _NEAR and _parts(taken) > 1 and taken[1:] == made[1:]
-    if slip_between(taken, made):
+def _differ_little(needed: ObjectNode, made: ObjectNode, distance: int) -> bool:
+    """Whether two nodes differ so little that they may be meant to be one; ``distance`` is in units."""
+    if needed.label != made.label:
+        return distance <= _SHORT_DISTANCE and _parts(needed) > 1 and needed[1:] == made[1:]
+    if slip_between(needed, made):
         return True
-    states, relations = taken.states ^ made.states, taken.relations ^ made.relations
-    differ = taken.contents != made.contents
-    if bool(states) + bool(relations) + differ > 1:
+    states, relations = needed.states ^ made.states, needed.relations ^ made.relations
+    contents_differ = needed.contents != made.contents
+    if bool(states) + bool(relations) + contents_differ > 1:
         return False
-    if differ:
-        return len(held(taken) ^ held(made)) == 1 and min(len(held(taken)), len(held(made))) > 1
-    if len(states) + len(relations) == 2:  # one in place of another
-        return between <= _MIDDLE and _parts(taken) > 1 and _parts(taken) == _parts(made)
-    # what lies about is taken again and again: sugar, after the sugar before is in the bowl
-    moved = between <= _NEAR or bool(taken.relations or taken.contents)
+    if contents_differ:
+        return (
+            len(content_names(needed) ^ content_names(made)) == 1
+            and min(len(content_names(needed)), len(content_names(made))) > 1
+        )
+    if len(states) + len(relations) == 2:  # one replaced by another
+        return distance <= _MIDDLE_DISTANCE and _parts(needed) > 1 and _parts(needed) == _parts(made)
+    # raw items are taken repeatedly: sugar, after other sugar was put into the bowl
+    moved = distance <= _SHORT_DISTANCE or bool(needed.relations or needed.contents)
     return len(states) == 1 or (len(relations) == 1 and moved)
 
 
-def _lacks_a_state(taken: ObjectNode, made: ObjectNode) -> bool:
-    """Whether a node is one that was made, without one of its states."""
-    rest = taken.relations, taken.contents
-    same = taken.label == made.label and any(rest) and rest == (made.relations, made.contents)
-    return same and taken.states < made.states and len(made.states - taken.states) == 1
+def _lacks_a_state(needed: ObjectNode, made: ObjectNode) -> bool:
+    """Whether the node taken is the node made without one of its states."""
+    other_parts = needed.relations, needed.contents
+    same = needed.label == made.label and any(other_parts) and other_parts == (made.relations, made.contents)
+    return same and needed.states < made.states and len(made.states - needed.states) == 1
 
 
 def _parts(node: ObjectNode) -> int:

@@ -1,10 +1,10 @@
-"""How objects come from unit to unit: chains that break, and what is left out of a unit."""
+"""Rules about chains of units: objects that do not fit, and objects left out of a unit."""
 
 from collections.abc import Iterator
 
-from foon_asp.linting.chain import FAR, Chain
+from foon_asp.linting.chain import MAX_DISTANCE, Chain
 from foon_asp.linting.context import Context
-from foon_asp.linting.habits import held
+from foon_asp.linting.habits import content_names
 from foon_asp.linting.place_rules import misplaced_nodes, only_after, unheld_nodes
 from foon_asp.linting.rule import WARNING, rule
 from foon_asp.text.diagnostics import Diagnostic
@@ -19,17 +19,21 @@ def broken_chain(context: Context) -> Iterator[Diagnostic]:
     file are compared.
     """
     for chain in context.chains:
-        for node, taker in chain.unmade():
-            if not (near := chain.nearest(node, taker)):
+        for node, consumer in chain.unmade():
+            if not (similar := chain.nearest(node, consumer)):
                 continue
-            maker, other = near
-            ends = chain.copies[taker], 0, chain.objects[node]
-            starts = chain.copies[maker], 1, chain.objects[other]
-            here, there = str(ends[2]), str(starts[2])
-            message = f"no unit makes {here!r}; is it {there!r}, which {context.line(*starts)} makes?"
+            producer, other = similar
+            ends = chain.copies[consumer], 0, chain.objects[node]
+            starts = chain.copies[producer], 1, chain.objects[other]
+            taken_node, made_node = str(ends[2]), str(starts[2])
+            message = (
+                f"no unit makes {taken_node!r}; is it {made_node!r}, which {context.line(*starts)} makes?"
+            )
             yield context.at_node(*ends, message)
-            if other not in chain.takers:
-                message = f"no unit takes {there!r}; is it {here!r}, which {context.line(*ends)} takes?"
+            if other not in chain.consumers:
+                message = (
+                    f"no unit takes {made_node!r}; is it {taken_node!r}, which {context.line(*ends)} takes?"
+                )
                 yield context.at_node(*starts, message)
 
 
@@ -46,44 +50,49 @@ def left_out(context: Context) -> Iterator[Diagnostic]:
     before.
     """
     for chain in context.chains:
-        for node, taker in chain.unmade():
-            if (place := _maker_without(chain, node, taker)) and not chain.nearest(node, taker):
-                maker, beside = place
-                lacking, made = chain.objects[node], chain.objects[beside]
-                motion = context.network.motions[chain.units[maker]]
+        for node, consumer in chain.unmade():
+            if (incomplete := _producer_without(chain, node, consumer)) and not chain.nearest(node, consumer):
+                producer, companion = incomplete
+                lacking, made = chain.objects[node], chain.objects[companion]
+                motion = context.network.motions[chain.units[producer]]
+                taking = chain.copies[consumer]
                 message = (
                     f"{motion!r} makes {str(made)!r}, and not {str(lacking)!r}, which "
-                    f"{context.line(chain.copies[taker], 0, lacking)} takes with it and no unit makes; is it "
+                    f"{context.line(taking, 0, lacking)} takes with it and no unit makes; is it "
                     "left out here?"
                 )
-                yield context.at_node(chain.copies[maker], 1, made, message)
+                yield context.at_node(chain.copies[producer], 1, made, message)
     labels = {node.label for node in context.network.objects}
     for side in context.sides:
-        places = [] if side.number else list(only_after(side))
-        if places:
-            told = [*unheld_nodes(side, context.habits), *misplaced_nodes(side, labels, context.habits)]
-            others = {input_ for input_, _ in told}
+        containers = [] if side.number else list(only_after(side))
+        if containers:
+            reported = [*unheld_nodes(side, context.habits), *misplaced_nodes(side, labels, context.habits)]
+            others = {input_ for input_, _ in reported}
             copy, motion = context.files.copies[side.unit][0], context.network.motions[side.unit]
-            for input_, message in places:
+            for input_, message in containers:
                 if input_ not in others:
                     text = f"{message} of {motion!r} have, and the inputs have not"
                     yield context.at_node(copy, 0, input_, text)
 
 
-def _maker_without(chain: Chain, node: int, taker: int) -> tuple[int, int] | None:
-    """Return the place that makes a container with an unmade node in it and not the node, and the container.
+def _producer_without(chain: Chain, node: int, consumer: int) -> tuple[int, int] | None:
+    """Return the position of a unit that makes only a companion of a node, and the companion.
 
-    Or that makes something in the node, and not the node, which is its container.
+    A companion is a container that has the node in it, or an object in the node. ``None`` if no unit does so.
     """
-    taken = chain.objects[node]
-    for beside in chain.network.inputs[chain.units[taker]]:
-        other = chain.objects[beside]
-        inside = taken.label in held(other) and any(place == other.label for _, place in taken.relations)
-        around = other.label in held(taken) and any(place == taken.label for _, place in other.relations)
-        earlier = [place for place in chain.makers.get(beside, ()) if place < taker]
-        if not (inside or around) or not earlier or taker - earlier[-1] > FAR:
+    unmade_node = chain.objects[node]
+    for companion in chain.network.inputs[chain.units[consumer]]:
+        other = chain.objects[companion]
+        is_inside = unmade_node.label in content_names(other) and any(
+            related == other.label for _, related in unmade_node.relations
+        )
+        is_around = other.label in content_names(unmade_node) and any(
+            related == unmade_node.label for _, related in other.relations
+        )
+        earlier = [position for position in chain.producers.get(companion, ()) if position < consumer]
+        if not (is_inside or is_around) or not earlier or consumer - earlier[-1] > MAX_DISTANCE:
             continue
-        before, after = (chain.labels(earlier[-1], side) for side in (0, 1))
-        if taken.label not in after and (around or taken.label in before):
-            return earlier[-1], beside
+        input_labels, output_labels = (chain.labels(earlier[-1], side) for side in (0, 1))
+        if unmade_node.label not in output_labels and (is_around or unmade_node.label in input_labels):
+            return earlier[-1], companion
     return None

@@ -1,4 +1,4 @@
-"""What a unit changes: what comes from nothing, vanishes, or leaves the contents."""
+"""Rules about objects and contents that appear or vanish in a unit."""
 
 from collections.abc import Iterator
 
@@ -8,8 +8,8 @@ from foon_asp.linting.rule import WARNING, rule
 from foon_asp.network import ObjectNode
 from foon_asp.text.diagnostics import Diagnostic
 
-_MIN_UNITS = 3  # of a motion, before it has habits
-_SELDOM = 8  # what one unit in that many does is no habit
+_MIN_UNITS = 3  # of a motion, before its habits count
+_SELDOM = 8  # a change in at most one of 8 units is no habit
 
 
 def _is_seldom(often: int, of: int) -> bool:
@@ -17,15 +17,15 @@ def _is_seldom(often: int, of: int) -> bool:
 
 
 def _units(context: Context) -> Iterator[tuple[int, str, Changes, Habit]]:
-    """Yield each unit with its motion, what it changes, and what units with its motion do."""
+    """Yield each unit with its motion, its changes, and the habit of its motion."""
     for unit, motion in enumerate(context.network.motions):
-        yield unit, motion, context.habits.units[unit], context.known.habit(motion)
+        yield unit, motion, context.habits.units[unit], context.all_names.habit(motion)
 
 
 def _finding(context: Context, unit: int, side: int, node: int, message: str) -> Diagnostic:
-    found = context.network.objects[node]
+    object_node = context.network.objects[node]
     copy = context.files.copies[unit][0]
-    return context.at_node(copy, side, found, f"{found.label!r} {message}")
+    return context.at_node(copy, side, object_node, f"{object_node.label!r} {message}")
 
 
 @rule("lost-contents", WARNING, "contents that lose something, which no output has")
@@ -65,9 +65,9 @@ def from_nothing(context: Context) -> Iterator[Diagnostic]:
     for unit, motion, changes, habit in _units(context):
         for node in changes.new:
             message = f"comes from no input of {motion!r}"
-            maker = made_of_itself.get(context.network.objects[node])
-            if maker is not None:
-                copy = context.files.copies[maker][0]
+            producer = made_of_itself.get(context.network.objects[node])
+            if producer is not None:
+                copy = context.files.copies[producer][0]
                 message += f"; the unit on {context.sheets[copy.sheet].where(copy.at)} makes it"
             elif not _is_seldom(habit.make, habit.units):
                 continue
@@ -75,12 +75,12 @@ def from_nothing(context: Context) -> Iterator[Diagnostic]:
 
 
 def _made_of_itself(context: Context) -> dict[ObjectNode, int]:
-    """Return the first unit that makes each node out of what is called so."""
+    """Return by node the first unit that makes it out of an input that mentions its label."""
     units: dict[ObjectNode, int] = {}
     for side in context.sides:
-        before = mentioned(side.others) if side.number == 1 else set()
+        input_names = mentioned(side.others) if side.number == 1 else set()
         for node in set(side.nodes).difference(side.others):
-            if node.label in before:
+            if node.label in input_names:
                 units.setdefault(node, side.unit)
     return units
 

@@ -1,4 +1,4 @@
-"""What rules look at: the files that are linted together, and what is known of names beforehand."""
+"""The context of rules: the files that are linted together, and a vocabulary of known names."""
 
 from functools import cached_property
 from pathlib import Path
@@ -39,22 +39,22 @@ class Context:
 
     @cached_property
     def habits(self) -> Habits:
-        """What the units change."""
+        """The changes and habits of the units."""
         return Habits(self.network)
 
     @cached_property
-    def known(self) -> Vocabulary:
-        """The vocabulary and all that the files have."""
+    def all_names(self) -> Vocabulary:
+        """The vocabulary, with the names and habits of the files added."""
         return self.vocabulary.plus(Vocabulary.of(self.names, self.habits))
 
     @cached_property
     def remarks(self) -> dict[str, list[Diagnostic]]:
-        """What the reader remarked on, by code."""
-        return remarks_by_code(self.files, self.known)
+        """The remarks of the reader, by code."""
+        return remarks_by_code(self.files, self.all_names)
 
     @cached_property
     def near_names(self) -> dict[Kind, list[tuple[str, str]]]:
-        """Pairs of names of each kind: the one that stands less often, and the one that may be meant."""
+        """Pairs of similar names by kind: the rarer name, and the one that may be meant."""
         names, words = self.names, self.vocabulary.words
         return {
             kind: list(near_names(names.counts[kind], kind is not Kind.OBJECT, words, names.loose[kind]))
@@ -63,13 +63,13 @@ class Context:
 
     @cached_property
     def paired_names(self) -> set[tuple[Kind, str]]:
-        """The names in those pairs, with their kinds."""
+        """The names in :attr:`near_names`, with their kinds."""
         return {(kind, name) for kind, pairs in self.near_names.items() for pair in pairs for name in pair}
 
     @cached_property
     def made(self) -> set[int]:
         """The nodes that a unit makes: those among its outputs and not among its inputs."""
-        return {node for chain in self.chains for node in chain.makers}
+        return {node for chain in self.chains for node in chain.producers}
 
     @cached_property
     def sides(self) -> list[Side]:
@@ -102,7 +102,7 @@ class Context:
     def node_line(self, copy: Copy, side: int, node: ObjectNode) -> int:
         """Return the index of the object line of a node of a copy of a unit, or else of its first line."""
         blocks = self.node_lines(copy)[side]
-        return next((index for index, listed in blocks if listed == node), copy.at)
+        return next((index for index, listed_node in blocks if listed_node == node), copy.at)
 
     def node_lines(self, copy: Copy) -> tuple[list[tuple[int, ObjectNode]], list[tuple[int, ObjectNode]]]:
         """Return the input and output nodes that a copy of a unit lists, each with its object line."""

@@ -27,9 +27,9 @@ def dead_cycle(context: Context) -> Iterator[Diagnostic]:
         copy = context.files.copies[first_unit][0]
         steps = []
         for (_, unit), (node, _) in zip(cycle.steps, (*cycle.steps[1:], cycle.steps[0]), strict=True):
-            place = context.files.copies[unit][0]
-            where = sheets[place.sheet].where(place.at, sheets[copy.sheet])
-            steps.append(f"{network.motions[unit]!r} ({where}) makes {str(network.objects[node])!r}")
+            step_copy = context.files.copies[unit][0]
+            location = sheets[step_copy.sheet].where(step_copy.at, sheets[copy.sheet])
+            steps.append(f"{network.motions[unit]!r} ({location}) makes {str(network.objects[node])!r}")
         if len(steps) > _MAX_SHOWN_STEPS:
             hidden = counted(len(steps) - _MAX_SHOWN_STEPS, "more step")
             steps[_MAX_SHOWN_STEPS - 1 : -1] = [hidden]
@@ -45,7 +45,7 @@ def dead_cycle(context: Context) -> Iterator[Diagnostic]:
 
 
 def _available(context: Context) -> set[int]:
-    """Return the nodes of kitchens among the files, and utensils that are only on, off or empty."""
+    """Return the nodes of kitchens among the files, and utensils without relations and contents."""
     available = {
         number
         for number, node in enumerate(context.network.objects)

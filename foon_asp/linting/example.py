@@ -10,7 +10,7 @@ _EXAMPLES = Path(__file__).parent / "examples"
 
 
 class Example(NamedTuple):
-    """The content of files by name, and what the rule finds in them."""
+    """The content of files by name, and the findings of the rule in them."""
 
     files: dict[Path, bytes]
     findings: list[Finding]
@@ -19,4 +19,4 @@ class Example(NamedTuple):
 def example(code: str) -> Example:
     """Return the example of the rule of a code."""
     files = {Path(file.name): file.read_bytes() for file in sorted((_EXAMPLES / code).iterdir())}
-    return Example(files, [Finding.of(found) for found in lint(files, files) if found.code == code])
+    return Example(files, [Finding.of(finding) for finding in lint(files, files) if finding.code == code])

@@ -32,20 +32,20 @@ class Finding(Value, frozen=True):
     unsafe: bool
 
     @classmethod
-    def of(cls, found: Diagnostic) -> "Finding":
-        """Return what a rule yielded as a value."""
-        mendable = is_mendable(found)
+    def of(cls, diagnostic: Diagnostic) -> "Finding":
+        """Return the finding of a diagnostic that a rule yielded."""
+        mendable = is_mendable(diagnostic)
         return cls(
-            found.source.file,
-            found.source.line,
-            found.source.column,
-            found.severity,
-            found.code,
-            found.message,
-            found.excerpt,
-            found.fix,
+            diagnostic.source.file,
+            diagnostic.source.line,
+            diagnostic.source.column,
+            diagnostic.severity,
+            diagnostic.code,
+            diagnostic.message,
+            diagnostic.excerpt,
+            diagnostic.fix,
             mendable,
-            is_mendable(found, unsafe=True) and not mendable,
+            is_mendable(diagnostic, unsafe=True) and not mendable,
         )
 
     def __str__(self) -> str:

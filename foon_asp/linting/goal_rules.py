@@ -9,7 +9,7 @@ from foon_asp.network import Network
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import ObjectLine
 
-_MANY = 10  # entries of a list: if most of it is unknown, it is told of as a whole
+_MANY = 10  # unknown entries of a list; more than these are reported together
 
 
 @rule("unmade-goal", WARNING, "a goal that no unit makes")
@@ -51,23 +51,23 @@ def _lists(context: Context, of_goals: bool) -> Iterator[Sheet]:
 
 def _tagged(sheet: Sheet, context: Context) -> Iterator[Diagnostic]:
     tagged = {
-        sheet.lines[written.first]
-        for written in sheet.distinct_lines
-        if isinstance(written.line, ObjectLine) and written.line.is_goal
+        sheet.lines[written_line.first]
+        for written_line in sheet.distinct_lines
+        if isinstance(written_line.line, ObjectLine) and written_line.line.is_goal
     }
-    told = set()
+    reported = set()
     for index, line in enumerate(sheet.lines) if tagged else ():
         if line not in tagged:
             continue
         _, node = next(sheet.blocks(index))
-        if node not in told and context.network.object_id(node) not in context.made:
-            told.add(node)
+        if node not in reported and context.network.object_id(node) not in context.made:
+            reported.add(node)
             message = f"{str(node)!r} is marked as a goal, and no unit makes it"
             yield sheet.finding(message, index, node.label)
 
 
 def _unknown(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
-    """Yield a finding for each entry of a list that is no object node, or one where most are none."""
+    """Yield a finding for each entry of a list that is no object node, or a single one if most are none."""
     entries = sheet.entries or ()
     unknown = [entry for entry in entries if not network.find(entry.pattern)]
     if len(unknown) > _MANY and 2 * len(unknown) > len(entries):
@@ -84,9 +84,9 @@ def _unknown(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
 
 
 def _alike(label: str, network: Network) -> str:
-    """Return which nodes have the label, in words."""
+    """Return the nodes that have a label, in words."""
     nodes = network.by_label.get(label, ())
     if not nodes:
         return f"none there is called {label!r}"
-    more = f" and {len(nodes) - 1} more called {label!r}" if len(nodes) > 1 else ""
-    return f"there is {str(network.objects[nodes[0]])!r}{more}"
+    others = f" and {len(nodes) - 1} more called {label!r}" if len(nodes) > 1 else ""
+    return f"there is {str(network.objects[nodes[0]])!r}{others}"

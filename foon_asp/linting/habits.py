@@ -1,4 +1,4 @@
-"""What units do with objects: which come from nothing, vanish, or are no more among the contents."""
+"""The changes of units, objects and contents that appear or vanish, and the habits of motions."""
 
 from collections.abc import Collection, Iterator
 from collections.abc import Set as AbstractSet
@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 from foon_asp.network import Network, ObjectNode
 
-_STEM, _SHORTEST = 4, 3  # letters by which words are taken for one: wrapped, wrapping
+_STEM, _SHORTEST = 4, 3  # letters by which words count as one: wrapped, wrapping
 _NOTHING: frozenset[str] = frozenset()
 
 
 class Changes(NamedTuple):
-    """What a unit changes beyond its nodes, where a slip may be: names by the node in which they are seen.
+    """The changes of a unit that may be slips: names by the node that shows them.
 
     ``lost`` were in a container that keeps other contents, ``gained`` are in one that had other contents;
     ``new`` outputs and ``gone`` inputs are mentioned on one side alone.
@@ -25,20 +25,20 @@ class Changes(NamedTuple):
     keeps: bool
 
 
-def held(node: ObjectNode) -> AbstractSet[str]:
-    """Return the names of what a node contains."""
+def content_names(node: ObjectNode) -> AbstractSet[str]:
+    """Return the names of the contents of a node."""
     return _NOTHING if not node.contents else {item for _, items in node.contents for item in items}
 
 
 def mentioned(nodes: Collection[ObjectNode]) -> set[str]:
-    """Return every name in nodes: labels, contents and places."""
+    """Return every name in nodes: labels, contents and related objects."""
     names = {node.label for node in nodes}
-    names.update(place for node in nodes for _, place in node.relations)
-    return names.union(*map(held, nodes))
+    names.update(related_object for node in nodes for _, related_object in node.relations)
+    return names.union(*map(content_names, nodes))
 
 
 class Habit(NamedTuple):
-    """Of the units with a motion: how many there are, how many keep contents, and how many change what."""
+    """Counts of the units with a motion: all, those that keep contents, and those with each change."""
 
     units: int = 0
     keep: int = 0
@@ -49,98 +49,110 @@ class Habit(NamedTuple):
 
 
 class Habits:
-    """What the units of a network change.
+    """The changes of the units of a network.
 
-    ``foods`` are the names of what is among contents, and never a container or a place.
+    ``ingredients`` are all names among contents; ``foods`` are those that are never a container or a place.
     """
 
     def __init__(self, network: Network) -> None:
         self.network = network
         objects = network.objects
-        self.ingredients = {name for node in objects for name in held(node)}
-        holders = {node.label for node in objects if node.contents}
-        self.foods = self.ingredients - holders - {place for node in objects for _, place in node.relations}
+        self.ingredients = {name for node in objects for name in content_names(node)}
+        containers = {node.label for node in objects if node.contents}
+        self.foods = (
+            self.ingredients
+            - containers
+            - {related_object for node in objects for _, related_object in node.relations}
+        )
 
     @cached_property
     def units(self) -> list[Changes]:
-        """What each unit changes."""
+        """The changes of each unit."""
         return [self.changes(unit) for unit in range(len(self.network))]
 
     def changes(self, unit: int) -> Changes:
-        """Return what a unit changes."""
+        """Return the changes of a unit."""
         objects = self.network.objects
         inputs = {node: objects[node] for node in self.network.inputs[unit]}
         outputs = {node: objects[node] for node in self.network.outputs[unit]}
-        before, after = mentioned(inputs.values()), mentioned(outputs.values())
-        emptied = {node.label for node in inputs.values() if held(node) and held(node) <= after}
+        input_names, output_names = mentioned(inputs.values()), mentioned(outputs.values())
+        emptied = {
+            node.label
+            for node in inputs.values()
+            if content_names(node) and content_names(node) <= output_names
+        }
         lost: dict[int, list[str]] = {}
         gained: dict[int, list[str]] = {}
         kept = list(_containers(inputs, outputs))
-        for node, had, has in kept:
-            missing = _unlike(had - has - after - emptied, has - had)
-            added = _unlike(has - had - before, before)
+        for node, old_contents, new_contents in kept:
+            missing = _unlike(
+                old_contents - new_contents - output_names - emptied, new_contents - old_contents
+            )
+            added = _unlike(new_contents - old_contents - input_names, input_names)
             if missing and not added:
                 lost[node] = missing
             elif added and not missing:
                 gained[node] = added
-        new = {node: found for node, found in outputs.items() if found.label not in before}
+        new = {
+            node: object_node for node, object_node in outputs.items() if object_node.label not in input_names
+        }
         gone = [
             node
-            for node, found in inputs.items()
-            if found.label in self.foods
-            and found.label not in after
-            and not _comes_from(found, before)
-            and not _is_said(found.label, outputs.values())
+            for node, object_node in inputs.items()
+            if object_node.label in self.foods
+            and object_node.label not in output_names
+            and not _comes_from(object_node, input_names)
+            and not _is_in_a_state(object_node.label, outputs.values())
         ]
         if gone or not new:
             return Changes(lost, gained, [], [] if new else gone, bool(kept))
-        # a product stands in something, or something of its name or in it was there
-        products = {name for node in outputs.values() for name in held(node)}
-        stems = words_in(before.union(*(node.states for node in inputs.values())))
-        fresh = [
+        # a product is among contents, or shares a word or contents with an input
+        products = {name for node in outputs.values() for name in content_names(node)}
+        stems = words_in(input_names.union(*(node.states for node in inputs.values())))
+        unrelated = [
             node
-            for node, found in new.items()
-            if found.label not in products
-            and not _comes_from(found, before)
-            and before.isdisjoint(held(found))
+            for node, object_node in new.items()
+            if object_node.label not in products
+            and not _comes_from(object_node, input_names)
+            and input_names.isdisjoint(content_names(object_node))
             and not any(
                 word.startswith(stem[:_STEM])
-                for word in words_in([found.label])
+                for word in words_in([object_node.label])
                 for stem in stems
                 if len(stem) >= _SHORTEST
             )
         ]
-        return Changes(lost, gained, fresh, [], bool(kept))
+        return Changes(lost, gained, unrelated, [], bool(kept))
 
     def of_units(self) -> Iterator[tuple[str, Habit]]:
-        """Yield the motion of each unit, and what the unit does."""
-        for motion, seen in zip(self.network.motions, self.units, strict=True):
-            changed = seen.keeps, seen.lost, seen.gained, seen.new, seen.gone
-            yield motion, Habit(1, *(int(bool(each)) for each in changed))
+        """Yield the motion of each unit, and the habit that this unit alone shows."""
+        for motion, changes in zip(self.network.motions, self.units, strict=True):
+            changed = changes.keeps, changes.lost, changes.gained, changes.new, changes.gone
+            yield motion, Habit(1, *(int(bool(names)) for names in changed))
 
 
 def _comes_from(node: ObjectNode, places: AbstractSet[str]) -> bool:
-    """Whether a node is said to be from something that is there: water from a tap."""
-    written = {state.removeprefix("from ") for state in node.states if state.startswith("from ")}
-    return not places.isdisjoint(written.union(place for word, place in node.relations if word == "from"))
+    """Whether a node is from one of the places by its states and relations: water from a tap."""
+    origins = {state.removeprefix("from ") for state in node.states if state.startswith("from ")}
+    return not places.isdisjoint(origins.union(origin for word, origin in node.relations if word == "from"))
 
 
-def _is_said(name: str, nodes: Collection[ObjectNode]) -> bool:
-    """Whether a state of a node says where something is, as salted does of salt."""
+def _is_in_a_state(name: str, nodes: Collection[ObjectNode]) -> bool:
+    """Whether a state of a node has the stem of a name, as salted has that of salt."""
     words = [word for node in nodes for state in node.states for word in state.split(" ")]
-    return any(word.startswith(part[:_STEM]) for part in words_in([name]) for word in words)
+    return any(word.startswith(name_word[:_STEM]) for name_word in words_in([name]) for word in words)
 
 
 def _containers(
     inputs: dict[int, ObjectNode], outputs: dict[int, ObjectNode]
 ) -> Iterator[tuple[int, AbstractSet[str], AbstractSet[str]]]:
-    """Yield the outputs that keep some contents, with what they had and what they have."""
-    for node, after in outputs.items():
-        befores = [other for other in inputs.values() if other.label == after.label]
-        if len(befores) == 1 and sum(other.label == after.label for other in outputs.values()) == 1:
-            had, has = held(befores[0]), held(after)
-            if had & has:
-                yield node, had, has
+    """Yield the outputs that keep some contents, with their old and their new contents."""
+    for node, output in outputs.items():
+        same_label = [other for other in inputs.values() if other.label == output.label]
+        if len(same_label) == 1 and sum(other.label == output.label for other in outputs.values()) == 1:
+            old_contents, new_contents = content_names(same_label[0]), content_names(output)
+            if old_contents & new_contents:
+                yield node, old_contents, new_contents
 
 
 def _unlike(names: Collection[str], others: Collection[str]) -> list[str]:

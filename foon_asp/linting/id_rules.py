@@ -12,11 +12,11 @@ from foon_asp.text.line import ObjectLine, name_of
 
 _KINDS = {"O": "object", "S": "state", "M": "motion"}
 _NEARLY_ALL = 20  # lines with an id for one without
-_MANY = 4  # names of one id: then it means nothing, and they are told together
+_MANY = 4  # names of one id; with more it means nothing, and they are reported together
 
 
 class _Use(NamedTuple):
-    """A name with an id, or the other way round: how often they stand together, and where first."""
+    """A name used with an id, or an id with a name: how often, and the index of the first line."""
 
     text: str
     often: int
@@ -32,11 +32,11 @@ def _shared(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
     for line, first, often in sheet.distinct_lines:
         if line.id:
             key, text = (line.id, name_of(line)) if by_id else (name_of(line), line.id)
-            known = uses.setdefault((sheet.lines[first][0], key), {})
-            earlier = known.get(text, _Use(text, 0, first))
-            known[text] = _Use(text, earlier.often + often, min(earlier.first, first))
-    for (letter, key), known in uses.items():
-        yield letter, key, sorted(known.values(), key=lambda use: (-use.often, use.first))
+            uses_of_key = uses.setdefault((sheet.lines[first][0], key), {})
+            earlier = uses_of_key.get(text, _Use(text, 0, first))
+            uses_of_key[text] = _Use(text, earlier.often + often, min(earlier.first, first))
+    for (letter, key), uses_of_key in uses.items():
+        yield letter, key, sorted(uses_of_key.values(), key=lambda use: (-use.often, use.first))
 
 
 @rule("id-of-two-names", WARNING, "one id for two names")
@@ -48,7 +48,7 @@ def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
     """
     for sheet in context.sheets:
         for letter, id_, uses in _shared(sheet, by_id=True):
-            most, *others = uses
+            usual, *others = uses
             if len(uses) >= _MANY:
                 shown = ", ".join(f"{use.text!r} ({use.often})" for use in uses[: _MANY - 1])
                 message = (
@@ -58,10 +58,10 @@ def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
                 yield sheet.finding(message, min(use.first for use in uses))
                 continue
             for use in others:
+                line = sheet.where(usual.first, sheet)
                 message = (
                     f"the {_KINDS[letter]} id {letter}{id_} is that of {use.text!r} ({times(use.often)}) and "
-                    f"of {most.text!r} ({times(most.often)}, first on {sheet.where(most.first, sheet)}); one "
-                    "needs another id"
+                    f"of {usual.text!r} ({times(usual.often)}, first on {line}); one needs another id"
                 )
                 yield sheet.finding(message, use.first)
 
@@ -70,12 +70,12 @@ def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
 def name_of_two_ids(context: Context) -> Iterator[Diagnostic]:
     """The same problem as one id for two names, the other way around."""
     for sheet in context.sheets:
-        for letter, name, (most, *others) in _shared(sheet, by_id=False):
+        for letter, name, (usual, *others) in _shared(sheet, by_id=False):
             for use in others:
+                line = sheet.where(usual.first, sheet)
                 message = (
                     f"the {_KINDS[letter]} {name!r} has the id {letter}{use.text} ({times(use.often)}) and "
-                    f"{letter}{most.text} ({times(most.often)}, first on {sheet.where(most.first, sheet)}); "
-                    "it should have one"
+                    f"{letter}{usual.text} ({times(usual.often)}, first on {line}); it should have one"
                 )
                 yield sheet.finding(message, use.first)
 
@@ -89,16 +89,20 @@ def missing_field(context: Context) -> Iterator[Diagnostic]:
     """
     for sheet in context.sheets:
         lines = sheet.distinct_lines
-        without_id = [each for each in lines if not each.line.id]
-        often = sum(each.often for each in without_id)
-        if _NEARLY_ALL * often <= sum(each.often for each in lines):
-            for each in without_id:
-                letter = sheet.lines[each.first][0]
+        without_id = [written for written in lines if not written.line.id]
+        count = sum(written.often for written in without_id)
+        if _NEARLY_ALL * count <= sum(written.often for written in lines):
+            for written in without_id:
+                letter = sheet.lines[written.first][0]
                 message = f"no {_KINDS[letter]} id behind {letter}; nearly all lines of the file have ids"
-                yield sheet.finding(message, each.first)
-        objects = [(each.line, each.first, each.often) for each in lines if isinstance(each.line, ObjectLine)]
-        without_flag = [(line.label, first, often) for line, first, often in objects if not line.fields]
-        missing, total = (sum(often for *_, often in each) for each in (without_flag, objects))
+                yield sheet.finding(message, written.first)
+        objects = [
+            (written.line, written.first, written.often)
+            for written in lines
+            if isinstance(written.line, ObjectLine)
+        ]
+        without_flag = [(line.label, first, count) for line, first, count in objects if not line.fields]
+        missing, total = (sum(count for *_, count in written) for written in (without_flag, objects))
         if sheet.entries is None and 0 < 2 * missing < total:  # lists of objects have no motion to be in
             have = "have no motion flag, this one first" if missing > 1 else "has no motion flag"
             message = f"{missing} of {total} object lines {have}; write 1 if it is in motion, 0 if not"

@@ -1,4 +1,4 @@
-"""Letters that nobody sees, or takes for others."""
+"""Rules about invisible letters, and letters that look like others."""
 
 import re
 import unicodedata
@@ -24,28 +24,28 @@ def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
     characters in one place and one in another, of which the rarer form is reported. Type the name again, or
     copy it.
     """
-    odd = [
+    odd_lines = [
         (sheet, index, line)
         for sheet in context.sheets
         for index, line in enumerate(sheet.lines)
         if not line.startswith("#") and not _PLAIN.fullmatch(line)
     ]
-    spelt = Counter(word for _, _, line in odd for word in _WORD.findall(line))
+    spelt = Counter(word for _, _, line in odd_lines for word in _WORD.findall(line))
     usual: dict[
         str, str
     ] = {}  # of the forms of a word, by its composed form, which is usual if all are as rare
     for word in sorted(spelt, key=lambda form: (spelt[form], unicodedata.is_normalized("NFC", form))):
         usual[unicodedata.normalize("NFC", word)] = word
-    for sheet, index, line in odd:
-        told = [_unseen(line), _of_two_scripts(line)]
+    for sheet, index, line in odd_lines:
+        faults = [_unseen(line), _of_two_scripts(line)]
         for word in dict.fromkeys(_WORD.findall(line)):
             if word != usual[unicodedata.normalize("NFC", word)]:
                 message = (
                     f"{word!r} looks the same elsewhere, where its accents are other characters; the names "
                     "differ, so copy the word from there"
                 )
-                told.append((line.index(word) + 1, message))
-        for column, message in filter(None, told):
+                faults.append((line.index(word) + 1, message))
+        for column, message in filter(None, faults):
             yield sheet.finding(message, index, column=column)
 
 
@@ -65,14 +65,14 @@ def _of_two_scripts(line: str) -> tuple[int, str] | None:
     """Return the column of the first letter of a rarer script in a word, and the message about it."""
     for match in _WORD.finditer(line):
         scripts: dict[str, list[int]] = {}
-        for place, letter in enumerate(match[0]):
-            scripts.setdefault(unicodedata.name(letter, "").partition(" ")[0], []).append(place)
-        scripts = {script: places for script, places in scripts.items() if script in _SCRIPTS}
+        for index, letter in enumerate(match[0]):
+            scripts.setdefault(unicodedata.name(letter, "").partition(" ")[0], []).append(index)
+        scripts = {script: indexes for script, indexes in scripts.items() if script in _SCRIPTS}
         if len(scripts) > 1:
-            script, places = min(scripts.items(), key=lambda each: len(each[1]))
+            script, indexes = min(scripts.items(), key=lambda entry: len(entry[1]))
             message = (
-                f"{match[0]!r} has a {script.capitalize()} letter, U+{ord(match[0][places[0]]):04X}, among "
+                f"{match[0]!r} has a {script.capitalize()} letter, U+{ord(match[0][indexes[0]]):04X}, among "
                 "others that look like it, which makes another name; type it anew"
             )
-            return match.start() + places[0] + 1, message
+            return match.start() + indexes[0] + 1, message
     return None

@@ -31,7 +31,7 @@ def with_tables(paths: Iterable[Path], files: Iterable[Path]) -> list[Path]:
 
 
 class Copy(NamedTuple):
-    """One copy of a unit: the number of its sheet, the index of its first line, and the nodes it lists."""
+    """A copy of a unit: the number of its sheet, the index of its first line, and counts of its nodes."""
 
     sheet: int
     at: int
@@ -40,11 +40,11 @@ class Copy(NamedTuple):
 
 
 class LintedFiles:
-    """All sheets, the network that their units make up, the tables beside, and what the reader remarked on.
+    """All sheets with the network of their units, the tables beside, and the remarks of the reader.
 
     ``copies[u]`` are the places where unit ``u`` of the network stands, in the order read. Files are read
-    independently of errors in them: what cannot be understood is left out. ``contents`` are the bytes of
-    files that are not to be read from disk.
+    independently of errors in them: lines that cannot be understood are left out. ``contents`` are the bytes
+    of files that are not to be read from disk.
     """
 
     def __init__(self, files: Iterable[Path], contents: Mapping[Path, bytes] = MappingProxyType({})) -> None:
@@ -96,20 +96,21 @@ class LintedFiles:
 
     def _read_json(self, text: str, file: Path, format_: Format, source_lines: list[str]) -> None:
         lines: list[str] = []
-        places: list[Source] = []
-        sheet = Sheet(str(file), lines, self.reader, places, source_lines=source_lines)
+        sources: list[Source] = []
+        sheet = Sheet(str(file), lines, self.reader, sources, source_lines=source_lines)
         self.sheets.append(sheet)
 
-        def write(said: Iterable[Line], place: Source, *more: str) -> None:
-            written = [*map(_written, said), *more]
-            lines.extend(written)
-            places.extend([place] * len(written))
+        def write(parsed: Iterable[Line], source: Source, *extra: str) -> None:
+            texts = [*map(_written, parsed), *extra]
+            lines.extend(texts)
+            sources.extend([source] * len(texts))
 
         if not format_.lists_objects(text):
             for unit in self.reader.listed_units(text, str(file)):
                 self._add(unit.motion.motion, unit.sides, len(lines))
                 inputs, outputs = (
-                    [line for block in side for line in block.lines] for side in (unit.inputs, unit.outputs)
+                    [line for block in blocks for line in block.lines]
+                    for blocks in (unit.inputs, unit.outputs)
                 )
                 write([*inputs, unit.motion, *outputs], unit.motion_source, "//")
             return
@@ -132,5 +133,5 @@ class LintedFiles:
 
 
 def _written(line: Line) -> str:
-    """Write a line of JSON as one; names there may hold anything."""
+    """Write a line read from JSON, whose names may hold line breaks, on one line."""
     return _LINE_BREAK.sub(" ", write_line(line))

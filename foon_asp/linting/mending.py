@@ -1,4 +1,4 @@
-"""Files without what can be mended safely."""
+"""Mending of files: fixes and renames of findings applied."""
 
 import re
 from codecs import BOM_UTF8
@@ -21,8 +21,8 @@ def is_mendable(finding: Diagnostic, unsafe: bool = False) -> bool:
 def mended(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -> bytes:
     """Return the bytes of a file with the lines of findings as their ``fix`` has them.
 
-    Only with ``unsafe`` are there fixes that change what is read; names to be written otherwise are so
-    everywhere in the file.
+    Only with ``unsafe`` are fixes applied that change what is read, and renames, which apply to the whole
+    file.
 
     All other bytes stay: line ends, a byte order mark, lines without a fix, and lines that are not what they
     were when they were linted. A ``//`` that is missing behind the last unit gets the line end of that line,
@@ -42,13 +42,13 @@ def mended(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False)
             fixes[finding.source.line] = finding.excerpt.encode(), (finding.fix or "").encode()
     parts: list[bytes] = []
     for number, match in enumerate(_LINE.finditer(content), 1):
-        text, end = match.groups()
+        text, line_break = match.groups()
         mark = BOM_UTF8 if number == 1 and text.startswith(BOM_UTF8) else b""
-        before, after = fixes.get(number, (b"", b""))
-        parts += (mark + after if number in fixes and text == mark + before else text, end)
+        excerpt, fix = fixes.get(number, (b"", b""))
+        parts += (mark + fix if number in fixes and text == mark + excerpt else text, line_break)
         if number in separated:
-            usual = end or parts[1] or b"\n"
-            parts += (b"" if end else usual, b"//", usual)
+            line_end = line_break or parts[1] or b"\n"
+            parts += (b"" if line_break else line_end, b"//", line_end)
     content = b"".join(parts)
     if not renames:
         return content

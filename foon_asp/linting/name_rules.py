@@ -25,10 +25,10 @@ def near_name(context: Context) -> Iterator[Diagnostic]:
     """
     for kind, pairs in context.near_names.items():
         for name, meant in pairs:
-            yield from _near(context, kind, name, meant)
+            yield from _near_findings(context, kind, name, meant)
 
 
-def _near(context: Context, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
+def _near_findings(context: Context, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
     names, words = context.names, context.vocabulary.words
     counts = names.counts[kind]
     is_slip = words.issuperset(words_of(meant)) and not words.issuperset(words_of(name))
@@ -36,10 +36,10 @@ def _near(context: Context, kind: Kind, name: str, meant: str) -> Iterator[Diagn
     rename = Rename(kind, name, meant) if counts[meant] > counts[name] or is_slip else None
     roles = ""
     if kind is Kind.OBJECT and (name in names.objects) != (meant in names.objects):
-        only = name if meant in names.objects else meant
-        roles = f", and {only!r} is never an object of its own"
-    for sheet, index, here in names.by_sheet(kind, name):
-        others = "" if here == counts[name] else f" ({times(here)} in this file)"
+        unlisted = name if meant in names.objects else meant
+        roles = f", and {unlisted!r} is never an object of its own"
+    for sheet, index, count in names.by_sheet(kind, name):
+        others = "" if count == counts[name] else f" ({times(count)} in this file)"
         message = (
             f"the {kind} {name!r} stands {times(counts[name])}{others}, {meant!r} {times(counts[meant])}"
             f"{roles}: if they mean the same, write one of them everywhere"
@@ -58,8 +58,10 @@ def misspelt(context: Context) -> Iterator[Diagnostic]:
             if (slip := context.vocabulary.slip(kind, name)) and (kind, name) not in context.paired_names:
                 word, meant = slip
                 message = f"{word!r} in the {kind} {name!r} is no word that is known; is it {meant!r}?"
-                right = re.sub(rf"(?<![^\W\d_]){word}(?![^\W\d_])", meant, name)
-                rename = Rename(kind, name, right) if right != name else None  # it has capitals or accents
+                corrected = re.sub(rf"(?<![^\W\d_]){word}(?![^\W\d_])", meant, name)
+                rename = (
+                    Rename(kind, name, corrected) if corrected != name else None
+                )  # it has capitals or accents
                 for sheet, index, _ in context.names.by_sheet(kind, name):
                     yield sheet.finding(message, index, name)._replace(rename=rename)
 
@@ -85,24 +87,26 @@ def unknown_ingredient(context: Context) -> Iterator[Diagnostic]:
 
 
 def _unknown(context: Context, bracket: Bracket, role: str, advice: str) -> Iterator[Diagnostic]:
-    names, known = context.names, context.vocabulary
+    names, vocabulary = context.names, context.vocabulary
     for name, mentions in names.mentions[Kind.OBJECT].items():
         if name in names.objects or (Kind.OBJECT, name) in context.paired_names:
             continue
-        held = [
-            each
-            for each in mentions
-            if isinstance(each.line, StateLine)
-            and isinstance(each.line.attribute, bracket)
-            and context.sheets[each.sheet].entries is None
+        bracketed = [
+            mention
+            for mention in mentions
+            if isinstance(mention.line, StateLine)
+            and isinstance(mention.line.attribute, bracket)
+            and context.sheets[mention.sheet].entries is None
         ]
-        if not held or known.slip(Kind.OBJECT, name):
+        if not bracketed or vocabulary.slip(Kind.OBJECT, name):
             continue
         alike = " or ".join(map(repr, names.objects_alike(name)))
-        if not alike and all(word in known.words for word in name.lower().replace("-", " ").split()):
+        if not alike and all(word in vocabulary.words for word in name.lower().replace("-", " ").split()):
             continue
-        first = min(held, key=lambda mention: (mention.sheet, mention.first))
-        sheets = len({mention.sheet for mention in held})
-        often = times(sum(mention.often for mention in held)) + (f" in {sheets} files" if sheets > 1 else "")
+        first = min(bracketed, key=lambda mention: (mention.sheet, mention.first))
+        sheets = len({mention.sheet for mention in bracketed})
+        often = times(sum(mention.often for mention in bracketed)) + (
+            f" in {sheets} files" if sheets > 1 else ""
+        )
         message = f"{name!r} {role} {often}, and is never an object; {f'is it {alike}?' if alike else advice}"
         yield context.sheets[first.sheet].finding(message, first.first, name)

@@ -9,8 +9,8 @@ from foon_asp.linting.sheet import Sheet
 from foon_asp.network import ObjectNode
 from foon_asp.text.line import Line, NameKind, ObjectLine, line_names
 
-_ALIKE = 3  # labels that are named where another may be meant
-_WORDS = 4  # of their ends are compared
+_ALIKE = 3  # labels that are suggested where another may be meant
+_WORDS = 4  # at the end of a label, which are compared
 
 
 Kind = NameKind
@@ -34,7 +34,7 @@ class Names:
         self.mentions: dict[Kind, dict[str, list[Mention]]] = {kind: {} for kind in Kind}
         self.counts: dict[Kind, dict[str, int]] = {kind: {} for kind in Kind}
         self.objects: dict[str, int] = {}
-        """How often each label stands on an object line."""
+        """The number of object lines with each label."""
         for number, sheet in enumerate(files.sheets):
             for line, index, often in sheet.distinct_lines:
                 mention = Mention(number, line, index, often)
@@ -46,33 +46,33 @@ class Names:
 
     @cached_property
     def loose(self) -> dict[Kind, set[str]]:
-        """Names that stand on one side of units alone: what has them is never made, or never taken."""
+        """Names on one side of units only: nodes with them are never made, or never taken."""
         network = self.network
-        taken, made = (
+        input_names, output_names = (
             {
                 name
-                for node in {node for nodes in side for node in nodes}
+                for node in {node for nodes in nodes_by_unit for node in nodes}
                 for name in _names_in(network.objects[node])
             }
-            for side in (network.inputs, network.outputs)
+            for nodes_by_unit in (network.inputs, network.outputs)
         )
-        both = taken & made
+        both = input_names & output_names
         return {
             kind: {name for name in names if (kind, name) not in both} for kind, names in self.counts.items()
         }
 
     def objects_alike(self, name: str) -> list[str]:
-        """Return labels on object lines that may be meant, the most frequent first.
+        """Return labels on object lines that a name may be meant for, the most frequent first.
 
-        That is the name in singular or plural, or else a few labels that end with its words.
+        These are the name in singular or plural, or else up to three labels that end with its words.
         """
-        wanted = _singular(name)
-        alike = self._by_ending.get(wanted, [])
-        return [label for label in alike if _singular(label) == wanted] or alike[:_ALIKE]
+        singular = _singular(name)
+        alike = self._by_ending.get(singular, [])
+        return [label for label in alike if _singular(label) == singular] or alike[:_ALIKE]
 
     @cached_property
     def _by_ending(self) -> dict[str, list[str]]:
-        """Labels by their last words in the singular, and by all of them."""
+        """Labels by their last words in the singular, and by all of their words."""
         endings: dict[str, list[str]] = {}
         for label in sorted(self.objects, key=lambda label: (-self.objects[label], label)):
             words = _singular(label).split(" ")
@@ -82,25 +82,25 @@ class Names:
 
     def by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[Sheet, int, int]]:
         """Yield each sheet with a name, the index of its first line, and its mentions there."""
-        places: dict[int, tuple[int, int]] = {}
+        by_sheet: dict[int, tuple[int, int]] = {}
         for sheet, _, index, often in self.mentions[kind][name]:
-            first, total = places.get(sheet, (index, 0))
-            places[sheet] = min(first, index), total + often
-        for sheet, place in places.items():
-            yield self.files.sheets[sheet], *place
+            first, total = by_sheet.get(sheet, (index, 0))
+            by_sheet[sheet] = min(first, index), total + often
+        for sheet, first_and_total in by_sheet.items():
+            yield self.files.sheets[sheet], *first_and_total
 
 
 def _names_in(node: ObjectNode) -> Iterator[tuple[Kind, str]]:
     yield Kind.OBJECT, node.label
     yield from ((Kind.STATE, state) for state in node.states)
-    for word, place in node.relations:
-        yield from ((Kind.WORD, word), (Kind.OBJECT, place))
+    for word, related_object in node.relations:
+        yield from ((Kind.WORD, word), (Kind.OBJECT, related_object))
     for word, items in node.contents:
         yield from ((Kind.WORD, word), *((Kind.OBJECT, item) for item in items))
 
 
 def times(count: int) -> str:
-    """Return how often, in words."""
+    """Return a count in words: ``once``, ``twice``, ``3 times``."""
     return "once" if count == 1 else "twice" if count == 2 else f"{count} times"
 
 

@@ -1,17 +1,17 @@
-"""Names that are one name with a slip of the pen."""
+"""Pairs of names that are one name with a typing error, found by deletion neighbourhoods."""
 
 import re
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 
 from foon_asp.network.spelling import joined, one_letter_apart, without_doubles
 
-_LONGEST = 60  # letters: what is longer is no name, and comparing it takes long
+_LONGEST = 60  # letters; longer texts are no names, and slow to compare
 _SHORTEST_DOUBLED = 5  # letters: off and of, bell and bel are words of their own
 _PLURAL_ENDING = re.compile(r"e?s$")
 _VERB_ENDING = re.compile(r"(?:e?[sdr]|[ey])$")  # juice, juiced; flakes, flaked; mix, mixer; salt, salty
 _RARE, _VERY_RARE = 5, 2  # mentions
 _RATIO, _HIGH_RATIO, _HIGHEST_RATIO = 3, 20, 100  # how much more often the other name stands
-_SHORT, _MIDDLE, _LONG = 3, 4, 5  # letters of the shorter word
+_SHORT, _MEDIUM, _LONG = 3, 4, 5  # letters of the shorter word
 _SHORT_KNOWN = 4  # letters of a word that may be a slip for one that is known
 _COMPARED = 3  # names with the same letters but one: only the most frequent are compared
 
@@ -19,10 +19,10 @@ _COMPARED = 3  # names with the same letters but one: only the most frequent are
 def near_names(
     counts: dict[str, int],
     verbs: bool = False,
-    known: Collection[str] = (),
+    known_words: Collection[str] = (),
     loose: Container[str] = (),
 ) -> Iterator[tuple[str, str]]:
-    """Return pairs of names of one kind: the one that stands less often, and the one that may be meant.
+    """Yield pairs of names of one kind: the rarer one, and the one that may be meant.
 
     Names that only differ in doubled letters, capitals, blanks or hyphens are a pair at any frequency
     (``drinking glas``, ``hashbrown``). A name that is rare beside another one is a pair with it if one
@@ -30,46 +30,47 @@ def near_names(
     (``baking try``). An ending that is grammar is no slip: egg, eggs, and of ``verbs`` cube, cubed. Nor is a
     digit.
 
-    ``known`` are words that are spelt as they should be: two of them are words of their own, and one beside
-    one of them that is none is a slip at any frequency. So is a name in ``loose``, those that are never made
-    or never used, beside one that is not there.
+    ``known_words`` are spelt correctly: two of them are different words, and an unknown word similar to one
+    of them is a slip at any frequency. So is a name in ``loose``, the names never made or never used, similar
+    to one that is not in it.
 
-    ``counts`` has the mentions of each name. A name is given once. Time and memory grow with the letters of
-    the names: rare names are looked up among the frequent ones by what is left when a letter is taken away.
+    ``counts`` has the mentions of each name. A rare name is in one pair at most. Rare names are looked up
+    among the frequent ones by their deletion neighbourhood, the texts without one of their letters, so that
+    not all pairs are compared.
     """
     paired: set[str] = set()
-    for rare, meant in _spelt_two_ways(counts, known):
+    for rare, meant in _spelt_two_ways(counts, known_words):
         paired.update((rare, meant))
         yield rare, meant
     rare_names = [
         name
         for name, count in counts.items()
-        if name not in paired and (count <= _RARE or name in loose or _unknown(name, known))
+        if name not in paired and (count <= _RARE or name in loose or _unknown(name, known_words))
     ]
     if not rare_names:
         return
     frequent: dict[str, list[str]] = {}
     for name in sorted(counts, key=lambda name: (-counts[name], name)):
-        if counts[name] < _RATIO and name in loose and _unknown(name, known):
+        if counts[name] < _RATIO and name in loose and _unknown(name, known_words):
             continue
-        for rest in _without_a_letter(name):
-            alike = frequent.setdefault(rest, [])
-            if len(alike) < _COMPARED:
-                alike.append(name)
+        for shortened in _without_a_letter(name):
+            sharing = frequent.setdefault(shortened, [])
+            if len(sharing) < _COMPARED:
+                sharing.append(name)
     for name in rare_names:
-        candidates = {c for rest in _without_a_letter(name) for c in frequent.get(rest, ())}.difference(
-            {name}
-        )
+        candidates = {
+            c for shortened in _without_a_letter(name) for c in frequent.get(shortened, ())
+        }.difference({name})
         ordered = sorted(candidates, key=lambda other: (-counts[other], other))
         meant_name = next(
-            (other for other in ordered if _is_slip(name, other, counts, verbs, known, loose)), None
+            (other for other in ordered if _is_slip(name, other, counts, verbs, known_words, loose)), None
         )
         if meant_name is not None:
             yield name, meant_name
 
 
-def _spelt_two_ways(counts: dict[str, int], known: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Return pairs that are the same without doubled letters, capitals and blanks."""
+def _spelt_two_ways(counts: dict[str, int], known_words: Collection[str]) -> Iterator[tuple[str, str]]:
+    """Yield pairs that are the same without doubled letters, capitals and blanks, the rarer name first."""
     spellings: dict[str, list[str]] = {}
     for name in counts:
         if len(name) <= _LONGEST:
@@ -77,52 +78,53 @@ def _spelt_two_ways(counts: dict[str, int], known: Collection[str]) -> Iterator[
     for skeleton, names in spellings.items():
         if len(names) < 2:
             continue
-        most = max(names, key=lambda name: (not _unknown(name, known), counts[name]))
+        usual = max(names, key=lambda name: (not _unknown(name, known_words), counts[name]))
         for name in names:
-            if name != most and (len(skeleton) >= _SHORTEST_DOUBLED or joined(name) == joined(most)):
-                yield name, most
+            if name != usual and (len(skeleton) >= _SHORTEST_DOUBLED or joined(name) == joined(usual)):
+                yield name, usual
 
 
 def _without_a_letter(name: str) -> Iterable[str]:
+    """Return the deletion neighbourhood of a name: itself, and the texts without one of its letters."""
     if len(name) > _LONGEST:
         return ()
-    return {name, *(name[:place] + name[place + 1 :] for place in range(len(name)))}
+    return {name, *(name[:position] + name[position + 1 :] for position in range(len(name)))}
 
 
-def near_word(word: str, near: Mapping[str, Iterable[str]], verbs: bool) -> str | None:
-    """Return the known word for which one that is not known is likely a slip.
+def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) -> str | None:
+    """Return the known word for which an unknown one is likely a slip, else ``None``.
 
-    ``near`` has the known words by what is left of them when a letter is taken away, and by themselves.
+    ``deletions`` is the :func:`deletion_index` of the known words.
     """
     if not _SHORT_KNOWN <= len(word) <= _LONGEST:
         return None
-    if word + "ed" in near:
+    if word + "ed" in deletions:
         return word + "ed"
-    candidates = {other for rest in _without_a_letter(word) for other in near.get(rest, ())}
-    # another letter is the least likely: most of such words are words of their own
+    candidates = {other for shortened in _without_a_letter(word) for other in deletions.get(shortened, ())}
+    # a changed letter is least likely: most such words are different words
     ordered = sorted(
         candidates, key=lambda other: (len(other) == len(word) and sorted(other) != sorted(word), other)
     )
-    return next((other for other in ordered if _near(word, other, verbs)), None)
+    return next((other for other in ordered if _differ_by_a_slip(word, other, verbs)), None)
 
 
-def by_what_is_left(words: Iterable[str]) -> dict[str, list[str]]:
-    """Return words by themselves and by what is left of them when a letter is taken away."""
-    near: dict[str, list[str]] = {}
+def deletion_index(words: Iterable[str]) -> dict[str, list[str]]:
+    """Return words by themselves and by the texts without one of their letters."""
+    deletions: dict[str, list[str]] = {}
     for word in words:
         if len(word) >= _SHORT_KNOWN:
-            for rest in _without_a_letter(word):
-                near.setdefault(rest, []).append(word)
-    return near
+            for shortened in _without_a_letter(word):
+                deletions.setdefault(shortened, []).append(word)
+    return deletions
 
 
-def _unknown(name: str, known: Collection[str]) -> bool:
-    """Whether a name has a word that is not known, where any is."""
-    return bool(known) and any(word.isalpha() and word not in known for word in name.split(" "))
+def _unknown(name: str, known_words: Collection[str]) -> bool:
+    """Whether a name has a word that is not among the known ones, if there are any."""
+    return bool(known_words) and any(word.isalpha() and word not in known_words for word in name.split(" "))
 
 
-def _near(word: str, other: str, verbs: bool) -> bool:
-    """Whether words differ by a letter behind the first, and not by an ending that is grammar."""
+def _differ_by_a_slip(word: str, other: str, verbs: bool) -> bool:
+    """Whether words differ by a letter behind the first, and not by a grammatical ending."""
     ending = _VERB_ENDING if verbs else _PLURAL_ENDING
     is_grammar = ending.sub("", word) == ending.sub("", other)
     is_cut = word[-1:] == "d" and other == f"{word[:-1]}ed"  # gratd
@@ -134,7 +136,7 @@ def _is_slip(
     frequent: str,
     counts: dict[str, int],
     verbs: bool,
-    known: Collection[str],
+    known_words: Collection[str],
     loose: Container[str],
 ) -> bool:
     """Whether a rare name is likely a slip for a frequent one with almost the same letters."""
@@ -143,22 +145,24 @@ def _is_slip(
     if len(words) != len(others) or len(differing) != 1:
         return False
     word, other = differing[0]
-    if not _near(word, other, verbs):
+    if not _differ_by_a_slip(word, other, verbs):
         return False
     shortest = min(len(word), len(other))
-    if known and (word in known or other in known or (rare in loose and frequent not in loose)):
-        return word not in known and shortest >= _SHORT
+    if known_words and (
+        word in known_words or other in known_words or (rare in loose and frequent not in loose)
+    ):
+        return word not in known_words and shortest >= _SHORT
     return counts[rare] <= _RARE and _is_rare_beside(word, other, counts[rare], counts[frequent])
 
 
 def _is_rare_beside(word: str, other: str, rare: int, frequent: int) -> bool:
-    """Whether a word stands so rarely beside another one that it is hardly meant."""
+    """Whether a word is so much rarer than a similar one that it is hardly meant."""
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     shortest, ratio = min(len(word), len(other)), frequent / rare
     if frequent < _RATIO:
         return False
     if sorted(word) == sorted(other):  # letters have changed places
-        return shortest >= _MIDDLE and ratio >= _RATIO
+        return shortest >= _MEDIUM and ratio >= _RATIO
     if len(word) == len(other):
         return shortest >= _LONG and ratio >= _HIGH_RATIO and rare <= _VERY_RARE
     if ratio >= _HIGHEST_RATIO:

@@ -13,7 +13,7 @@ _COMMENT = re.compile(r"#\s*noqa\b\s*(?P<colon>:?)(?P<codes>.*)", re.IGNORECASE)
 
 
 class _Comment(NamedTuple):
-    """A comment: its index, the number of the line it is about, and the codes, none for all."""
+    """A comment: its index, the number of the line that it is about, and its codes, empty for all codes."""
 
     at: int
     line: int
@@ -45,16 +45,16 @@ def noqa(context: Context) -> Iterator[Diagnostic]:
     that line.
     """
     for sheet in _commented(context):
-        here = [finding for finding in context.findings if finding.source.file == sheet.file]
+        sheet_findings = [finding for finding in context.findings if finding.source.file == sheet.file]
         for comment in _comments(sheet):
             for code in comment.codes:
                 if code not in RULES:
                     message = f"there is no code {code!r}; this comment does not silence it"
                     yield sheet.finding(message, comment.at, code)
-            known = sorted(RULES.keys() & comment.codes)
-            if (known or not comment.codes) and not any(map(comment.silences, here)):
-                what = f"no {' or '.join(known)}" if known else "nothing"
-                message = f"there is {what} to silence on line {comment.line}; leave the comment out"
+            known_codes = sorted(RULES.keys() & comment.codes)
+            if (known_codes or not comment.codes) and not any(map(comment.silences, sheet_findings)):
+                silenced = f"no {' or '.join(known_codes)}" if known_codes else "nothing"
+                message = f"there is {silenced} to silence on line {comment.line}; leave the comment out"
                 yield sheet.finding(message, comment.at)
 
 

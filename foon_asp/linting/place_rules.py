@@ -3,15 +3,15 @@
 from collections.abc import Collection, Iterator
 
 from foon_asp.linting.context import Context, Side
-from foon_asp.linting.habits import Habits, held, words_in
+from foon_asp.linting.habits import Habits, content_names, words_in
 from foon_asp.linting.rule import WARNING, rule
 from foon_asp.network import ObjectNode
 from foon_asp.text.diagnostics import Diagnostic
 
 _PLACES = {"in", "on"}
-_USUAL = 2  # how much more often something is said than not
-Told = Iterator[tuple[ObjectNode, str]]
-"""The nodes of a side of a unit that something is wrong with, each with the message."""
+_USUAL = 2  # objects with a place for each without
+Faults = Iterator[tuple[ObjectNode, str]]
+"""The faulty nodes of a side of a unit, each with the message."""
 
 
 @rule("unheld", WARNING, "an object in something that contains other things, and not it")
@@ -25,25 +25,25 @@ def unheld(context: Context) -> Iterator[Diagnostic]:
             yield context.at_node(context.files.copies[side.unit][0], side.number, node, message)
 
 
-def unheld_nodes(side: Side, habits: Habits) -> Told:
+def unheld_nodes(side: Side, habits: Habits) -> Faults:
     """Yield the one object that is in a container, and is not among its contents."""
     for holder in side.nodes:
-        contents = held(holder)
+        contents = content_names(holder)
         if not contents or holder.label in habits.ingredients:
             continue
         if sum(node.label == holder.label for node in side.nodes) > 1:
             continue
-        around = {place for _, place in holder.relations}
+        holder_places = {related_object for _, related_object in holder.relations}
         inside = [node for node in side.nodes if ("in", holder.label) in node.relations]
         extra = [
             node
             for node in inside
             if node.label in habits.foods
             and node.label not in contents
-            and node.label not in around
-            and not any(node.label in held(other) for other in side.nodes)
-            and not any(held(other) for other in inside if other.label in contents)
-            and not held(node)
+            and node.label not in holder_places
+            and not any(node.label in content_names(other) for other in side.nodes)
+            and not any(content_names(other) for other in inside if other.label in contents)
+            and not content_names(node)
             and words_in([node.label]).isdisjoint(words_in(contents))
         ]
         if len(extra) == 1:
@@ -64,34 +64,43 @@ def other_place(context: Context) -> Iterator[Diagnostic]:
     """
     objects = context.network.objects
     labels = {node.label for node in objects}
-    places = {place for node in objects for _, place in node.relations} - context.habits.ingredients
+    places = {
+        related_object for node in objects for _, related_object in node.relations
+    } - context.habits.ingredients
     is_usual = _places_are_usual(context)
     for side in context.sides:
-        told = list(misplaced_nodes(side, labels, context.habits))
+        misplaced = list(misplaced_nodes(side, labels, context.habits))
         if is_usual:
-            told += _unplaced(side, places, context.habits)
-        for node, message in told:
+            misplaced += _unplaced(side, places, context.habits)
+        for node, message in misplaced:
             yield context.at_node(context.files.copies[side.unit][0], side.number, node, message)
 
 
-def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Told:
+def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Faults:
     """Yield the objects in or on something that the unit has not, while something else contains them."""
-    here = {node.label for node in side.nodes}
+    labels_of_side = {node.label for node in side.nodes}
     for node in side.nodes:
-        for word, place in node.relations:
-            if word not in _PLACES or place in here or place not in labels or place in habits.ingredients:
+        for word, related_object in node.relations:
+            if (
+                word not in _PLACES
+                or related_object in labels_of_side
+                or related_object not in labels
+                or related_object in habits.ingredients
+            ):
                 continue
-            holders = sorted({other.label for other in side.nodes if node.label in held(other)})
-            if any(other.label in holders and (word, place) in other.relations for other in side.nodes):
+            holders = sorted({other.label for other in side.nodes if node.label in content_names(other)})
+            if any(
+                other.label in holders and (word, related_object) in other.relations for other in side.nodes
+            ):
                 continue
             if not holders or not habits.ingredients.isdisjoint(holders):
                 continue
-            if words_in([place]).isdisjoint(words_in(holders)):
+            if words_in([related_object]).isdisjoint(words_in(holders)):
                 which = "outputs" if side.number else "inputs"
                 yield (
                     node,
-                    f"{node.label!r} is {word} {place!r}, which the {which} have not, and {holders[0]!r} "
-                    "contains it",
+                    f"{node.label!r} is {word} {related_object!r}, which the {which} have not, and "
+                    f"{holders[0]!r} contains it",
                 )
 
 
@@ -101,13 +110,13 @@ def _places_are_usual(context: Context) -> bool:
     for side in context.sides:
         for holder in side.nodes:
             for node in side.nodes if holder.contents else ():
-                if node.label in held(holder):
-                    placed += any(place == holder.label for _, place in node.relations)
+                if node.label in content_names(holder):
+                    placed += any(related_object == holder.label for _, related_object in node.relations)
                     unplaced += not node.relations
     return placed > _USUAL * unplaced
 
 
-def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Told:
+def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Faults:
     """Yield the foods without a place, while the only thing that contains them is one.
 
     Not where more of the only food in it is put there: then it is in it on the other side.
@@ -115,23 +124,24 @@ def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Told:
     for node in side.nodes:
         if node.relations or node.contents or node.label not in habits.foods:
             continue
-        holders = [other for other in side.nodes if node.label in held(other)]
+        holders = [other for other in side.nodes if node.label in content_names(other)]
         if len(holders) != 1 or sum(other.label == node.label for other in side.nodes) > 1:
             continue
         holder = holders[0].label
         is_put = any(
-            other.label == node.label and any(place == holder for _, place in other.relations)
+            other.label == node.label
+            and any(related_object == holder for _, related_object in other.relations)
             for other in side.others
         )
-        if holder in places and (len(held(holders[0])) > 1 or not is_put):
+        if holder in places and (len(content_names(holders[0])) > 1 or not is_put):
             yield node, f"{holder!r} contains {node.label!r}, which is in no place here"
 
 
-def only_after(side: Side) -> Told:
+def only_after(side: Side) -> Faults:
     """Yield an input for each thing that it is in or on, where only the outputs have that."""
-    before, after = ({node.label for node in nodes} for nodes in (side.nodes, side.others))
+    own_labels, other_labels = ({node.label for node in nodes} for nodes in (side.nodes, side.others))
     for node in side.nodes:
-        for word, place in node.relations:
-            if word in _PLACES and place in after and place not in before:
-                before.add(place)
-                yield node, f"{node.label!r} is {word} {place!r}, which the outputs"
+        for word, related_object in node.relations:
+            if word in _PLACES and related_object in other_labels and related_object not in own_labels:
+                own_labels.add(related_object)
+                yield node, f"{node.label!r} is {word} {related_object!r}, which the outputs"

@@ -1,4 +1,4 @@
-"""What the reader remarks on: the file and its lines."""
+"""Rules whose findings are remarks of the reader on files and lines."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""What the reader remarked on, with the fixes that are beyond doubt."""
+"""The remarks of the reader, with the fixes that are beyond doubt."""
 
 from foon_asp.linting.linted_files import LintedFiles
 from foon_asp.linting.vocabulary import Vocabulary
@@ -8,12 +8,14 @@ from foon_asp.text.line import LineError, StateLine
 from foon_asp.text.reader import FoonReader
 
 
-def remarks_by_code(files: LintedFiles, known: Vocabulary) -> dict[str, list[Diagnostic]]:
+def remarks_by_code(files: LintedFiles, vocabulary: Vocabulary) -> dict[str, list[Diagnostic]]:
     """Return the remarks of the reader by code, only with fixes that mend, and none that is doubtful.
 
     A line is written anew as a whole; where its brackets are of two kinds, the other may be meant.
     """
-    doubtful = {remark.source[:2] for remark in files.remarks if _is_doubtful(remark, known, files.reader)}
+    doubtful = {
+        remark.source[:2] for remark in files.remarks if _is_doubtful(remark, vocabulary, files.reader)
+    }
     by_code: dict[str, list[Diagnostic]] = {}
     for remark in files.remarks:
         fix = None if remark.source[:2] in doubtful else _mending_fix(remark, files.reader)
@@ -21,7 +23,7 @@ def remarks_by_code(files: LintedFiles, known: Vocabulary) -> dict[str, list[Dia
     return by_code
 
 
-def _is_doubtful(remark: Diagnostic, known: Vocabulary, reader: FoonReader) -> bool:
+def _is_doubtful(remark: Diagnostic, vocabulary: Vocabulary, reader: FoonReader) -> bool:
     """Whether a remark is about brackets of two kinds, and the reader may have taken the wrong one.
 
     What is a list, or what a word ``contains``, is in braces; else the word has to stand with that kind of
@@ -35,7 +37,7 @@ def _is_doubtful(remark: Diagnostic, known: Vocabulary, reader: FoonReader) -> b
         return False
     if isinstance(attribute, Contents) and (len(attribute.ingredients) > 1 or attribute.word == "contains"):
         return False
-    return known.usual_bracket(attribute.word) is not type(attribute)
+    return vocabulary.usual_bracket(attribute.word) is not type(attribute)
 
 
 def _mending_fix(remark: Diagnostic, reader: FoonReader) -> str | None:

@@ -1,4 +1,4 @@
-"""A rule of linting: a code, how bad it is, what it means, and the function that finds it."""
+"""Rules of linting, and their registration by a decorator."""
 
 import inspect
 from collections.abc import Callable, Iterable, Iterator
@@ -12,7 +12,7 @@ Finder = Callable[[Context], Iterable[Diagnostic]]
 
 
 class Rule(NamedTuple):
-    """What a code means, in one line, how bad it is, and the function that yields its findings."""
+    """A code, its severity, its meaning in one line, and the function that yields its findings."""
 
     code: str
     severity: Severity
@@ -21,7 +21,7 @@ class Rule(NamedTuple):
 
     @property
     def explanation(self) -> str:
-        """What users read of the rule, in paragraphs: the docstring of the function."""
+        """The explanation of the rule for users, in paragraphs: the docstring of the function."""
         return inspect.cleandoc(self.find.__doc__ or "")
 
     def findings(self, context: Context) -> Iterator[Diagnostic]:

@@ -1,4 +1,4 @@
-"""What a project wants of linting: ``[tool.foon-asp.lint]`` in ``foon-asp.toml`` or ``pyproject.toml``."""
+"""The settings of linting: ``[tool.foon-asp.lint]`` in ``foon-asp.toml`` or ``pyproject.toml``."""
 
 import os
 import re
@@ -14,18 +14,18 @@ from foon_asp.text.plain_file import read_plain_text, split_lines
 
 _FILES = ("foon-asp.toml", "pyproject.toml")
 _TABLE = "tool.foon-asp.lint"
-_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+_ERROR_POSITION = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 # a comment, a text on lines or on one line, or a bare key of TOML
 _WORD = re.compile(r"""#[^\n]*|\"{3}.*?\"{3}|'{3}.*?'{3}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[\w-]+""", re.DOTALL)
 
 
 @dataclass(frozen=True)
 class LintSettings:
-    """Which findings are reported, and how bad they are.
+    """The settings of linting: the findings that are reported, and their severities.
 
-    ``select`` are the codes that are looked for, all if there are none; ``ignore`` those that are left out,
+    ``select`` are the codes that are reported, empty for all; ``ignore`` those that are left out,
     and ``per_file`` those that are left out in files under ``folder`` whose path matches a pattern.
-    ``severity`` replaces that of the catalog. ``file`` is where they stand, ``None`` if nowhere.
+    ``severity`` replaces that of the catalog. ``file`` is where they were read, ``None`` for the defaults.
     """
 
     select: tuple[str, ...] = ()
@@ -35,7 +35,7 @@ class LintSettings:
     file: Path | None = None
 
     def applied(self, findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-        """Return the findings that are wanted, with the severities that are wanted."""
+        """Return the findings that these settings report, with their severities."""
         return [
             finding._replace(severity=self.severity.get(finding.code, finding.severity))
             for finding in findings
@@ -54,7 +54,7 @@ class LintSettings:
 
 def _matches(path: PurePosixPath, pattern: str) -> bool:
     """Whether a path, or a folder that it is in, matches: ``old``, ``old/*.txt``, ``*.json``."""
-    return any(part.match(pattern) for part in (path, *path.parents))
+    return any(candidate.match(pattern) for candidate in (path, *path.parents))
 
 
 def find_settings(files: Sequence[Path]) -> LintSettings:
@@ -71,8 +71,8 @@ def find_settings(files: Sequence[Path]) -> LintSettings:
         for name in _FILES:
             file = folder / name
             if file.is_file():
-                here = file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
-                if settings := read_settings(here):
+                shown_path = file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
+                if settings := read_settings(shown_path):
                     return settings
     return LintSettings()
 
@@ -86,10 +86,10 @@ def read_settings(file: Path) -> LintSettings | None:
     try:
         table: object = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        match = _PLACE.search(str(error))
-        place = (int(match[1]), int(match[2])) if match and match[1] else _line_and_column(text, len(text))
-        message = f"the file is not TOML: {_PLACE.sub('', str(error))}"
-        raise InputError([_error(file, text, place, message)]) from None
+        match = _ERROR_POSITION.search(str(error))
+        position = (int(match[1]), int(match[2])) if match and match[1] else _line_and_column(text, len(text))
+        message = f"the file is not TOML: {_ERROR_POSITION.sub('', str(error))}"
+        raise InputError([_error(file, text, position, message)]) from None
     faults: list[_Fault] = []
     if file.name == _FILES[0] and isinstance(table, dict) and "lint" in table:
         faults.append((("lint",), f"found the table [lint], expected [{_TABLE}]"))
@@ -97,7 +97,7 @@ def read_settings(file: Path) -> LintSettings | None:
         table = table.get(key) if isinstance(table, dict) else None
     faults += [] if table is None else _faults(table)
     if faults:
-        errors = [_error(file, text, _place(text, path), message) for path, message in faults]
+        errors = [_error(file, text, _position(text, path), message) for path, message in faults]
         raise InputError(sorted(errors, key=lambda error: error.source))
     if not isinstance(table, dict):
         return None
@@ -106,11 +106,11 @@ def read_settings(file: Path) -> LintSettings | None:
     return LintSettings(select, ignore, table.get("per-file", {}), severity, file)
 
 
-_Fault = tuple[tuple[str, ...], str]  # the keys that lead to what is wrong, and the message
+_Fault = tuple[tuple[str, ...], str]  # the keys that lead to the fault, and the message
 
 
 def _faults(table: object) -> Iterator[_Fault]:
-    """Yield what is not understood in the table of settings."""
+    """Yield the faults of the table of settings."""
     if not isinstance(table, dict):
         yield ("lint",), "expected a table of settings"
         return
@@ -123,14 +123,14 @@ def _faults(table: object) -> Iterator[_Fault]:
         elif not isinstance(value, dict):
             yield (key,), f"expected a table [{_TABLE}.{key}]"
         else:
-            for name, inner in value.items():
+            for name, setting in value.items():
                 if key == "per-file":
-                    yield from _faults_of_codes((key, name), inner)
+                    yield from _faults_of_codes((key, name), setting)
                 elif name not in CATALOG:
                     yield (key, name), unknown_code(name)
-                elif inner not in list(Severity):
+                elif setting not in list(Severity):
                     expected = ", ".join(repr(str(severity)) for severity in Severity)
-                    yield (key, name), f"found {inner!r}, expected one of {expected}"
+                    yield (key, name), f"found {setting!r}, expected one of {expected}"
 
 
 def _faults_of_codes(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
@@ -142,15 +142,15 @@ def _faults_of_codes(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
             yield (*path, code), unknown_code(code)
 
 
-def _place(text: str, path: tuple[str, ...]) -> tuple[int, int]:
+def _position(text: str, path: tuple[str, ...]) -> tuple[int, int]:
     """Return line and column of the last of the words that stand behind the name of the table, in order."""
-    found = [match for match in _WORD.finditer(text) if match[0][0] != "#"]
-    words = [match[0].strip("\"'") for match in found]
+    matches = [match for match in _WORD.finditer(text) if match[0][0] != "#"]
+    words = [match[0].strip("\"'") for match in matches]
     table = _TABLE.split(".")[1:]
-    at = next((at for at in range(len(words)) if words[at : at + 2] == table), 0)
+    index = next((index for index in range(len(words)) if words[index : index + 2] == table), 0)
     for word in path:
-        at = words.index(word, at) if word in words[at:] else at
-    return _line_and_column(text, found[at].start() + (found[at][0][0] in "\"'"))
+        index = words.index(word, index) if word in words[index:] else index
+    return _line_and_column(text, matches[index].start() + (matches[index][0][0] in "\"'"))
 
 
 def _line_and_column(text: str, offset: int) -> tuple[int, int]:
@@ -158,6 +158,6 @@ def _line_and_column(text: str, offset: int) -> tuple[int, int]:
     return before.count("\n") + 1, len(before) - before.rfind("\n")
 
 
-def _error(file: Path, text: str, place: tuple[int, int], message: str) -> Diagnostic:
-    excerpt = split_lines(text)[place[0] - 1]
-    return Diagnostic(Severity.ERROR, "settings", message, Source(str(file), *place), excerpt)
+def _error(file: Path, text: str, position: tuple[int, int], message: str) -> Diagnostic:
+    excerpt = split_lines(text)[position[0] - 1]
+    return Diagnostic(Severity.ERROR, "settings", message, Source(str(file), *position), excerpt)

@@ -1,4 +1,4 @@
-"""One file as lines, whatever it is written in."""
+"""Sheets: one file as lines of FOON text, whatever its format."""
 
 import json
 import re
@@ -18,19 +18,19 @@ from foon_asp.text.reader import FoonReader
 
 _LETTERS = {"O", "S", "M"}
 _NAME = re.compile(r"[^\t\[\]{},]+")
-# What opens and is not closed is matched too, so that it is not looked through again from each quote in it.
+# An unclosed quote is matched too, so that its text is not searched again from each quote in it.
 _QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)("?)')
 
 
 class Entry(NamedTuple):
-    """One object of a kitchen or of a list of goals, and the index of its object line."""
+    """An entry of a kitchen or of a list of goals, and the index of its object line."""
 
     pattern: NodePattern
     at: int
 
 
 class WrittenLine(NamedTuple):
-    """A distinct line of a sheet: what it says, the index where it stands first, and how often it stands."""
+    """A distinct line of a sheet, parsed: the index of its first copy, and the number of copies."""
 
     line: Line
     first: int
@@ -49,8 +49,8 @@ class WrittenBlock(NamedTuple):
 class Sheet:
     """The lines of a file, from index 0.
 
-    Of JSON these are the lines that the same would have in FOON text, and ``places`` says for each line where
-    in the file its unit or entry begins. ``entries`` are the objects of a kitchen or of goals; a network has
+    Of JSON these are the equivalent lines of FOON text, and ``places`` has for each line the place in the
+    file where its unit or entry begins. ``entries`` are the objects of a kitchen or of goals; a network has
     ``None``.
     """
 
@@ -68,7 +68,7 @@ class Sheet:
 
     @cached_property
     def distinct_lines(self) -> list[WrittenLine]:
-        """Every distinct line that says something, in order."""
+        """Every distinct line that can be parsed, in order."""
         counts, first = Counter(self.lines), dict[str, int]()
         for index, line in enumerate(self.lines):
             first.setdefault(line, index)
@@ -87,7 +87,7 @@ class Sheet:
 
     @cached_property
     def _parsed(self) -> dict[str, Line]:
-        """What the lines that are understood say."""
+        """The parsed lines by their text."""
         return {self.lines[first]: line for line, first, _ in self.distinct_lines}
 
     @cached_property
@@ -115,12 +115,12 @@ class Sheet:
         if block is not None:
             yield block
 
-    def where(self, index: int, beside: "Sheet | None" = None) -> str:
-        """Name a line for a message: by its number, and by its file where that is another than ``beside``."""
-        line = self.place(index).line
-        return f"line {line}" if beside is self else str(Source(self.file, line))
+    def where(self, index: int, current_sheet: "Sheet | None" = None) -> str:
+        """Name a line for a message: by its number, and by its file unless that is ``current_sheet``."""
+        line = self.source_of(index).line
+        return f"line {line}" if current_sheet is self else str(Source(self.file, line))
 
-    def place(self, index: int, column: int = 1) -> Source:
+    def source_of(self, index: int, column: int = 1) -> Source:
         """Return the place of a line in the file."""
         return self.places[index] if self.places is not None else Source(self.file, index + 1, column)
 
@@ -130,23 +130,23 @@ class Sheet:
             source, line = self._in_json(index, name)
         else:
             line = self.lines[index]
-            source = self.place(index, _column(line, name) if name else column)
+            source = self.source_of(index, _column(line, name) if name else column)
         return Diagnostic(Severity.NOTE, "", message, source, line)
 
     def _in_json(self, index: int, name: str) -> tuple[Source, str]:
         """Return the place and line of a name, in quotes, behind the place where its unit or entry begins."""
-        start = self.place(index)
-        places = self._quoted.get(name, [])
-        number = bisect_left(places, (start.line, start.column))
-        if number == len(places):
+        start = self.source_of(index)
+        positions = self._quoted.get(name, [])
+        number = bisect_left(positions, (start.line, start.column))
+        if number == len(positions):
             return start, ""
-        line, column = places[number]
+        line, column = positions[number]
         return start._replace(line=line, column=column), self.source_lines[line - 1]
 
     @cached_property
     def _quoted(self) -> dict[str, list[tuple[int, int]]]:
         """Lines and columns of everything in quotes in a JSON file."""
-        found: dict[str, list[tuple[int, int]]] = {}
+        positions: dict[str, list[tuple[int, int]]] = {}
         for number, line in enumerate(self.source_lines, 1):
             for match in _QUOTED.finditer(line):
                 text, closed = match.groups()
@@ -154,8 +154,8 @@ class Sheet:
                     continue
                 if "\\" in text:
                     text = json.loads(match[0], strict=False)
-                found.setdefault(text, []).append((number, match.start() + 2))
-        return found
+                positions.setdefault(text, []).append((number, match.start() + 2))
+        return positions
 
 
 def _column(line: str, name: str) -> int:

@@ -13,7 +13,7 @@ from foon_asp.text.diagnostics import Diagnostic, InputError
 from foon_asp.text.side_table import TABLES
 
 _RATES = "motion.txt"
-_MANY = 10  # rows: if most of them are of no use, they are told together
+_MANY = 10  # unknown rows; if a table has more, and mostly unknown ones, they are reported together
 
 
 @rule("table", ERROR, "a row of a table beside the network that cannot be read")
@@ -40,10 +40,10 @@ def unknown_row(context: Context) -> Iterator[Diagnostic]:
     """
     for sheet in context.files.tables if len(context.network) else ():
         kind = TABLES[Path(sheet.file).name].names
-        there = context.names.counts[kind].keys()
-        known = context.vocabulary.names[kind] if kind is Kind.OBJECT else set()
+        network_names = context.names.counts[kind].keys()
+        known_names = context.vocabulary.names[kind] if kind is Kind.OBJECT else set()
         rows = _rows(sheet)
-        unknown = [name for name in rows if name not in there and name not in known]
+        unknown = [name for name in rows if name not in network_names and name not in known_names]
         if len(unknown) > _MANY and 2 * len(unknown) > len(rows):
             message = (
                 f"{len(unknown)} of the {len(rows)} names are no {kind} of the network, {unknown[0]!r} "
@@ -52,8 +52,8 @@ def unknown_row(context: Context) -> Iterator[Diagnostic]:
             yield sheet.finding(message, rows[unknown[0]])
             continue
         for name in unknown:
-            near = near_labels(name, there, 1)
-            hint = f"; is it {near[0]!r}?" if near else ""
+            similar_names = near_labels(name, network_names, 1)
+            hint = f"; is it {similar_names[0]!r}?" if similar_names else ""
             yield sheet.finding(f"{name!r} is no {kind} of the network{hint}", rows[name])
 
 

@@ -16,8 +16,8 @@ from foon_asp.text.line import MotionLine
 _CLOCK = re.compile(r"\d+:\d\d(?::\d\d)?")
 _SPAN = re.compile(rf"({_CLOCK.pattern}) ?- ?({_CLOCK.pattern})")
 _HOUR, _LONG, _MINUTE = 3600, 1200, 60  # seconds
-_LATER, _MUCH_LATER = 2, 4  # times as late as the latest one of another form, and as most
-_MUCH_LONGER = 20  # times as long as most steps
+_LATER, _MUCH_LATER = 2, 4  # times as late as the latest time of another form, and as the median
+_MUCH_LONGER = 20  # times as long as the median step
 
 
 class _Clock(NamedTuple):
@@ -53,7 +53,7 @@ class _Step(NamedTuple):
 
 
 def _timed_sheets(context: Context) -> Iterator[tuple[Sheet, list[_Step], dict[int, tuple[str, int]]]]:
-    """Yield each sheet with its steps that have times, and what is odd of these, by the motion line."""
+    """Yield each sheet with its timed steps, and the messages on odd times by motion line."""
     for sheet, copies in zip(context.sheets, context.files.copies_by_sheet, strict=True):
         steps = list(_steps(sheet, copies))
         if steps:
@@ -65,9 +65,9 @@ def _steps(sheet: Sheet, copies: list[tuple[Copy, int]]) -> Iterator[_Step]:
     for index, text in enumerate(sheet.lines):
         if text[:1] == "M" and ":" in text and isinstance(sheet.reader.parse(text), MotionLine):
             spans = _spans(text)
-            place = bisect_right(starts, index) - 1
-            if spans and place >= 0:
-                yield _Step(copies[place][1], index, spans)
+            position = bisect_right(starts, index) - 1
+            if spans and position >= 0:
+                yield _Step(copies[position][1], index, spans)
 
 
 def _spans(text: str) -> list[tuple[_Clock, _Clock]]:
@@ -94,15 +94,15 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
     """Return a message, and the column that it is about, for each line with a time that is hardly meant."""
     clocks = [clock for step in steps for span in step.spans for clock in span]
     usual = median(clock.seconds for clock in clocks)
-    in_three = 4 * sum(clock.text.count(":") == 2 for clock in clocks) > len(clocks)
+    has_hours = 4 * sum(clock.text.count(":") == 2 for clock in clocks) > len(clocks)
     latest = max((clock.seconds for clock in clocks if clock.text.count(":") == 1), default=0)
     length = median(max(0, end.seconds - start.seconds) for step in steps for start, end in step.spans)
 
     def odd_clock(clock: _Clock) -> str:
         parts = clock.text.split(":")
-        if any(int(part) >= _MINUTE for part in parts[1:]):
+        if any(int(number) >= _MINUTE for number in parts[1:]):
             return f"{clock.text!r} has more than 59 seconds or minutes"
-        if len(parts) == 3 and not in_three and clock.seconds > _LATER * latest:
+        if len(parts) == 3 and not has_hours and clock.seconds > _LATER * latest:
             minutes, seconds, fraction = parts
             return (
                 f"{clock.text!r} is h:mm:ss, long after other times here; if {fraction} is a fraction of a "
@@ -119,14 +119,14 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
             return f"the step lasts from {start.text} to {end.text}, much longer than others here"
         return ""
 
-    odd: dict[int, tuple[str, int]] = {}
+    odd_times: dict[int, tuple[str, int]] = {}
     for step in steps:
         for start, end in step.spans:
-            told = ((odd_clock(start), start), (odd_clock(end), end), (odd_span(start, end), end))
-            for message, clock in told:
+            faults = ((odd_clock(start), start), (odd_clock(end), end), (odd_span(start, end), end))
+            for message, clock in faults:
                 if message:
-                    odd.setdefault(step.motion, (message, clock.column))
-    return odd
+                    odd_times.setdefault(step.motion, (message, clock.column))
+    return odd_times
 
 
 @rule("time-order", WARNING, "a step before the one that makes what it uses")
@@ -141,7 +141,8 @@ def time_order(context: Context) -> Iterator[Diagnostic]:
         for step in (step for step in steps if step.motion not in odd):
             inputs = network.inputs[step.unit]
             seconds, node = max(
-                ((makers[node].first.seconds, node) for node in inputs if node in makers), default=(0, 0)
+                ((makers[node].first.seconds, node) for node in inputs if node in makers),
+                default=(0, 0),
             )
             if seconds > step.last.seconds:
                 maker = makers[node]

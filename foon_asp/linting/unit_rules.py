@@ -88,7 +88,9 @@ def second_relation(context: Context) -> Iterator[Diagnostic]:
     and of contents one line has all.
     """
     for sheet in context.sheets:
-        labels = {each.line.label for each in sheet.distinct_lines if isinstance(each.line, ObjectLine)}
+        labels = {
+            written.line.label for written in sheet.distinct_lines if isinstance(written.line, ObjectLine)
+        }
         for label, first, second, indices in _clashes(sheet, partial(_exclude_each_other, labels)):
             if isinstance(second, Contents):
                 message = f"{label!r} has {str(second)!r} beside {str(first)!r}; both count: if they are "
@@ -100,17 +102,17 @@ def second_relation(context: Context) -> Iterator[Diagnostic]:
 
 
 def _clashes(
-    sheet: Sheet, clash: Callable[[_Attribute, _Attribute], bool]
+    sheet: Sheet, is_clash: Callable[[_Attribute, _Attribute], bool]
 ) -> Iterator[tuple[str, _Attribute, _Attribute, list[int]]]:
     """Yield each label with two attributes under it that clash, and the lines that have the second."""
-    told: dict[tuple[str, _Attribute, _Attribute], list[int]] = {}
+    lines_by_clash: dict[tuple[str, _Attribute, _Attribute], list[int]] = {}
     for block in sheet.longer_blocks:
         for number, (index, second) in enumerate(block.attributes):
             for _, first in block.attributes[:number]:
-                if clash(first, second):
-                    told.setdefault((block.label, first, second), []).append(index)
+                if is_clash(first, second):
+                    lines_by_clash.setdefault((block.label, first, second), []).append(index)
                     break
-    for (label, first, second), indices in told.items():
+    for (label, first, second), indices in lines_by_clash.items():
         yield label, first, second, indices
 
 

@@ -1,4 +1,4 @@
-"""The names that FOONs know, the brackets of words, and what units with a motion do."""
+"""Vocabularies: known names, the brackets of words, and the habits of motions."""
 
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from foon_asp.linting.habits import Habit, Habits
 from foon_asp.linting.names import Kind, Names
-from foon_asp.linting.near_names import by_what_is_left, near_word
+from foon_asp.linting.near_names import deletion_index, near_word
 from foon_asp.network import Contents, Relation, counted
 from foon_asp.text.line import LineError, StateLine
 from foon_asp.text.table import read_rows
@@ -22,22 +22,24 @@ _NUMBERS = {
     **dict.fromkeys(_BRACKETS.values(), 1),
     HABIT: len(Habit._fields),
 }
-"""The kinds of rows in a vocabulary, with how many numbers stand behind a name."""
-_MIN_LINES = 3  # of a word before it says anything of its brackets
+"""The kinds of rows in a vocabulary, with the number of numbers behind a name."""
+_MIN_LINES = 3  # with a word, before its usual bracket counts
 _Row = tuple[str, str, Sequence[int]]
 
 
 class Vocabulary:
     """Names by kind, each with its numbers; those of several rows for a name are added.
 
-    A word of a relation has how often it stood with a bracket, and a motion the numbers of its habit.
+    The numbers of a word of a relation are its counts with a bracket, those of a motion are its habit.
     """
 
     def __init__(self, rows: Iterable[_Row] = ()) -> None:
         self.numbers: dict[str, dict[str, Sequence[int]]] = {kind: {} for kind in _NUMBERS}
         for kind, name, numbers in rows:
-            known = self.numbers[kind]
-            known[name] = [*map(sum, zip(known[name], numbers, strict=True))] if name in known else numbers
+            by_name = self.numbers[kind]
+            by_name[name] = (
+                [*map(sum, zip(by_name[name], numbers, strict=True))] if name in by_name else numbers
+            )
 
     @classmethod
     def of(cls, names: Names, habits: Habits) -> "Vocabulary":
@@ -57,16 +59,16 @@ class Vocabulary:
         return cls([*rows, *((HABIT, motion, habit) for motion, habit in habits.of_units())])
 
     def plus(self, other: "Vocabulary") -> "Vocabulary":
-        """Return a vocabulary of all that this and another one know."""
+        """Return the union of this vocabulary and another one."""
         return Vocabulary([*self._rows(), *other._rows()])
 
     def _rows(self) -> Iterator[_Row]:
-        for kind, known in self.numbers.items():
-            yield from ((kind, name, numbers) for name, numbers in known.items())
+        for kind, by_name in self.numbers.items():
+            yield from ((kind, name, numbers) for name, numbers in by_name.items())
 
     @property
     def utensils(self) -> AbstractSet[str]:
-        """Labels of what other objects are in or on."""
+        """Labels of objects that other objects are in or on."""
         return self.numbers[UTENSIL].keys()
 
     @cached_property
@@ -82,29 +84,29 @@ class Vocabulary:
         return frozenset(word for names in self.names.values() for name in names for word in words_of(name))
 
     @cached_property
-    def _near(self) -> dict[Kind, dict[str, list[str]]]:
-        """The words of each kind by themselves and by what is left of them when a letter is taken away."""
-        found = {}
+    def _deletion_indexes(self) -> dict[Kind, dict[str, list[str]]]:
+        """The deletion index of the words of each kind."""
+        indexes = {}
         for kind in Kind:
-            alike = (Kind.STATE, Kind.MOTION) if kind in {Kind.STATE, Kind.MOTION} else (kind,)
-            words = {word for each in alike for name in self.names[each] for word in words_of(name)}
+            kinds = (Kind.STATE, Kind.MOTION) if kind in {Kind.STATE, Kind.MOTION} else (kind,)
+            words = {word for name_kind in kinds for name in self.names[name_kind] for word in words_of(name)}
             opposites = {f"un{word}" for word in words if word.endswith("ed")}
-            found[kind] = by_what_is_left(words | opposites)
-        return found
+            indexes[kind] = deletion_index(words | opposites)
+        return indexes
 
     def slip(self, kind: Kind, name: str) -> tuple[str, str] | None:
-        """Return a word of a name that is not known, and the known word for which it is likely a slip."""
+        """Return an unknown word of a name and the known word probably meant, else ``None``."""
         if name in self.names[kind]:
             return None
         for word in words_of(name):
             if word not in self.words:
-                meant = near_word(word, self._near[kind], verbs=kind is not Kind.OBJECT)
+                meant = near_word(word, self._deletion_indexes[kind], verbs=kind is not Kind.OBJECT)
                 if meant is not None:
                     return word, meant
         return None
 
     def habit(self, motion: str) -> Habit:
-        """Return what units with a motion do."""
+        """Return the habit of the units with a motion."""
         return Habit(*self.numbers[HABIT].get(motion, ()))
 
     def brackets(self, word: str) -> dict[Bracket, int]:
@@ -114,10 +116,10 @@ class Vocabulary:
             for bracket, kind in _BRACKETS.items()
             if word in self.numbers[kind]
         }
-        return dict(sorted(counts.items(), key=lambda each: -each[1]))
+        return dict(sorted(counts.items(), key=lambda entry: -entry[1]))
 
     def usual_bracket(self, word: str) -> Bracket | None:
-        """Return ``Relation`` or ``Contents`` for a word that stands with one of them nearly always."""
+        """Return the bracket that a word nearly always has, ``None`` if it has no such bracket."""
         for bracket, often in self.brackets(word).items():
             others = sum(self.brackets(word).values()) - often
             return bracket if often >= max(_MIN_LINES, 10 * others) else None
@@ -144,7 +146,9 @@ def read_vocabulary(file: Path) -> Vocabulary:
         if kind not in _NUMBERS:
             raise LineError(1, repr(kind), tuple(_NUMBERS))
         name, *numbers = row.split("\t")
-        if len(numbers) != _NUMBERS[kind] or not all(each.isascii() and each.isdigit() for each in numbers):
+        if len(numbers) != _NUMBERS[kind] or not all(
+            number.isascii() and number.isdigit() for number in numbers
+        ):
             expected = f"a name and, behind tabs, {counted(_NUMBERS[kind], 'number')}"
             raise LineError(len(kind) + 2, repr(row), (expected if _NUMBERS[kind] else "a name alone",))
         rows.append((kind, name, list(map(int, numbers))))

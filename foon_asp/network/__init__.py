@@ -1,4 +1,4 @@
-"""What a FOON is: object nodes, functional units, the merged network, task trees."""
+"""The parts of a FOON: object nodes, functional units, the merged network, task trees."""
 
 from foon_asp.network.counted import counted as counted
 from foon_asp.network.functional_unit import FunctionalUnit as FunctionalUnit

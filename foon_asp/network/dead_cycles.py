@@ -1,4 +1,4 @@
-"""Objects that need themselves: made by units, and only by units that need them."""
+"""Dead cycles: object nodes that are made only by units that need them."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -11,64 +11,66 @@ from foon_asp.network.graph import cycles
 class DeadCycle(NamedTuple):
     """A set of object nodes, each made only by units that need one of the set.
 
-    ``steps`` lead once around: each is a node and the unit that needs it and makes the node of the next step,
-    the last that of the first. No way around is shorter for the first node, which is the one that is needed
-    first in the order of the units. ``nodes`` are all of the set.
+    ``steps`` are a shortest cycle through its first node, the node that is needed first in the order of the
+    units. Each step is a node and the unit that needs it and makes the node of the next step; the last unit
+    makes the node of the first step. ``nodes`` is the whole set.
     """
 
     steps: tuple[tuple[int, int], ...]
     nodes: frozenset[int]
 
 
-def dead_cycles(network: Network, at_hand: Collection[int] = ()) -> list[DeadCycle]:
-    """Find the dead cycles, all else being at hand: linear in the size of the network.
+def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadCycle]:
+    """Find the dead cycles among nodes that are not ``available``, in time linear in the size of the network.
 
-    A unit does not make what it needs, it hands it on: a knife that chops is a knife before. What no unit
-    makes, and what is ``at_hand``, is there from the start. If none is found, everything can be made. Where
-    some of a set that need each other can be made and others not, the parts of those others are given that
-    wait for no other part.
+    A unit does not make a node that it needs, it hands it on: a knife that chops is a knife before. Nodes
+    that no unit makes are available too. If no dead cycle is found, every node can be made. Of a strongly
+    connected component that can be made in part, the dead cycles are the components of the remainder that
+    need no other component of the remainder.
     """
     inputs = [frozenset(nodes) for nodes in network.inputs]
     made = [
         tuple(node for node in outputs if node not in needed)
         for needed, outputs in zip(inputs, network.outputs, strict=True)
     ]
-    waiting = {node for nodes in made for node in nodes}.difference(at_hand)
+    waiting = {node for nodes in made for node in nodes}.difference(available)
     component = _components(network, made, waiting)
     if not component:
         return []
-    dead = _unreached(network, made, component)
+    dead = _unreachable(network, made, component)
     component = {node: number for node, number in component.items() if node in dead}
     roots = _components(network, made, dead)
     members: dict[int, set[int]] = {}
     for node, root in roots.items():
         members.setdefault(root, set()).add(node)
-    makers: dict[int, list[int]] = {root: [] for root in members}
+    producers: dict[int, list[int]] = {root: [] for root in members}
     for unit, outputs in enumerate(made):
-        needed: dict[int, set[int | None]] = {}  # the sets that it waits for, of each component
+        needed: dict[int, set[int | None]] = {}  # by component: the roots of its input nodes
         for node in network.inputs[unit]:
             if node in component:
                 needed.setdefault(component[node], set()).add(roots.get(node))
         for root, number in {roots[node]: component[node] for node in outputs if node in roots}.items():
-            if needed.get(number) != {root}:  # it waits for another set too, which is at the root
+            if needed.get(number) != {root}:  # the unit needs another set too
                 members.pop(root, None)
             else:
-                makers[root].append(unit)
-    return [_around(network, made, frozenset(nodes), makers[root]) for root, nodes in members.items()]
+                producers[root].append(unit)
+    return [
+        _shortest_cycle(network, made, frozenset(nodes), producers[root]) for root, nodes in members.items()
+    ]
 
 
 def _components(network: Network, made: list[tuple[int, ...]], nodes: Collection[int]) -> dict[int, int]:
-    """Number the sets of nodes that need each other, within the nodes given; others have no number."""
-    part = replace(
+    """Return by node the number of its strongly connected component, for those of ``nodes`` on a cycle."""
+    subnetwork = replace(
         network,
-        inputs=tuple(tuple(n for n in side if n in nodes) for side in network.inputs),
-        outputs=tuple(tuple(n for n in side if n in nodes) for side in made),
+        inputs=tuple(tuple(n for n in unit_nodes if n in nodes) for unit_nodes in network.inputs),
+        outputs=tuple(tuple(n for n in unit_nodes if n in nodes) for unit_nodes in made),
     )
-    return {node: number for number, found in enumerate(cycles(part)) for node in found}
+    return {node: number for number, component in enumerate(cycles(subnetwork)) for node in component}
 
 
-def _unreached(network: Network, made: list[tuple[int, ...]], component: dict[int, int]) -> set[int]:
-    """Return the nodes of each component that cannot be made although all nodes outside of it are at hand."""
+def _unreachable(network: Network, made: list[tuple[int, ...]], component: dict[int, int]) -> set[int]:
+    """Return the nodes of each component that cannot be made even if all nodes outside are available."""
     lacking: dict[tuple[int, int], int] = {}  # inputs that a unit lacks, within a component of its outputs
     for unit, outputs in enumerate(made):
         for number in {component[node] for node in outputs if node in component}:
@@ -81,8 +83,8 @@ def _unreached(network: Network, made: list[tuple[int, ...]], component: dict[in
             if node not in unreached or component[node] != number:
                 continue
             unreached.remove(node)
-            for user in network.consumers[node]:
-                key = user, number
+            for consumer in network.consumers[node]:
+                key = consumer, number
                 if key in lacking:
                     lacking[key] -= 1
                     if not lacking[key]:
@@ -90,35 +92,36 @@ def _unreached(network: Network, made: list[tuple[int, ...]], component: dict[in
     return unreached
 
 
-def _around(
-    network: Network, made: list[tuple[int, ...]], nodes: frozenset[int], makers: list[int]
+def _shortest_cycle(
+    network: Network, made: list[tuple[int, ...]], nodes: frozenset[int], producers: list[int]
 ) -> DeadCycle:
-    """Go around a set of nodes that need each other, breadth first from the one that is needed first.
+    """Return the dead cycle of strongly connected ``nodes``, its steps found by breadth-first search.
 
-    ``makers`` are the units that make one of the set, in order.
+    ``producers`` are the units that make a node of the set, in order. The search begins at the node that they
+    need first.
     """
-    users: dict[int, list[int]] = {}
-    for unit in makers:
+    consumers: dict[int, list[int]] = {}
+    for unit in producers:
         for node in network.inputs[unit]:
             if node in nodes:
-                users.setdefault(node, []).append(unit)
-    start = next(iter(users))
-    came_from: dict[int, tuple[int, int]] = {}
-    gone_through: set[int] = set()
+                consumers.setdefault(node, []).append(unit)
+    start = next(iter(consumers))
+    predecessor: dict[int, tuple[int, int]] = {}
+    visited: set[int] = set()
     frontier = [start]
-    while start not in came_from:
+    while start not in predecessor:
         reached = []
         for node in frontier:
-            for unit in users[node]:
-                if unit in gone_through:
+            for unit in consumers[node]:
+                if unit in visited:
                     continue
-                gone_through.add(unit)
+                visited.add(unit)
                 for output in made[unit]:
-                    if output in nodes and output not in came_from:
-                        came_from[output] = node, unit
+                    if output in nodes and output not in predecessor:
+                        predecessor[output] = node, unit
                         reached.append(output)
         frontier = reached
-    steps = [came_from[start]]
+    steps = [predecessor[start]]
     while steps[-1][0] != start:
-        steps.append(came_from[steps[-1][0]])
+        steps.append(predecessor[steps[-1][0]])
     return DeadCycle(tuple(reversed(steps)), nodes)

@@ -8,7 +8,7 @@ from foon_asp.network.object_node import ObjectNode
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FunctionalUnit:
-    """One motion with its input and output object nodes.
+    """A motion with its input and output object nodes.
 
     ``motion`` is its name; ``inputs`` and ``outputs`` list each node once, in the order first read. Two
     units are the same if motion, set of inputs and set of outputs are; the order is only for people.
@@ -36,7 +36,7 @@ class FunctionalUnit:
 
     @property
     def identity(self) -> tuple[str, frozenset[ObjectNode], frozenset[ObjectNode]]:
-        """What makes it this unit and no other."""
+        """The motion, the set of inputs and the set of outputs, which identify the unit."""
         return self.motion, frozenset(self.inputs), frozenset(self.outputs)
 
     def __eq__(self, other: object) -> bool:

@@ -1,4 +1,4 @@
-"""The network as a graph: layers, cycles and parts, each in linear time and without recursion."""
+"""The network as a graph: layers, cycles and connected components, in linear time and without recursion."""
 
 from collections.abc import Iterable
 
@@ -8,7 +8,7 @@ UNREACHED = -1
 
 
 def layers(network: Network, start: Iterable[int]) -> tuple[list[int], list[int]]:
-    """Return the layer of every object node and of every unit, or ``UNREACHED``, when ``start`` is at hand.
+    """Return the layer of every object node and of every unit, or ``UNREACHED``, when ``start`` is available.
 
     A node of ``start`` is in layer 0; a unit is one layer above the highest of its inputs, and a node in the
     layer of the lowest unit that makes it. A unit without inputs is in layer 1.
@@ -42,16 +42,16 @@ def layers(network: Network, start: Iterable[int]) -> tuple[list[int], list[int]
 def cycles(network: Network) -> list[list[int]]:
     """Return the sets of object nodes that need each other: strongly connected components with a cycle.
 
-    There is an edge from each input of a unit to each of its outputs. A node that a unit both needs and gives
-    is a cycle by itself. (Tarjan, SIAM J. Comput. 1, 1972; units are vertices too, so that a unit with many
-    inputs and outputs does not have the product of them as edges.)
+    There is an edge from each input of a unit to each of its outputs. A node that is an input and an output
+    of one unit is a cycle by itself. (Tarjan, SIAM J. Comput. 1, 1972; units are vertices too, so that a unit
+    with many inputs and outputs does not have the product of them as edges.)
     """
     size = len(network.objects)
     index = [0] * (size + len(network))  # 0: not met
     low = [0] * len(index)
     on_stack = bytearray(len(index))
     stack: list[int] = []
-    found: list[list[int]] = []
+    components: list[list[int]] = []
     counter = 0
     for root in range(size):
         if index[root]:
@@ -82,18 +82,18 @@ def cycles(network: Network) -> list[list[int]]:
                 if low[vertex] == index[vertex]:
                     component: list[int] = []
                     while True:
-                        member = stack.pop()
-                        on_stack[member] = 0
-                        component.append(member)
-                        if member == vertex:
+                        popped = stack.pop()
+                        on_stack[popped] = 0
+                        component.append(popped)
+                        if popped == vertex:
                             break
                     if len(component) > 1:  # a node and a unit at least
-                        found.append(sorted(node for node in component if node < size))
-    return found
+                        components.append(sorted(node for node in component if node < size))
+    return components
 
 
 def parts(network: Network) -> list[int]:
-    """Return the number of units in each part that shares no object node with another, largest first."""
+    """Return the number of units of each connected component of the network, largest first (union-find)."""
     parent = list(range(len(network.objects)))
 
     def root(node: int) -> int:
@@ -102,12 +102,14 @@ def parts(network: Network) -> list[int]:
             node = parent[node]
         return node
 
-    nodes = [(*inputs, *outputs) for inputs, outputs in zip(network.inputs, network.outputs, strict=True)]
-    for of_unit in nodes:
-        for node in of_unit[1:]:
-            parent[root(node)] = root(of_unit[0])
+    nodes_by_unit = [
+        (*inputs, *outputs) for inputs, outputs in zip(network.inputs, network.outputs, strict=True)
+    ]
+    for unit_nodes in nodes_by_unit:
+        for node in unit_nodes[1:]:
+            parent[root(node)] = root(unit_nodes[0])
     sizes: dict[int, int] = {}
-    for of_unit in nodes:
-        owner = root(of_unit[0])
-        sizes[owner] = sizes.get(owner, 0) + 1
+    for unit_nodes in nodes_by_unit:
+        root_node = root(unit_nodes[0])
+        sizes[root_node] = sizes.get(root_node, 0) + 1
     return sorted(sizes.values(), reverse=True)

@@ -15,29 +15,31 @@ LEVELS = (1, 2, 3)
 
 
 def node_at_level(node: ObjectNode, level: int) -> ObjectNode:
-    """Return what counts of a node at a level."""
+    """Return a node with only the parts that count at a level."""
     if level == 3:
         return node
     return ObjectNode(node.label) if level == 1 else ObjectNode(node.label, node.states, node.relations)
 
 
 def unit_at_level(unit: FunctionalUnit, level: int) -> FunctionalUnit:
-    """Return what counts of a unit at a level; nodes that have become one are listed once."""
+    """Return a unit with the parts of its nodes that count at a level; equal nodes are listed once."""
     if level == 3:
         return unit
-    inputs, outputs = ([node_at_level(node, level) for node in side] for side in (unit.inputs, unit.outputs))
+    inputs, outputs = (
+        [node_at_level(node, level) for node in side_nodes] for side_nodes in (unit.inputs, unit.outputs)
+    )
     return FunctionalUnit.of(unit.motion, inputs, outputs)
 
 
 def pattern_at_level(pattern: NodePattern, level: int) -> NodePattern:
-    """Return what counts of a kitchen or goals entry at a level."""
+    """Return a kitchen or goals entry with only the parts that count at a level."""
     if level == 3:
         return pattern
     return NodePattern(pattern.label) if level == 1 else pattern._replace(ingredients=(), contents=())
 
 
 def network_at_level(network: Network, level: int) -> Network:
-    """Return a level-3 network at a level: numbered anew, and knowing what its units and nodes stand for.
+    """Return a level-3 network at a level: numbered anew, with ``detailed`` and what its ids stand for.
 
     Sources of all units that have become one are kept. Raises :class:`ValueError` when the network is not
     of level 3 or there is no such level.

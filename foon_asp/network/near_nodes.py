@@ -7,8 +7,8 @@ from foon_asp.network.node_pattern import NodePattern
 from foon_asp.network.object_node import ObjectNode
 from foon_asp.network.spelling import one_letter_apart, without_doubles
 
-# What a node is made of: the kind of a name, and the name. A container stands for a relation of any word.
-_Part = tuple[str, str]
+# The kind of a name in a node, and the name. A container stands for a relation of any word.
+_NodePart = tuple[str, str]
 
 
 class Slip(NamedTuple):
@@ -20,21 +20,21 @@ class Slip(NamedTuple):
 
 
 def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | None:
-    """Return the name in which two nodes differ, where it is one and its spellings are one edit apart.
+    """Return the only name in which two nodes differ, ``None`` unless its spellings are one edit apart.
 
     One edit is a letter too many, too few, another or swapped with the next; doubled letters, capitals,
     blanks and hyphens count as one edit together. Two relations to one object by different words
     (``in [bowl]``, ``on [bowl]``) are one edit apart too.
     """
     loose = isinstance(other, NodePattern) and not other.relations
-    here, there = list(_parts(node, loose)), list(_parts(other, loose))
-    for part in list(here):
-        if part in there:
-            here.remove(part)
-            there.remove(part)
-    if len(here) != 1 or len(there) != 1:
+    remaining, other_remaining = list(_parts(node, loose)), list(_parts(other, loose))
+    for part in list(remaining):
+        if part in other_remaining:
+            remaining.remove(part)
+            other_remaining.remove(part)
+    if len(remaining) != 1 or len(other_remaining) != 1:
         return None
-    (kind, name), (other_kind, other_name) = here[0], there[0]
+    (kind, name), (other_kind, other_name) = remaining[0], other_remaining[0]
     if kind != other_kind:
         return None
     if kind == "relation":
@@ -47,18 +47,19 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
     return None
 
 
-def nearest(node: ObjectNode, others: Iterable[ObjectNode], most: int) -> list[ObjectNode]:
-    """Return the few nodes of the same label that have most in common with a node, the nearest first."""
-    wanted = set(_parts(node, loose=False))
+def nearest(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> list[ObjectNode]:
+    """Return up to ``max_nodes`` nodes of the same label, those that differ in the fewest parts first."""
+    parts = set(_parts(node, loose=False))
     ranked = sorted(
-        (len(wanted.symmetric_difference(_parts(other, loose=False))), str(other), other)
+        (len(parts.symmetric_difference(_parts(other, loose=False))), str(other), other)
         for other in others
         if other.label == node.label and other != node
     )
-    return [other for _, _, other in ranked[:most]]
+    return [other for _, _, other in ranked[:max_nodes]]
 
 
-def _parts(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_Part]:
+def _parts(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_NodePart]:
+    """Yield the names of a node with their kinds; if ``loose``, containers instead of relations."""
     yield "label", node.label
     yield from (("state", state) for state in sorted(node.states))
     yield from (("ingredient", ingredient) for ingredient in node.ingredients)

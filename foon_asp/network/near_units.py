@@ -1,4 +1,4 @@
-"""Functional units that are nearly the same, and in what they differ."""
+"""Pairs of functional units that are nearly the same, and their differences."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
@@ -8,19 +8,20 @@ from foon_asp.network.functional_unit import FunctionalUnit
 from foon_asp.network.object_node import ObjectNode
 from foon_asp.network.spelling import one_letter_apart, without_doubles
 
-_MOST = 3  # differences of units that are nearly the same
-_COMMON = 300  # units: what more have in common says little of them
-_LOOKED_AT = 12  # units that have most in common with one
+_MAX_DIFFERENCES = 3  # between units that are nearly the same
+_MAX_SHARING_UNITS = 300  # an index key that more units share says little about them
+_MAX_CANDIDATES = 12  # for each unit, those that share most index keys with it
 
-_Part = tuple[str, str]
+_NodePart = tuple[str, str]
 
 
 class UnitDifference(NamedTuple):
-    """One thing in which two units differ, however often it stands in them.
+    """A difference of two units, listed once however often it occurs.
 
     ``kind`` is motion, label, state, relation, ingredient, input or output; the last two are whole object
-    nodes, in one-line notation. Where only one unit has it, the other text is empty. ``of`` is the label of
-    the object that it is said of first, empty for what is no part of an object.
+    nodes, in one-line notation. ``left`` and ``right`` are the texts of the two units, empty for a unit that
+    has no counterpart. ``of`` is the label of the first object that has the difference, empty for a motion,
+    a label and whole nodes.
     """
 
     kind: str
@@ -30,7 +31,7 @@ class UnitDifference(NamedTuple):
 
     @property
     def is_slip(self) -> bool:
-        """Whether both are a name, and spelt almost alike."""
+        """Whether both units have a name here, and the two are spelt almost alike."""
         one, other = self.left, self.right
         return bool(one and other) and (
             one_letter_apart(one, other) or without_doubles(one) == without_doubles(other)
@@ -46,71 +47,91 @@ class NearUnits(NamedTuple):
 
 
 def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitDifference, ...]:
-    """Return in what two units differ, as few things as possible: each pair of names counts once."""
-    found: list[UnitDifference] = []
+    """Return the differences of two units, each pair of names once.
+
+    Object nodes are paired greedily, those with the fewest differences first.
+    """
+    differences: list[UnitDifference] = []
     if left.motion != right.motion:
-        found.append(UnitDifference("motion", left.motion, right.motion))
+        differences.append(UnitDifference("motion", left.motion, right.motion))
     sides = ("input", left.inputs, right.inputs), ("output", left.outputs, right.outputs)
-    for side, here, there in sides:
-        rest, others = [n for n in here if n not in there], [n for n in there if n not in here]
-        pairs = sorted(
-            (len(differences := _between(one, other)), one.label != other.label, i, j, differences)
-            for i, one in enumerate(rest)
-            for j, other in enumerate(others)
+    for side, nodes, other_nodes in sides:
+        unmatched, other_unmatched = (
+            [n for n in nodes if n not in other_nodes],
+            [n for n in other_nodes if n not in nodes],
         )
-        taken: set[int] = set()
-        taken_there: set[int] = set()
-        for _, _, i, j, differences in pairs:
-            if i not in taken and j not in taken_there and _is_same_thing(rest[i], others[j], differences):
-                taken.add(i)
-                taken_there.add(j)
-                found += differences
-        found += [UnitDifference(side, str(node), "") for i, node in enumerate(rest) if i not in taken]
-        found += [
-            UnitDifference(side, "", str(node)) for j, node in enumerate(others) if j not in taken_there
+        ranked_pairs = sorted(
+            (
+                len(pair_differences := _node_differences(one, other)),
+                one.label != other.label,
+                i,
+                j,
+                pair_differences,
+            )
+            for i, one in enumerate(unmatched)
+            for j, other in enumerate(other_unmatched)
+        )
+        paired: set[int] = set()
+        other_paired: set[int] = set()
+        for _, _, i, j, pair_differences in ranked_pairs:
+            if (
+                i not in paired
+                and j not in other_paired
+                and _may_correspond(unmatched[i], other_unmatched[j], pair_differences)
+            ):
+                paired.add(i)
+                other_paired.add(j)
+                differences += pair_differences
+        differences += [
+            UnitDifference(side, str(node), "") for i, node in enumerate(unmatched) if i not in paired
         ]
-    labels = {(d.left, d.right) for d in found if d.kind == "label"}
-    once: dict[tuple[str, str, str], UnitDifference] = {}
-    for each in found:
-        # a label that is another one is so as a container and as an ingredient, too
+        differences += [
+            UnitDifference(side, "", str(node))
+            for j, node in enumerate(other_unmatched)
+            if j not in other_paired
+        ]
+    labels = {(d.left, d.right) for d in differences if d.kind == "label"}
+    distinct: dict[tuple[str, str, str], UnitDifference] = {}
+    for difference in differences:
+        # a label that differs does so as a container and as an ingredient, too
         if (
-            each.kind not in {"ingredient", "relation"}
-            or (_object(each.left), _object(each.right)) not in labels
+            difference.kind not in {"ingredient", "relation"}
+            or (_object(difference.left), _object(difference.right)) not in labels
         ):
-            once.setdefault(each[:3], each)
-    return tuple(once.values())
+            distinct.setdefault(difference[:3], difference)
+    return tuple(distinct.values())
 
 
 def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit]) -> list[NearUnits]:
-    """Pair units of two lists that are nearly the same, each with one at most, those that differ least first.
+    """Return disjoint pairs of units of two lists that are nearly the same, those that differ least first.
 
-    They differ in three things at most, and agree in more than half of what they say. In each pair the units
-    have something in common that few units have.
+    The units of a pair have three differences at most, more than half of their features in common, and among
+    these one that few units have.
     """
     lefts, rights = list(left), list(right)
     candidates = _candidates(lefts, rights)
-    found = []
+    ranked_pairs = []
     for i, unit in enumerate(lefts):
         for j in candidates[i]:
             differences = unit_differences(unit, rights[j])
-            if len(differences) <= _MOST and _agree(unit, rights[j]):
-                found.append((len(differences), i, j, differences))
+            if len(differences) <= _MAX_DIFFERENCES and _mostly_agree(unit, rights[j]):
+                ranked_pairs.append((len(differences), i, j, differences))
     pairs = []
-    taken: set[int] = set()
-    taken_there: set[int] = set()
-    for _, i, j, differences in sorted(found):
-        if i not in taken and j not in taken_there:
-            taken.add(i)
-            taken_there.add(j)
+    paired: set[int] = set()
+    other_paired: set[int] = set()
+    for _, i, j, differences in sorted(ranked_pairs):
+        if i not in paired and j not in other_paired:
+            paired.add(i)
+            other_paired.add(j)
             pairs.append(NearUnits(lefts[i], rights[j], differences))
     return pairs
 
 
 def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
-    """Return the pairs of units in one list that differ in a single thing which may be a slip.
+    """Return the pairs of units in one list that have a single difference, which may be a slip.
 
-    That is the motion, a state, a relation or an ingredient, or a label that is spelt almost like the other.
-    Units with other labels are other units.
+    The difference is in the motion, a state or a relation, or in a name that is spelt almost like the other.
+    Units with other labels are different units.
     """
     listed = list(units)
     pairs = []
@@ -126,48 +147,49 @@ def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
 
 
 def _candidates(lefts: Sequence[FunctionalUnit], rights: Sequence[FunctionalUnit]) -> list[list[int]]:
-    """Return for each unit a few of the others, by what they have in common that is rare."""
-    by_part: defaultdict[object, list[int]] = defaultdict(list)
+    """Return for each unit of ``lefts`` the places in ``rights`` with the most common rare keys."""
+    by_key: defaultdict[object, list[int]] = defaultdict(list)
     for j, unit in enumerate(rights):
-        for part in _signs(unit):
-            by_part[part].append(j)
-    found = []
+        for key in _index_keys(unit):
+            by_key[key].append(j)
+    candidates = []
     for unit in lefts:
         shared: Counter[int] = Counter()
-        for part in _signs(unit):
-            others = by_part.get(part, ())
-            if len(others) <= _COMMON:
+        for key in _index_keys(unit):
+            others = by_key.get(key, ())
+            if len(others) <= _MAX_SHARING_UNITS:
                 shared.update(others)
-        same = [j for j, _ in sorted(shared.items(), key=lambda each: (-each[1], each[0]))]
-        found.append(same[:_LOOKED_AT])
-    return found
+        ranked = [j for j, _ in sorted(shared.items(), key=lambda counted: (-counted[1], counted[0]))]
+        candidates.append(ranked[:_MAX_CANDIDATES])
+    return candidates
 
 
-def _signs(unit: FunctionalUnit) -> set[object]:
-    """Return what a unit is found by: its nodes and its labels, alone and with the motion."""
-    signs: set[object] = {unit.motion}
+def _index_keys(unit: FunctionalUnit) -> set[object]:
+    """Return the keys of a unit: its motion, nodes, ingredients, and labels alone and with the motion."""
+    keys: set[object] = {unit.motion}
     for side, nodes in enumerate((unit.inputs, unit.outputs)):
         for node in nodes:
-            signs |= {(side, node), (side, node.label), (side, node.label, unit.motion)}
-            signs |= {(side, item) for item in node.ingredients}
-    return signs
+            keys |= {(side, node), (side, node.label), (side, node.label, unit.motion)}
+            keys |= {(side, item) for item in node.ingredients}
+    return keys
 
 
-def _agree(left: FunctionalUnit, right: FunctionalUnit) -> bool:
-    """Whether more than half of what two units say is the same."""
-    here, there = Counter(_said(left)), Counter(_said(right))
-    return 4 * (here & there).total() > here.total() + there.total()
+def _mostly_agree(left: FunctionalUnit, right: FunctionalUnit) -> bool:
+    """Whether more than half of the features of two units are common to both."""
+    features, other_features = Counter(_features(left)), Counter(_features(right))
+    return 4 * (features & other_features).total() > features.total() + other_features.total()
 
 
-def _said(unit: FunctionalUnit) -> Iterator[object]:
+def _features(unit: FunctionalUnit) -> Iterator[object]:
+    """Yield the motion and each part of each node, with its side and label."""
     yield unit.motion
     for side, nodes in enumerate((unit.inputs, unit.outputs)):
         for node in nodes:
-            yield from ((side, node.label, part) for part in _parts(node))
+            yield from ((side, node.label, node_part) for node_part in _parts(node))
 
 
-def _parts(node: ObjectNode) -> list[_Part]:
-    """Return what a node is made of."""
+def _parts(node: ObjectNode) -> list[_NodePart]:
+    """Return the names in a node, each with its kind."""
     return [
         ("label", node.label),
         *(("state", state) for state in sorted(node.states)),
@@ -176,26 +198,26 @@ def _parts(node: ObjectNode) -> list[_Part]:
     ]
 
 
-def _between(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifference, ...]:
-    """Return in what two nodes differ; what stands alone on both sides is one difference."""
-    here, there = Counter(_parts(node)), Counter(_parts(other))
-    found = []
+def _node_differences(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifference, ...]:
+    """Return the differences of two nodes; if both have as many names of a kind, these are paired."""
+    parts, other_parts = Counter(_parts(node)), Counter(_parts(other))
+    differences = []
     for kind in ("label", "state", "relation", "ingredient"):
-        ours, theirs = (
-            sorted(name for part, name in (one - two).elements() if part == kind)
-            for one, two in ((here, there), (there, here))
+        names, other_names = (
+            sorted(name for part_kind, name in (one - two).elements() if part_kind == kind)
+            for one, two in ((parts, other_parts), (other_parts, parts))
         )
         of = "" if kind == "label" else node.label
-        if len(ours) == len(theirs):
-            found += [UnitDifference(kind, *names, of) for names in zip(ours, theirs, strict=True)]
+        if len(names) == len(other_names):
+            differences += [UnitDifference(kind, *pair, of) for pair in zip(names, other_names, strict=True)]
         else:
-            found += [UnitDifference(kind, name, "", of) for name in ours]
-            found += [UnitDifference(kind, "", name, of) for name in theirs]
-    return tuple(found)
+            differences += [UnitDifference(kind, name, "", of) for name in names]
+            differences += [UnitDifference(kind, "", name, of) for name in other_names]
+    return tuple(differences)
 
 
-def _is_same_thing(node: ObjectNode, other: ObjectNode, differences: Sequence[UnitDifference]) -> bool:
-    """Whether two nodes may be meant to be one: the label is the same, or little else differs."""
+def _may_correspond(node: ObjectNode, other: ObjectNode, differences: Sequence[UnitDifference]) -> bool:
+    """Whether two nodes may be meant to be one: they have one label, or two differences at most."""
     return node.label == other.label or len(differences) <= 2
 
 

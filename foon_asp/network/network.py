@@ -17,7 +17,7 @@ from foon_asp.network.spelling import near_labels
 # motion, ids of the inputs, ids of the outputs: the identity of a unit within one network
 UnitKey = tuple[str, frozenset[int], frozenset[int]]
 
-_Part = TypeVar("_Part")
+_Value = TypeVar("_Value")
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,10 +110,10 @@ class Network:
             raise ImportError("a graph needs networkx: pip install 'foon-asp[notebook]'") from None
         graph = networkx.DiGraph()
         for o, node in enumerate(self.objects):
-            contents = [str(held) for held in node.contents]
+            contents = [str(holding) for holding in node.contents]
             parts = sorted(node.states), [str(relation) for relation in sorted(node.relations)], contents
-            said = dict(zip(("states", "relations", "contents"), parts, strict=True))
-            graph.add_node(node, kind="object", id=self.object_number(o), label=node.label, **said)
+            attributes = dict(zip(("states", "relations", "contents"), parts, strict=True))
+            graph.add_node(node, kind="object", id=self.object_number(o), label=node.label, **attributes)
         for unit, motion in enumerate(self.motions):
             name = ("unit", self.unit_number(unit))
             graph.add_node(name, kind="unit", motion=motion)
@@ -150,8 +150,8 @@ class Network:
         """
         if not self.unit_numbers:
             return number if 0 <= number < len(self) else None
-        place = bisect_left(self.unit_numbers, number)
-        return place if place < len(self) and self.unit_numbers[place] == number else None
+        position = bisect_left(self.unit_numbers, number)
+        return position if position < len(self) and self.unit_numbers[position] == number else None
 
     def units_of_numbers(self, numbers: Iterable[int]) -> tuple[int, ...]:
         """Return the ids of units here, in the same order, without those that are not here.
@@ -159,8 +159,8 @@ class Network:
         Parameters:
             numbers: The ids of the units in the whole network.
         """
-        found = map(self.unit_of_number, numbers)
-        return tuple(unit for unit in found if unit is not None)
+        unit_ids = map(self.unit_of_number, numbers)
+        return tuple(unit for unit in unit_ids if unit is not None)
 
     def object_number(self, object_id: int) -> int:
         """Return the id that a node has in the whole network.
@@ -187,31 +187,31 @@ class Network:
         ids = self._object_ids
         if not all(node in ids for node in (*unit.inputs, *unit.outputs)):
             return None
-        inputs, outputs = (frozenset(ids[node] for node in side) for side in (unit.inputs, unit.outputs))
+        inputs, outputs = (frozenset(ids[node] for node in nodes) for nodes in (unit.inputs, unit.outputs))
         return self._unit_ids.get((unit.motion, inputs, outputs))
 
     def without(self, units: Iterable[int]) -> "Network":
-        """Return the same network without some units; nodes keep their ids.
+        """Return this network without some units; nodes keep their ids.
 
         Parameters:
             units: The ids of the units to leave out.
         """
-        gone = set(units)
-        kept = [unit for unit in range(len(self)) if unit not in gone]
-        places = {unit: place for place, unit in enumerate(kept)}
+        removed = set(units)
+        kept = [unit for unit in range(len(self)) if unit not in removed]
+        new_ids = {unit: new_id for new_id, unit in enumerate(kept)}
         return replace(
             self,
             motions=tuple(self.motions[unit] for unit in kept),
             inputs=tuple(self.inputs[unit] for unit in kept),
             outputs=tuple(self.outputs[unit] for unit in kept),
             sources=tuple(self.sources[unit] for unit in kept),
-            _unit_ids={key: places[unit] for key, unit in self._unit_ids.items() if unit in places},
+            _unit_ids={key: new_ids[unit] for key, unit in self._unit_ids.items() if unit in new_ids},
             stands_for=tuple(self.stands_for[unit] for unit in kept) if self.stands_for else (),
             unit_numbers=tuple(self.unit_number(unit) for unit in kept),
         )
 
     def with_copies(self, units: Sequence[int]) -> "Network":
-        """Return the same network with some units a second time, after all others.
+        """Return this network with some units a second time, after all others.
 
         Only the ids distinguish a copy from its unit; looked up as a value, a unit has the lower id.
 
@@ -219,8 +219,8 @@ class Network:
             units: The ids of the units to copy, in the order of the copies.
         """
 
-        def extended(of_units: tuple[_Part, ...]) -> tuple[_Part, ...]:
-            return (*of_units, *(of_units[unit] for unit in units)) if of_units else ()
+        def extended(values: tuple[_Value, ...]) -> tuple[_Value, ...]:
+            return (*values, *(values[unit] for unit in units)) if values else ()
 
         numbers = self.unit_numbers
         if numbers:
@@ -253,20 +253,20 @@ class Network:
     @cached_property
     def by_label(self) -> dict[str, tuple[int, ...]]:
         """Node ids by object label, in order."""
-        ids: defaultdict[str, list[int]] = defaultdict(list)
+        ids_by_label: defaultdict[str, list[int]] = defaultdict(list)
         for object_id, node in enumerate(self.objects):
-            ids[node.label].append(object_id)
-        return {label: tuple(found) for label, found in ids.items()}
+            ids_by_label[node.label].append(object_id)
+        return {label: tuple(ids) for label, ids in ids_by_label.items()}
 
     @cached_property
     def by_ingredient(self) -> dict[str, tuple[int, ...]]:
-        """Node ids by what the nodes contain, in order."""
-        ids: defaultdict[str, list[int]] = defaultdict(list)
+        """Node ids by ingredient, in order."""
+        ids_by_ingredient: defaultdict[str, list[int]] = defaultdict(list)
         for object_id, node in enumerate(self.objects):
             if node.contents:
-                for ingredient in {item for each in node.contents for item in each.ingredients}:
-                    ids[ingredient].append(object_id)
-        return {ingredient: tuple(found) for ingredient, found in ids.items()}
+                for ingredient in {item for contents in node.contents for item in contents.ingredients}:
+                    ids_by_ingredient[ingredient].append(object_id)
+        return {ingredient: tuple(ids) for ingredient, ids in ids_by_ingredient.items()}
 
     def node(self, object_id: int) -> ObjectNode:
         """Return a node as a value.
@@ -282,26 +282,26 @@ class Network:
         Parameters:
             label: The label.
         """
-        found = self.by_label.get(label, ())
-        return len(found), found
+        ids = self.by_label.get(label, ())
+        return len(ids), ids
 
-    def beginning(self, start: str, most: int) -> list[str]:
+    def beginning(self, start: str, max_labels: int) -> list[str]:
         """Return labels with a given beginning, in alphabetical order.
 
         Parameters:
             start: The beginning.
-            most: The greatest number of labels to give.
+            max_labels: The greatest number of labels to return.
         """
-        return sorted(label for label in self.by_label if label.startswith(start))[:most]
+        return sorted(label for label in self.by_label if label.startswith(start))[:max_labels]
 
-    def near(self, label: str, most: int) -> list[str]:
+    def near(self, label: str, max_labels: int) -> list[str]:
         """Return labels that are similar to a given one, the most similar first.
 
         Parameters:
             label: The label to compare with.
-            most: The greatest number of labels to give.
+            max_labels: The greatest number of labels to return.
         """
-        return near_labels(label, self.by_label, most)
+        return near_labels(label, self.by_label, max_labels)
 
     def find(self, pattern: NodePattern) -> tuple[int, ...]:
         """Return the ids of the nodes that match an entry of a kitchen or goals file.
@@ -309,8 +309,8 @@ class Network:
         Parameters:
             pattern: The entry.
         """
-        found = self._by_lookup_key.get(pattern.lookup_key, ())
-        return tuple(o for o in found if pattern.matches(self.objects[o]))
+        candidates = self._by_lookup_key.get(pattern.lookup_key, ())
+        return tuple(o for o in candidates if pattern.matches(self.objects[o]))
 
     @cached_property
     def _by_lookup_key(self) -> dict[LookupKey, list[int]]:
@@ -381,8 +381,9 @@ class NetworkBuilder:
 
 
 def _invert(lists: Sequence[Sequence[int]], size: int) -> tuple[tuple[int, ...], ...]:
-    found: list[list[int]] = [[] for _ in range(size)]
+    """Return for each number below ``size`` the indexes of the lists that hold it, in order."""
+    owners: list[list[int]] = [[] for _ in range(size)]
     for owner, members in enumerate(lists):
         for member in members:
-            found[member].append(owner)
-    return tuple(map(tuple, found))
+            owners[member].append(owner)
+    return tuple(map(tuple, owners))

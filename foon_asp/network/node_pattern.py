@@ -1,4 +1,4 @@
-"""What the JSON side files say of an object node."""
+"""Entries of kitchen and goals files: patterns that object nodes match."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from foon_asp.network.quoted_name import FIRST, LISTED, quoted
 LookupKey = tuple[str, frozenset[str], tuple[str, ...], str | None]
 """Label, states, ingredients and a related object, ``None`` where there is none.
 
-A label without states may stand in thousands of places, so the place is part of the key.
+A label without states may stand in thousands of containers, so the container is part of the key.
 """
 
 
@@ -34,14 +34,14 @@ class NodePattern(NamedTuple):
 
     @property
     def lookup_key(self) -> LookupKey:
-        """The key that every node has, among its :func:`lookup_keys`, which this entry stands for."""
-        place = self.container
-        if place is None and self.relations:
-            place = min(self.relations).object
-        return self.label, self.states, self.ingredients, place
+        """The key that each node that matches has among its :func:`lookup_keys`."""
+        related_object = self.container
+        if related_object is None and self.relations:
+            related_object = min(self.relations).object
+        return self.label, self.states, self.ingredients, related_object
 
     def matches(self, node: ObjectNode) -> bool:
-        """Whether the node is one that this entry stands for."""
+        """Whether the node matches this entry."""
         if (
             node.label != self.label
             or node.states != self.states
@@ -67,8 +67,8 @@ class NodePattern(NamedTuple):
 
 
 def lookup_keys(node: ObjectNode) -> list[LookupKey]:
-    """Return the keys that a node is found by: one for each object that it is related to, at least one."""
+    """Return the keys that a node is found by: one for each related object, a single one if it has none."""
     label, states, relations, contents = node
     ingredients = node.ingredients if contents else ()
-    places = {relation.object for relation in relations} if relations else (None,)
-    return [(label, states, ingredients, place) for place in places]
+    related_objects = {relation.object for relation in relations} if relations else (None,)
+    return [(label, states, ingredients, related_object) for related_object in related_objects]

@@ -14,12 +14,12 @@ class Relation(NamedTuple):
 
     def __str__(self) -> str:
         # "contains [a]" is read as contents, and so is a list in square brackets
-        place = in_quotes(self.object) if self.word == "contains" else quoted(self.object, LISTED)
-        return f"{quoted(self.word)} [{place}]"
+        related_object = in_quotes(self.object) if self.word == "contains" else quoted(self.object, LISTED)
+        return f"{quoted(self.word)} [{related_object}]"
 
 
 class Contents(NamedTuple):
-    """What an object holds: the word and the sorted multiset of ingredients, ``contains {a,b}``."""
+    """The contents of an object: the word and the sorted multiset of ingredients, ``contains {a,b}``."""
 
     word: str
     ingredients: tuple[str, ...]

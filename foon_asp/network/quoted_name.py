@@ -12,11 +12,11 @@ from foon_asp.escapes import UNSAFE
 
 _ANYWHERE = rf'\A["\s]|\s\Z|\A\Z|[;\[\]{{}}\t\n]|{UNSAFE.pattern}'
 NAME: Final = re.compile(_ANYWHERE)
-"""What makes a name need quotes: it is empty, has blanks around it, or letters with a meaning."""
+"""Matches names that need quotes: empty, with blanks around them, or with special letters."""
 LISTED: Final = re.compile(rf"{_ANYWHERE}|,")
-"""The same of a name in brackets, where a comma separates names."""
+"""Matches names that need quotes in brackets, where a comma separates names."""
 FIRST: Final = re.compile(rf"{_ANYWHERE}|\A[#@]|\A::")
-"""The same of the name that a notation begins with: in files, ``#`` begins a comment and ``@`` a word."""
+"""Matches first names of a notation that need quotes: in files, ``#`` begins a comment, ``@`` a word."""
 _ESCAPED = re.compile(rf'["\\\t\n]|{UNSAFE.pattern}')
 
 

@@ -23,19 +23,21 @@ def one_letter_apart(word: str, other: str) -> bool:
     start = 0
     while start < min(len(word), len(other)) and word[start] == other[start]:
         start += 1
-    a, b = word[start:], other[start:]
-    while a and b and a[-1] == b[-1]:
-        a, b = a[:-1], b[:-1]
-    swapped = len(a) == 2 and a == b[::-1]
-    return (swapped or max(len(a), len(b)) == 1) and (a + b).isalpha()
+    differing, other_differing = word[start:], other[start:]
+    while differing and other_differing and differing[-1] == other_differing[-1]:
+        differing, other_differing = differing[:-1], other_differing[:-1]
+    swapped = len(differing) == 2 and differing == other_differing[::-1]
+    return (swapped or max(len(differing), len(other_differing)) == 1) and (
+        differing + other_differing
+    ).isalpha()
 
 
-def near_labels(label: str, known: Iterable[str], most: int) -> list[str]:
-    """Return those of the known labels that are like one, whatever their capitals, the likest first."""
+def near_labels(label: str, labels: Iterable[str], max_labels: int) -> list[str]:
+    """Return up to ``max_labels`` labels similar to one by difflib, ignoring case, the most similar first."""
     import difflib  # noqa: PLC0415 (for faults alone)
 
-    lower: defaultdict[str, list[str]] = defaultdict(list)
-    for name in known:
-        lower[name.lower()].append(name)
-    close = difflib.get_close_matches(label.lower(), lower, n=most, cutoff=0.6)
-    return [name for small in close for name in lower[small]]
+    by_lower_case: defaultdict[str, list[str]] = defaultdict(list)
+    for name in labels:
+        by_lower_case[name.lower()].append(name)
+    close_labels = difflib.get_close_matches(label.lower(), by_lower_case, n=max_labels, cutoff=0.6)
+    return [name for lower_label in close_labels for name in by_lower_case[lower_label]]

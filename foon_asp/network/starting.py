@@ -13,7 +13,7 @@ File = TypeVar("File", bound=Hashable)
 
 
 class RecipeKitchen(NamedTuple):
-    """What makes all units of one file run: the nodes that no unit makes, and those ``granted`` with them."""
+    """The starting kitchen of one file: ``raw`` nodes, which no unit makes, and nodes ``granted`` besides."""
 
     raw: list[int]
     granted: list[int]
@@ -22,26 +22,26 @@ class RecipeKitchen(NamedTuple):
 def recipe_kitchen(
     units: Iterable[tuple[Sequence[int], Sequence[int]]], goals: Collection[int] = ()
 ) -> RecipeKitchen:
-    """Return the starting kitchen of one file; items last.
+    """Return the starting kitchen of one file, in time linear in its size; items are not used up.
 
-    ``units`` are the inputs and outputs of each in the order of the file, as ids of object nodes. Nodes
-    that no unit makes out of others are available. Then units execute as far as they go; where they
-    stop, the earliest unit in the file's order is granted what it lacks, but none of the ``goals``, and so
-    on. A goal is granted only where goals are all that is lacking, which takes several goals that need each
-    other. Linear in the size of the file.
+    ``units`` are the inputs and outputs of each unit in the order of the file, as ids of object nodes. Nodes
+    that no unit makes out of others are available. Then units execute as far as they can; where they
+    stop, the first unit in the file's order is granted the inputs that it lacks, except ``goals``, and so
+    on. A goal is granted only where all lacking inputs are goals, which takes several goals that need each
+    other.
     """
-    sides = list(units)
-    missing = [len(inputs) for inputs, _ in sides]  # by unit: how many inputs are not available yet
+    unit_sides = list(units)
+    missing = [len(inputs) for inputs, _ in unit_sides]  # by unit: how many inputs are not available yet
     consumers: defaultdict[int, list[int]] = defaultdict(list)
     made: set[int] = set()
-    for unit, (inputs, outputs) in enumerate(sides):
+    for unit, (inputs, outputs) in enumerate(unit_sides):
         for o in inputs:
             consumers[o].append(unit)
         made.update(o for o in outputs if o not in inputs)
     available: set[int] = set()
 
     def add(nodes: Iterable[int]) -> None:
-        """Make nodes available, and all that units make of them."""
+        """Make nodes available, and all outputs of units that can execute then."""
         stack = list(nodes)
         while stack:
             o = stack.pop()
@@ -51,14 +51,16 @@ def recipe_kitchen(
             for unit in consumers.get(o, ()):
                 missing[unit] -= 1
                 if not missing[unit]:
-                    stack += sides[unit][1]
+                    stack += unit_sides[unit][1]
 
-    raw = [o for o in dict.fromkeys(o for unit in sides for side in unit for o in side) if o not in made]
+    raw = [
+        o for o in dict.fromkeys(o for unit in unit_sides for nodes in unit for o in nodes) if o not in made
+    ]
     add(raw)
-    add(o for inputs, outputs in sides if not inputs for o in outputs)
+    add(o for inputs, outputs in unit_sides if not inputs for o in outputs)
     granted: list[int] = []
     for withheld in (goals, ()) if goals else ((),):
-        for inputs, _ in sides:
+        for inputs, _ in unit_sides:
             for o in inputs:
                 if o not in available and o not in withheld:
                     granted.append(o)
@@ -67,7 +69,7 @@ def recipe_kitchen(
 
 
 class StartingKitchen(ABC, Generic[File]):
-    """What is assumed to be available in a network: the union over its files of what makes their units run.
+    """The object nodes assumed to be available in a network: the union of the starting kitchens of its files.
 
     So merging files loses no goal, and makes no optimum worse. Ids are those of the whole network.
     """
@@ -83,7 +85,7 @@ class StartingKitchen(ABC, Generic[File]):
 
     @abstractmethod
     def granting(self, o: int) -> Iterable[File]:
-        """Return the files that a node is granted though one of their units makes it."""
+        """Return the files whose kitchen is granted a node that one of their units makes."""
 
     @abstractmethod
     def files_of(self, units: Iterable[int]) -> Iterable[File]:
@@ -94,24 +96,24 @@ class StartingKitchen(ABC, Generic[File]):
         """Return the inputs and outputs of the units of a file, in its order."""
 
     def changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
-        """Return what the kitchen has more, and what it lacks, because these are the goals.
+        """Return the nodes that these goals add to the kitchen, and those that they remove from it.
 
-        A goal is never assumed where a unit makes it.
+        A goal is not assumed where a unit makes it.
         """
         goals = [goal for goal in goals if goal in self.nodes and self.makers(goal)]
-        kitchens = {file: self._all_of(file, goals) for goal in goals for file in self.granting(goal)}
+        kitchens = {file: self._nodes_of_file(file, goals) for goal in goals for file in self.granting(goal)}
         added = {o for kitchen in kitchens.values() for o in kitchen}
         lacking = set()
         for goal in goals:
             for file in self.files_of(self.makers(goal)):
                 if file not in kitchens:
-                    kitchens[file] = self._all_of(file, goals)
+                    kitchens[file] = self._nodes_of_file(file, goals)
                 if kitchens[file].isdisjoint(goals):  # this file alone makes it from the others
                     lacking.add(goal)
                     break
         return frozenset(added - lacking), frozenset(lacking)
 
-    def _all_of(self, file: File, goals: Collection[int]) -> set[int]:
+    def _nodes_of_file(self, file: File, goals: Collection[int]) -> set[int]:
         raw, granted = recipe_kitchen(self.units_of(file), goals)
         return {*raw, *granted}
 
@@ -128,7 +130,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         self._granting: dict[int, list[str]] = {}
         nodes: set[int] = set()
         for file, units in self._files.items():
-            units.sort(key=lambda unit, file=file: _place(network, unit, file))  # type: ignore[misc]
+            units.sort(key=lambda unit, file=file: _first_position(network, unit, file))  # type: ignore[misc]
             raw, granted = recipe_kitchen(self.units_of(file))
             nodes.update(raw, granted)
             for o in granted:
@@ -142,12 +144,12 @@ class NetworkStartingKitchen(StartingKitchen[str]):
 
     @cached_property
     def made_too(self) -> frozenset[int]:
-        """Those of them that a unit makes out of others."""
+        """The nodes of the kitchen that a unit makes out of others."""
         return frozenset(filter(self.makers, self.nodes))
 
     @property
     def file_count(self) -> int:
-        """How many files the units are from."""
+        """The number of files that the units are from."""
         return len(self._files)
 
     def makers(self, o: int) -> list[int]:
@@ -156,7 +158,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         return [unit for unit in self._network.producers[o] if o not in inputs[unit]]
 
     def granting(self, o: int) -> Sequence[str]:
-        """Return the files that a node is granted though one of their units makes it."""
+        """Return the files whose kitchen is granted a node that one of their units makes."""
         return self._granting.get(o, ())
 
     def files_of(self, units: Iterable[int]) -> Iterator[str]:
@@ -173,7 +175,7 @@ def _files(sources: Iterable[Source]) -> Iterable[str]:
     return dict.fromkeys(source.file for source in sources) or ("",)
 
 
-def _place(network: Network, unit: int, file: str) -> tuple[int, int]:
+def _first_position(network: Network, unit: int, file: str) -> tuple[int, int]:
     """Return the first line and column at which a file has a unit."""
     return min(
         ((source.line, source.column) for source in network.sources[unit] if source.file == file),
@@ -181,14 +183,14 @@ def _place(network: Network, unit: int, file: str) -> tuple[int, int]:
     )
 
 
-@lru_cache(maxsize=4)  # question after question is about the same network
+@lru_cache(maxsize=4)  # successive questions are about one network
 def starting_kitchen(network: Network) -> NetworkStartingKitchen:
     """Return the starting kitchen of a network."""
     return NetworkStartingKitchen(network)
 
 
 def starting_nodes(network: Network, goals: Collection[int] = ()) -> frozenset[int]:
-    """Return the ids of the nodes of the starting kitchen where these are the goals."""
+    """Return the ids of the nodes of the starting kitchen for these goals."""
     kitchen = starting_kitchen(network)
     added, lacking = kitchen.changes(goals)
     return kitchen.nodes.union(added).difference(lacking)

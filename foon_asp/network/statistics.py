@@ -1,4 +1,4 @@
-"""What there is in a network, counted."""
+"""Statistics of a network: sizes, degrees, cycles, layers and connected components."""
 
 import statistics
 from collections import Counter
@@ -9,7 +9,7 @@ from foon_asp.network.graph import UNREACHED, cycles, layers, parts
 from foon_asp.network.network import Network
 from foon_asp.network.starting import starting_kitchen
 
-MANY = 4  # producers: counted together from here on
+MANY = 4  # producers; object nodes with as many or more are counted together
 
 
 @dataclass(frozen=True)
@@ -18,9 +18,9 @@ class Statistics:
 
     ``producers[n]`` counts the object nodes that ``n`` units make, the last entry those that ``MANY`` or more
     do. A cycle is a set of object nodes that need each other; ``in_cycles`` counts the nodes in any,
-    ``largest_cycle`` those in the largest. ``depth`` is the highest layer reached from what is at hand, and
-    ``median_depth`` the median layer of the units reached. ``parts`` are pieces of the network that have no
-    object node in common, and ``largest_part`` counts the units of the largest.
+    ``largest_cycle`` those in the largest. ``at_hand`` counts the available nodes, ``depth`` is the highest
+    layer reached from them, and ``median_depth`` the median layer of the units reached. ``parts`` counts the
+    connected components, and ``largest_part`` the units of the largest.
     """
 
     level: int
@@ -57,11 +57,13 @@ def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
         at_hand = starting_kitchen(network).nodes
     start = list(at_hand)
     node_layer, unit_layer = layers(network, start)
-    circles = cycles(network)
-    pieces = parts(network)
+    node_cycles = cycles(network)
+    unit_counts = parts(network)
     producers = [len(makers) for makers in network.producers]
     objects = network.objects
-    inputs, outputs = ([len(side) for side in sides] for sides in (network.inputs, network.outputs))
+    inputs, outputs = (
+        [len(nodes) for nodes in nodes_by_unit] for nodes_by_unit in (network.inputs, network.outputs)
+    )
     reached = [layer for layer in unit_layer if layer != UNREACHED]
     return Statistics(
         level=network.level,
@@ -77,23 +79,24 @@ def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
         mean_outputs=statistics.fmean(outputs) if outputs else 0.0,
         most_outputs=max(outputs, default=0),
         producers=tuple(
-            sum(1 for number in producers if min(number, MANY) == wanted) for wanted in range(MANY + 1)
+            sum(1 for number in producers if min(number, MANY) == producer_count)
+            for producer_count in range(MANY + 1)
         ),
         most_producers=max(producers, default=0),
         unused=sum(1 for users in network.consumers if not users),
         unchanged=sum(
             1 for i, o in zip(network.inputs, network.outputs, strict=True) if frozenset(i) == frozenset(o)
         ),
-        cycles=len(circles),
-        in_cycles=sum(map(len, circles)),
-        largest_cycle=max(map(len, circles), default=0),
+        cycles=len(node_cycles),
+        in_cycles=sum(map(len, node_cycles)),
+        largest_cycle=max(map(len, node_cycles), default=0),
         at_hand=len(start),
         depth=max(reached, default=0),
         median_depth=statistics.median(reached) if reached else 0.0,
         unreached_objects=node_layer.count(UNREACHED),
         unreached_units=unit_layer.count(UNREACHED),
-        parts=len(pieces),
-        largest_part=pieces[0] if pieces else 0,
+        parts=len(unit_counts),
+        largest_part=unit_counts[0] if unit_counts else 0,
     )
 
 
@@ -102,11 +105,11 @@ def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]
 
     Of labels with as many units the first in the alphabet comes first.
     """
-    found: Counter[str] = Counter()
+    unit_counts: Counter[str] = Counter()
     objects = network.objects
     for inputs, outputs in zip(network.inputs, network.outputs, strict=True):
-        found.update({objects[node].label for node in (*inputs, *outputs)})
-    return sorted(found.items(), key=lambda label: (-label[1], label[0]))[:shown]
+        unit_counts.update({objects[node].label for node in (*inputs, *outputs)})
+    return sorted(unit_counts.items(), key=lambda label: (-label[1], label[0]))[:shown]
 
 
 def most_connected_objects(network: Network, shown: int) -> list[tuple[int, int, int]]:

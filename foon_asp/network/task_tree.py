@@ -24,5 +24,5 @@ class TaskTree:
     def __len__(self) -> int:
         return len(self.units)
 
-    def __getitem__(self, place: int) -> FunctionalUnit:
-        return self.units[place]
+    def __getitem__(self, position: int) -> FunctionalUnit:
+        return self.units[position]

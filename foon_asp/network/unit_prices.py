@@ -14,34 +14,37 @@ class UnitPrices(NamedTuple):
     motions: Mapping[str, Fraction]
     units: Mapping[FunctionalUnit, Fraction]
 
-    def each(self, network: Network) -> tuple[Fraction | None, ...]:
+    def of_units(self, network: Network) -> tuple[Fraction | None, ...]:
         """Return the price of every unit of a network, ``None`` where it has none.
 
-        Below level 3 it is the least of those that a unit stands for, and all of them need one.
+        Below level 3 it is the least price of the units that a unit stands for, all of which need a price.
         """
         if network.detailed is None:
-            return self._each(network)
-        known = self._each(network.detailed)
-        found = ([known[detail] for detail in details] for details in network.stands_for)
-        return tuple(map(_least, found))
+            return self._at_own_level(network)
+        detail_prices = self._at_own_level(network.detailed)
+        prices_by_unit = ([detail_prices[detail] for detail in details] for details in network.stands_for)
+        return tuple(map(_least, prices_by_unit))
 
     def price(self, unit: FunctionalUnit, network: Network | None = None) -> Fraction | None:
-        """Return the price of a unit at the level of a network; of one that is not in it, its motion's."""
+        """Return the price of a unit at the level of a network, ``None`` where it has none.
+
+        A unit that is not in the network has the price of its motion.
+        """
         if network is None or network.detailed is None:
             return self.units.get(unit, self.motions.get(unit.motion))
         number = network.unit_id(unit)
         if number is None:
             return self.motions.get(unit.motion)
-        return _least([self.price(network.detailed.unit(each)) for each in network.stands_for[number]])
+        return _least([self.price(network.detailed.unit(detail)) for detail in network.stands_for[number]])
 
-    def _each(self, network: Network) -> tuple[Fraction | None, ...]:
-        own = {unit.motion for unit in self.units}  # to look for no unit whose motion none of them has
+    def _at_own_level(self, network: Network) -> tuple[Fraction | None, ...]:
+        priced_motions = {unit.motion for unit in self.units}  # spares looking up units of other motions
         return tuple(
-            self.price(network.unit(unit)) if motion in own else self.motions.get(motion)
+            self.price(network.unit(unit)) if motion in priced_motions else self.motions.get(motion)
             for unit, motion in enumerate(network.motions)
         )
 
 
 def _least(prices: list[Fraction | None]) -> Fraction | None:
-    known = [price for price in prices if price is not None]
-    return min(known) if len(known) == len(prices) else None
+    present = [price for price in prices if price is not None]
+    return min(present) if len(present) == len(prices) else None

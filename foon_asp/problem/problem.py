@@ -404,7 +404,9 @@ class Problem:
     def prices(self) -> tuple[Fraction | None, ...]:
         """The price of each unit; ``None`` where it has none."""
         return (
-            (None,) * len(self.network) if self.unit_prices is None else self.unit_prices.each(self.network)
+            (None,) * len(self.network)
+            if self.unit_prices is None
+            else self.unit_prices.of_units(self.network)
         )
 
     def price(self, unit: int) -> Fraction:

@@ -393,7 +393,7 @@ def answered_under(
     reporter = reporter or caller().reporter
     how = how._replace(deadline=how.begun)
     found = None
-    if hasattr(problem, "near"):  # of a large store
+    if hasattr(problem, "nearby"):  # of a large store
         from foon_asp.dataset.nearby_under_rules import solve_nearby_under  # noqa: PLC0415
 
         found = solve_nearby_under(problem, objectives, how, reporter)

@@ -1,1 +1,1 @@
-"""A network on disk, of which a question reads only what it is about."""
+"""Stores: networks on disk, of which a question reads only the part that it needs."""

@@ -31,15 +31,15 @@ from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode
 from foon_asp.text.unit_price_list import UnitPriceList
 
-_WAITING = 1_000  # rows of a table that are written together
-_REMEMBERED = 50_000  # nodes known as values, to spare writing them as JSON: what comes again does so soon
+_ROWS_PER_WRITE = 1_000  # of one table
+_MAX_CACHED_NODES = 50_000  # ids by node, for nodes met lately: copies are mostly close together
 
 
 class StoreBuilder:
     """Writes units into a database as they come; copies of a unit are merged and all sources kept.
 
     Nodes and units get the ids that :class:`~foon_asp.network.NetworkBuilder` would give them. ``kitchen``
-    are the entries of the kitchen file, or ``None`` where there is none. In memory are the ids, by what makes
+    are the entries of the kitchen file, or ``None`` without such a file. In memory are the ids, by what makes
     a node or a unit what it is: some 400 bytes for each. The database is in one transaction, to be committed.
     """
 
@@ -54,7 +54,7 @@ class StoreBuilder:
         for number, (pattern, _) in enumerate(kitchen or ()):
             self._entries.setdefault(pattern.lookup_key, []).append(number)
         self._nodes: dict[str, int] = {}  # ids by their columns
-        self._latest: dict[ObjectNode, int] = {}  # the same of some of them
+        self._latest: dict[ObjectNode, int] = {}  # ids of nodes met lately
         self._units: dict[str, int] = {}  # ids by motion, inputs and outputs
         self._labels: dict[str, int] = {}
         self._motions: dict[str, int] = {}
@@ -66,12 +66,12 @@ class StoreBuilder:
 
     @property
     def units(self) -> int:
-        """How many distinct units there are so far."""
+        """The number of distinct units so far."""
         return len(self._units)
 
     @property
     def objects(self) -> int:
-        """How many distinct object nodes there are so far."""
+        """The number of distinct object nodes so far."""
         return len(self._nodes)
 
     def add(
@@ -106,25 +106,25 @@ class StoreBuilder:
         return unit
 
     def last_outputs(self, units: Mapping[int, Source]) -> list[ListedObject]:
-        """Return what the last unit of each file is for, as entries of a goals file.
+        """Return the outputs that the last unit of each file is for, as entries of a goals file.
 
-        ``units`` are the last units by id, each with its place.
+        ``units`` are the ids of the last units, each with its source.
         """
         self._write()
         statement = "SELECT inputs, outputs FROM unit WHERE id = ?"
-        sides = {
-            unit: [ids_of(side) for side in self._database.execute(statement, (unit,)).fetchone()]
+        inputs_outputs = {
+            unit: [ids_of(column) for column in self._database.execute(statement, (unit,)).fetchone()]
             for unit in units
         }
-        made = {o for _, outputs in sides.values() for o in outputs}
+        made = {o for _, outputs in inputs_outputs.values() for o in outputs}
         rows = self._database.execute("SELECT inputs FROM unit") if made else ()
         needed = {o for (inputs,) in rows for o in ids_of(inputs) if o in made}
-        found: dict[int, Source] = {}
-        for unit, place in units.items():
-            inputs, outputs = sides[unit]
+        sources: dict[int, Source] = {}
+        for unit, source in units.items():
+            inputs, outputs = inputs_outputs[unit]
             for o in wanted_outputs(inputs, sorted(outputs), needed):
-                found.setdefault(o, place)
-        return [as_entry(self._node(o), place) for o, place in found.items()]
+                sources.setdefault(o, source)
+        return [as_entry(self._node(o), source) for o, source in sources.items()]
 
     def finish(
         self,
@@ -137,16 +137,21 @@ class StoreBuilder:
         stated: Mapping[FunctionalUnit, Fraction],
         prices: UnitPriceList | None,
     ) -> None:
-        """Write what is left, and the indexes; ``left_out`` counts lines that were not understood.
+        """Write the remaining rows, and the indexes; ``left_out`` counts lines that were not understood.
 
         ``goals_from`` says what the goals were assumed from, and is empty where a file lists them.
         ``repeated`` are nodes that a unit lists twice.
         ``stated`` are prices that networks have for their units, ``prices`` those of a file, if there is one.
         """
-        by_unit = [self._by_id(each) for each in (stated, prices.units if prices else {})]
-        for unit in sorted({*by_unit[0], *by_unit[1]}):
-            own, of_file = (None if unit not in each else str(each[unit]) for each in by_unit)
-            self._insert("price", unit, own, of_file)
+        prices_by_id = [
+            self._by_id(prices_of_kind) for prices_of_kind in (stated, prices.units if prices else {})
+        ]
+        for unit in sorted({*prices_by_id[0], *prices_by_id[1]}):
+            stated_price, listed_price = (
+                None if unit not in prices_of_kind else str(prices_of_kind[unit])
+                for prices_of_kind in prices_by_id
+            )
+            self._insert("price", unit, stated_price, listed_price)
         for number, entry in enumerate(self._kitchen or ()):
             self._insert("kitchen_item", number, entry_column(entry))
         for name, column in self._outline.items():
@@ -156,17 +161,17 @@ class StoreBuilder:
         self._write()
         write_trigrams(self._database)
         units, objects = self.units, self.objects
-        for known in (self._units, self._nodes, self._latest, self._outline):  # makes room for what follows
-            known.clear()
+        for index in (self._units, self._nodes, self._latest, self._outline):  # frees memory for the indexes
+            index.clear()
         create_indexes(self._database)
         self._write_starting()
-        priced = {**by_unit[0], **by_unit[1]}
+        all_prices = {**prices_by_id[0], **prices_by_id[1]}
         about: dict[str, Any] = {
             "units": units,
             "objects": objects,
             "kitchen": self._kitchen is not None,
             "left_out": left_out,
-            "unit_prices": bool(priced),
+            "unit_prices": bool(all_prices),
             "goals": [entry_column(entry) for entry in goals],
             "goals_from": goals_from,
             "rates": None if rates is None else {motion: str(rate) for motion, rate in rates.items()},
@@ -174,7 +179,9 @@ class StoreBuilder:
             "motion_prices": prices and {motion: str(price) for motion, price in prices.motions.items()},
             "repeated": [[node, *source[:3], int(meant)] for node, source, meant in repeated],
             "digests": content_digests(
-                self._database, prices.motions if prices else None, priced if priced or prices else None
+                self._database,
+                prices.motions if prices else None,
+                all_prices if all_prices or prices else None,
             ),
         }
         for name, value in about.items():
@@ -186,10 +193,10 @@ class StoreBuilder:
         return zip(self._motions, self._motion_sources, strict=True)
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
-        """Return the id of a unit that was added, or ``None`` where it was not."""
+        """Return the id of a unit that was added, or ``None`` if it was not."""
         ins, outs = (
-            [self._nodes.get("".join(node_columns(node))) for node in side]
-            for side in (unit.inputs, unit.outputs)
+            [self._nodes.get("".join(node_columns(node))) for node in nodes]
+            for nodes in (unit.inputs, unit.outputs)
         )
         if None in ins or None in outs:
             return None
@@ -197,8 +204,8 @@ class StoreBuilder:
 
     def _by_id(self, prices: Mapping[FunctionalUnit, Fraction]) -> dict[int, Fraction]:
         """Return the prices of units that were added, by id."""
-        found = ((self.unit_id(unit), price) for unit, price in prices.items())
-        return {unit: price for unit, price in found if unit is not None}
+        by_id = ((self.unit_id(unit), price) for unit, price in prices.items())
+        return {unit: price for unit, price in by_id if unit is not None}
 
     def _node_id(self, node: ObjectNode) -> int:
         number = self._latest.get(node)
@@ -208,7 +215,7 @@ class StoreBuilder:
             number = self._nodes.setdefault("".join(columns), new)
             if number == new:
                 self._add_node(number, node, columns)
-            if len(self._latest) >= _REMEMBERED:
+            if len(self._latest) >= _MAX_CACHED_NODES:
                 self._latest.clear()
             self._latest[node] = number
         return number
@@ -244,21 +251,21 @@ class StoreBuilder:
         return number
 
     def _write_starting(self) -> None:
-        """Write the starting kitchen: the union over the files of what makes their units run."""
+        """Write the starting kitchen: the union of the starting kitchens of the files."""
         for file in self._files.values():
             rows = self._database.execute(UNITS_OF_FILE, (file,))
             units = {unit: (ids_of(inputs), ids_of(outputs)) for unit, inputs, outputs in rows}
-            found = recipe_kitchen(units.values())
+            kitchen = recipe_kitchen(units.values())
             self._database.executemany(
-                "UPDATE node SET starting = 1 WHERE id = ?", [(o,) for o in (*found.raw, *found.granted)]
+                "UPDATE node SET starting = 1 WHERE id = ?", [(o,) for o in (*kitchen.raw, *kitchen.granted)]
             )
-            for o in found.granted:
+            for o in kitchen.granted:
                 self._insert("granted", o, file)
 
     def _insert(self, table: str, *row: Any) -> None:
         waiting = self._rows.setdefault(table, [])
         waiting.append(row)
-        if len(waiting) >= _WAITING:
+        if len(waiting) >= _ROWS_PER_WRITE:
             self._write_rows(table, waiting)
 
     def _write_rows(self, table: str, rows: list[tuple[Any, ...]]) -> None:
@@ -268,11 +275,11 @@ class StoreBuilder:
             rows.clear()
 
     def _write(self) -> None:
-        """Write all rows that wait."""
+        """Write all rows that are not written yet."""
         for table, rows in self._rows.items():
             self._write_rows(table, rows)
 
 
 def _unit_key(motion: str, inputs: Iterable[int], outputs: Iterable[int]) -> str:
-    """Return what makes a unit what it is; the order of its nodes does not."""
+    """Return the identity of a unit as a text, in which the order of its nodes does not count."""
     return f"{sorted(inputs)}{sorted(outputs)}{motion}"

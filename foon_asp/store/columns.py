@@ -13,11 +13,11 @@ from foon_asp.text.object_list import ListedObject
 quoted = encode_basestring_ascii
 encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode
 
-_DIGITS = 4000  # of a rate or price; Python turns no more than 4,300 into a number
+_MAX_DIGITS = 4000  # of a rate or price; Python reads numbers of up to 4,300 digits
 
 
 class NodeColumns(NamedTuple):
-    """The parts of an object node as JSON; in one list they are what certificates have digested."""
+    """The parts of an object node as JSON; certificates name digests of lists of nodes in this form."""
 
     label: str
     states: str
@@ -28,9 +28,11 @@ class NodeColumns(NamedTuple):
 def node_columns(node: ObjectNode) -> NodeColumns:
     """Return the parts of a node as JSON."""
     label, states, relations, contents = node
-    related = ",".join([f"[{quoted(word)},{quoted(place)}]" for word, place in sorted(relations)])
-    held = ",".join([f"[{quoted(word)},{listed(items)}]" for word, items in contents])
-    return NodeColumns(quoted(label), listed(sorted(states)), f"[{related}]", f"[{held}]")
+    related = ",".join(
+        [f"[{quoted(word)},{quoted(related_object)}]" for word, related_object in sorted(relations)]
+    )
+    holdings = ",".join([f"[{quoted(word)},{listed(items)}]" for word, items in contents])
+    return NodeColumns(quoted(label), listed(sorted(states)), f"[{related}]", f"[{holdings}]")
 
 
 def listed(texts: Iterable[str]) -> str:
@@ -49,7 +51,7 @@ def decoded_label(name: bytes) -> str:
 
 
 def decoded(text: str) -> Any:
-    """Return the value of a column in JSON; raises :class:`ValueError` and :class:`TypeError` for another."""
+    """Return the value of a column in JSON; raises :class:`ValueError` or :class:`TypeError`."""
     return json.loads(text)
 
 
@@ -85,7 +87,7 @@ def _states(text: str) -> frozenset[str]:
 
 @lru_cache(maxsize=100_000)
 def _relations(text: str) -> frozenset[Relation]:
-    return frozenset(Relation(_name(word), _name(place)) for word, place in decoded(text))
+    return frozenset(Relation(_name(word), _name(related_object)) for word, related_object in decoded(text))
 
 
 @lru_cache(maxsize=100_000)
@@ -100,8 +102,8 @@ def _name(value: object) -> str:
 
 
 def number_of(text: str) -> Fraction:
-    """Return an exact rate or price; raises :class:`ValueError` for what is none."""
-    number = Fraction(text if len(text) < _DIGITS and "e" not in text.lower() else "")
+    """Return an exact rate or price; raises :class:`ValueError` for any other text."""
+    number = Fraction(text if len(text) < _MAX_DIGITS and "e" not in text.lower() else "")
     if number < 0:
         raise ValueError(f"found {number}, expected a number from 0")
     return number
@@ -122,7 +124,7 @@ def entry_of(text: str) -> ListedObject:
         frozenset(map(_name, states)),
         tuple(map(_name, ingredients)),
         container if container is None else _name(container),
-        frozenset(Relation(_name(word), _name(place)) for word, place in relations),
+        frozenset(Relation(_name(word), _name(related_object)) for word, related_object in relations),
         tuple(Contents(_name(word), tuple(map(_name, items))) for word, items in contents),
     )
     return ListedObject(pattern, Source(_name(file), int(line), int(column)))

@@ -1,4 +1,4 @@
-"""The units of a network that goals can need, read backwards from these as far as asked for."""
+"""The cone of goals: the units of a network that they can need, read backwards step by step."""
 
 import copy
 from collections import deque
@@ -9,11 +9,11 @@ from typing import Protocol
 from foon_asp.garbage import uncollected
 from foon_asp.problem import ContainerRule
 
-_TOGETHER = 200  # nodes whose producers are read by one query: a cone reads at most so many too many
+_BATCH_SIZE = 200  # nodes whose producers one query reads; a cone reads those of up to 200 nodes too many
 
 
 class Producers(Protocol):
-    """A network of which producers are read as far as asked for; ids are those of the whole network."""
+    """A network that is read node by node; ids are those of the whole network."""
 
     def producers_of(self, objects: Sequence[int]) -> list[list[int]]:
         """Return the units that make each of some nodes."""
@@ -21,14 +21,14 @@ class Producers(Protocol):
     def needs(
         self, units: Sequence[int], containers: ContainerRule, utensils: frozenset[str]
     ) -> list[list[int]]:
-        """Return what each of some units needs."""
+        """Return for each of the units the nodes that it needs."""
 
 
 class Cone:
-    """What goals can need, as far as it was read; everything is by id in the whole network.
+    """The part read so far of what goals can need, by id in the whole network.
 
-    ``units`` are those read: all producers of each node that they or the goals need under the container
-    rule, but for the nodes ``at_hand`` and those that are ``open``: some of their producers may be missing.
+    ``units`` are those read. They include all producers of each node that they or the goals need under the
+    container rule, except of ``available`` nodes and of ``open`` ones, whose producers may be missing.
     """
 
     def __init__(
@@ -37,13 +37,13 @@ class Cone:
         network: Producers,
         containers: ContainerRule,
         utensils: frozenset[str],
-        at_hand: Container[int],
+        available: Container[int],
     ) -> None:
         self.goals = tuple(goals)
         self.units: set[int] = set()
-        self.open = {goal for goal in self.goals if goal not in at_hand}
+        self.open = {goal for goal in self.goals if goal not in available}
         self._closed: set[int] = set()
-        self._network, self._at_hand = network, at_hand
+        self._network, self._available = network, available
         self._rule = containers, utensils
 
     def copied(self) -> "Cone":
@@ -53,31 +53,31 @@ class Cone:
         return other
 
     @uncollected()
-    def grow(self, objects: Iterable[int], most: int | None = None) -> None:
-        """Read the producers of open nodes, then of what these need, the nearest first.
+    def grow(self, objects: Iterable[int], max_units: int | None = None) -> None:
+        """Read the producers of open nodes and of the nodes that they need, breadth first.
 
-        Ends when about ``most`` units more were read; ``None`` if all that follow are to be.
+        Ends when about ``max_units`` more units were read, ``None`` for no limit.
         """
-        waiting = deque(objects)
-        enough = None if most is None else len(self.units) + most
-        while waiting and (enough is None or len(self.units) < enough):
-            nearest = [waiting.popleft() for _ in range(min(len(waiting), _TOGETHER))]
-            nearest = [o for o in dict.fromkeys(nearest) if o in self.open]
-            producers = self._network.producers_of(nearest)
+        queue = deque(objects)
+        target_size = None if max_units is None else len(self.units) + max_units
+        while queue and (target_size is None or len(self.units) < target_size):
+            batch = [queue.popleft() for _ in range(min(len(queue), _BATCH_SIZE))]
+            batch = [o for o in dict.fromkeys(batch) if o in self.open]
+            producers = self._network.producers_of(batch)
             new = [unit for unit in dict.fromkeys(chain.from_iterable(producers)) if unit not in self.units]
             needs = dict(zip(new, self._network.needs(new, *self._rule), strict=True))
-            for made, units in zip(nearest, producers, strict=True):
-                if enough is not None and len(self.units) >= enough:
+            for node, units in zip(batch, producers, strict=True):
+                if target_size is not None and len(self.units) >= target_size:
                     break
-                self.open.remove(made)
-                self._closed.add(made)
+                self.open.remove(node)
+                self._closed.add(node)
                 for unit in units:
                     if unit in self.units:
                         continue
                     self.units.add(unit)
                     for needed in needs[unit]:
                         if needed not in self._closed and (
-                            needed in self.open or needed not in self._at_hand
+                            needed in self.open or needed not in self._available
                         ):
                             self.open.add(needed)
-                            waiting.append(needed)
+                            queue.append(needed)

@@ -1,4 +1,4 @@
-"""The digests of a store: of the whole file, and those of its content that certificates name."""
+"""The digests of a store: of the whole file, and of the content that certificates name."""
 
 import hashlib
 import sqlite3
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from foon_asp.store.columns import decoded_label, encode, quoted
 
-FILE_DIGEST = hashlib.sha256().digest_size  # bytes behind the last page, which SQLite does not look at
+FILE_DIGEST = hashlib.sha256().digest_size  # bytes behind the last page, which SQLite ignores
 
 
 def append_digest(file: Path) -> None:
@@ -20,13 +20,13 @@ def append_digest(file: Path) -> None:
 
 
 def has_true_digest(file: Path) -> bool:
-    """Whether a store is what was written when it was imported, to the last bit."""
-    found, size, piece = hashlib.sha256(), file.stat().st_size - FILE_DIGEST, 1 << 20
+    """Whether a store is unchanged since its import, by the SHA-256 digest at its end."""
+    digest, remaining, chunk_size = hashlib.sha256(), file.stat().st_size - FILE_DIGEST, 1 << 20
     with file.open("rb") as database:
-        while size > 0 and (read := database.read(min(piece, size))):
-            found.update(read)
-            size -= len(read)
-        return database.read() == found.digest()
+        while remaining > 0 and (chunk := database.read(min(chunk_size, remaining))):
+            digest.update(chunk)
+            remaining -= len(chunk)
+        return database.read() == digest.digest()
 
 
 def content_digests(
@@ -72,14 +72,14 @@ def content_digests(
 
 
 def _digest(level: str, *lists: Iterable[str]) -> str:
-    """Return the digest of a list in JSON of a number and lists, of which each member is JSON."""
-    found = hashlib.sha256(f"[{level}".encode())
+    """Return the SHA-256 digest of a JSON list of a level and lists, whose members are JSON texts."""
+    digest = hashlib.sha256(f"[{level}".encode())
     for members in lists:
-        found.update(b",[")
+        digest.update(b",[")
         comma = b""
         for member in members:
-            found.update(comma + member.encode("ascii"))
+            digest.update(comma + member.encode("ascii"))
             comma = b","
-        found.update(b"]")
-    found.update(b"]")
-    return found.hexdigest()
+        digest.update(b"]")
+    digest.update(b"]")
+    return digest.hexdigest()

@@ -1,4 +1,4 @@
-"""From files to a store: whole or not at all."""
+"""The import of files into a store, whole or not at all."""
 
 import contextlib
 import os
@@ -13,7 +13,7 @@ from foon_asp.problem import unrated_remarks
 from foon_asp.replacing import pass_on, warn_of_replaced
 from foon_asp.store.builder import StoreBuilder
 from foon_asp.store.digests import append_digest
-from foon_asp.store.store_file import is_database_of_ours
+from foon_asp.store.store_file import is_store_database
 from foon_asp.text.assumed_goals import LAST, MARKED, as_entry
 from foon_asp.text.data_folder import STARTING, DataFiles, kitchen_item_warning, unit_price_warning
 from foon_asp.text.diagnostics import Diagnostic
@@ -26,9 +26,10 @@ from foon_asp.text.unit_price_list import read_unit_prices
 
 
 class Imported(NamedTuple):
-    """What was imported. ``copies`` counts the units read, ``units`` the distinct ones.
+    """The result of an import: ``copies`` counts the units read, ``units`` and ``objects`` the distinct ones.
 
-    ``remarks`` say what is missing beside the network.
+    ``left_out`` counts lines that were not understood. ``remarks`` say which data beside the network are
+    missing.
     """
 
     copies: int
@@ -40,24 +41,24 @@ class Imported(NamedTuple):
 
 
 def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Imported:
-    """Read networks and what stands beside them into a store; what was there before stays until the end.
+    """Read networks and the files beside them into a store, which replaces an older one at the end.
 
     Raises :class:`InputError` for input that is not understood, and :class:`UserError` where the store
-    cannot be written, is being written by another process, or would replace something that is no store.
+    cannot be written, is being written by another process, or would replace a file that is no store.
     """
     if store.suffix != STORE_SUFFIX:
         raise UserError(f"{store}: the name of a store ends in {STORE_SUFFIX}")
-    if store.exists() and not is_database_of_ours(store):
+    if store.exists() and not is_store_database(store):
         raise UserError(f"{store}: another file has this name; remove it or choose another name")
     reader = FoonReader(lenient)
     warnings = reader.diagnostics
-    given = files.kitchen if files.kitchen != STARTING else None
-    kitchen = read_object_list(given, warnings) if given else None
+    kitchen_file = files.kitchen if files.kitchen != STARTING else None
+    kitchen = read_object_list(kitchen_file, warnings) if kitchen_file else None
     goals = read_object_list(files.goals, warnings) if files.goals else []
     rates = RATES.read(files.rates) if files.rates else None
     utensils = read_utensils(files.utensils) if files.utensils else None
     prices = read_unit_prices(files.unit_prices) if files.unit_prices else None
-    earlier = len(warnings)
+    earlier_warnings = len(warnings)
     last_units: dict[int, Source] = {}
     try:
         with _written(store) as database:
@@ -71,7 +72,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
                     last = (added, sources[0]) if outputs else last
                 if last:
                     last_units.setdefault(*last)
-            reader.raise_errors(earlier)
+            reader.raise_errors(earlier_warnings)
             goals_from = ""
             if files.goals is None and reader.marked:
                 goals = [as_entry(node, source) for node, source in reader.marked.items()]
@@ -143,7 +144,7 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
 
 
 def _remove_leftover(partial: Path, store: Path) -> None:
-    """Remove what a killed import left, but not what another one is at."""
+    """Remove the partial file of a killed import; raise :class:`UserError` if another import writes it."""
     with partial.open("rb") as file:
         begins = file.read(len(STORE_MAGIC))
     if begins.strip(b"\0") and begins != STORE_MAGIC:

@@ -1,4 +1,4 @@
-"""The labels of a store: by how they begin, and by what they are like."""
+"""Search of the labels of a store, by prefix and by similarity."""
 
 import sqlite3
 from collections.abc import Iterable
@@ -7,7 +7,7 @@ from foon_asp.network.spelling import near_labels
 from foon_asp.store.columns import decoded_label, encoded_label
 from foon_asp.store.schema import TRIGRAMS
 
-_COMPARED = 300  # labels that share most letters with one, compared with it in full
+_MAX_COMPARED = 300  # labels, those that share the rarest trigrams
 
 
 def write_trigrams(database: sqlite3.Connection) -> None:
@@ -18,29 +18,29 @@ def write_trigrams(database: sqlite3.Connection) -> None:
         database.executemany("INSERT INTO label_trigram (rowid, name) VALUES (?, ?)", padded)
 
 
-def labels_beginning(database: sqlite3.Connection, start: str, most: int) -> list[str]:
-    """Return at most ``most`` labels that begin with ``start``, in alphabetical order."""
+def labels_beginning(database: sqlite3.Connection, start: str, max_labels: int) -> list[str]:
+    """Return at most ``max_labels`` labels that begin with ``start``, in alphabetical order."""
     statement = "SELECT name FROM label WHERE name >= ? ORDER BY name LIMIT ?"
-    found = _labels(database.execute(statement, (encoded_label(start), most)))
-    return [label for label in found if label.startswith(start)]
+    labels = _labels(database.execute(statement, (encoded_label(start), max_labels)))
+    return [label for label in labels if label.startswith(start)]
 
 
-def similar_labels(database: sqlite3.Connection, label: str, most: int) -> list[str]:
-    """Return labels similar to one, the most similar first, of those that share rare trigrams with it.
+def similar_labels(database: sqlite3.Connection, label: str, max_labels: int) -> list[str]:
+    """Return labels similar to one, the most similar first, among those that share rare trigrams with it.
 
     Where SQLite has no trigrams, or the import had none, all labels are compared.
     """
     text = f" {_searchable(label).lower()} "
-    trigrams = sorted({text[at : at + 3] for at in range(len(text) - 2)})
-    wanted = " OR ".join('"' + trigram.replace('"', '""') + '"' for trigram in trigrams)
+    trigrams = sorted({text[start : start + 3] for start in range(len(text) - 2)})
+    query = " OR ".join('"' + trigram.replace('"', '""') + '"' for trigram in trigrams)
     ranked = "SELECT rowid FROM label_trigram WHERE label_trigram MATCH ? ORDER BY rank LIMIT ?"
     try:
         rows = database.execute(
-            f"SELECT name FROM label WHERE id IN ({ranked}) ORDER BY name", (wanted or '""', _COMPARED)
+            f"SELECT name FROM label WHERE id IN ({ranked}) ORDER BY name", (query or '""', _MAX_COMPARED)
         ).fetchall()
     except sqlite3.OperationalError:  # no such table, module or tokenizer
         rows = database.execute("SELECT name FROM label ORDER BY name").fetchall()
-    return near_labels(label, _labels(rows), most)
+    return near_labels(label, _labels(rows), max_labels)
 
 
 def _labels(rows: Iterable[tuple[bytes]]) -> list[str]:
@@ -48,5 +48,5 @@ def _labels(rows: Iterable[tuple[bytes]]) -> list[str]:
 
 
 def _searchable(label: str) -> str:
-    """Return a label without halves of letters and the end of a text, which SQLite does not take."""
+    """Return a label without surrogates and NUL, which SQLite does not store in a text."""
     return encoded_label(label).decode("utf-8", "replace").replace("\0", " ")

@@ -1,4 +1,4 @@
-"""The tables of a store: an SQLite database with a column for each thing that is looked up."""
+"""The tables of a store: an SQLite database with a column for each value that is looked up."""
 
 import contextlib
 import sqlite3
@@ -43,15 +43,15 @@ TRIGRAMS = "CREATE VIRTUAL TABLE label_trigram USING fts5(name, content='', deta
 """An index of three letters in a row of each label; SQLite has it from 3.34 on, if built with FTS5."""
 
 OUTLINE = ("motions", "input_counts", "inputs", "output_counts", "outputs")
-"""The rows of the table ``outline``: by unit, but for inputs and outputs, which follow unit by unit."""
+"""The rows of the table ``outline``: an entry a unit, or a list a unit for inputs and outputs."""
 
 UNITS_OF_FILE = (
     "SELECT unit.id, inputs, outputs FROM source JOIN origin ON origin.id = origin "
     'JOIN unit ON unit.id = unit WHERE file = ? ORDER BY line, "column", unit'
 )
-"""Selects the units of a file, by number, in its order; one that stands there several times comes again."""
+"""Selects the units of a file, by number, in its order; once for each copy."""
 
-_SHADOWS = {f"label_trigram_{part}" for part in ("data", "idx", "docsize", "config")}  # FTS5's own tables
+_SHADOWS = {f"label_trigram_{suffix}" for suffix in ("data", "idx", "docsize", "config")}  # FTS5's own tables
 
 
 def create_tables(database: sqlite3.Connection) -> None:
@@ -83,11 +83,15 @@ def create_indexes(database: sqlite3.Connection) -> None:
 
 
 def check_tables(database: sqlite3.Connection) -> None:
-    """Raise :class:`ValueError` for a database with other tables: a view or a trigger runs what it likes."""
+    """Raise :class:`ValueError` for a database with other tables: views and triggers run code."""
     database.execute("PRAGMA trusted_schema = OFF")
     rows = database.execute("SELECT type, name, sql FROM sqlite_master WHERE sql IS NOT NULL").fetchall()
-    shadows = [(kind, sql) for kind, name, sql in rows if name in _SHADOWS]
-    ours = {sql for _, name, sql in rows if name not in _SHADOWS}
-    computed = any(kind != "table" or " AS " in sql.upper() for kind, sql in shadows)
-    if computed or ours - {TRIGRAMS} != set(SCHEMA) or len(rows) != len(ours) + len(shadows):
+    shadow_tables = [(kind, sql) for kind, name, sql in rows if name in _SHADOWS]
+    statements = {sql for _, name, sql in rows if name not in _SHADOWS}
+    computed = any(kind != "table" or " AS " in sql.upper() for kind, sql in shadow_tables)
+    if (
+        computed
+        or statements - {TRIGRAMS} != set(SCHEMA)
+        or len(rows) != len(statements) + len(shadow_tables)
+    ):
         raise ValueError("its tables are not those of a store")

@@ -1,4 +1,4 @@
-"""The starting kitchen of a store, which is read as far as goals ask for it."""
+"""The starting kitchen of a store, read file by file as goals need it."""
 
 from collections.abc import Iterable, Sequence
 
@@ -11,7 +11,7 @@ from foon_asp.store.stored_ids import StoredIds
 
 
 class StoredStartingKitchen(StartingKitchen[int]):
-    """Files are those of the store, by number."""
+    """The starting kitchen of a store; files are those of the store, by number."""
 
     def __init__(self, store: Store) -> None:
         self.file, self._nodes = store.file, StoredIds(store, "starting")
@@ -31,7 +31,7 @@ class StoredStartingKitchen(StartingKitchen[int]):
 
     @reporting_damage
     def granting(self, o: int) -> Iterable[int]:
-        """Return the files that a node is granted though one of their units makes it."""
+        """Return the files whose kitchen is granted a node that one of their units makes."""
         rows = self.file.database.execute("SELECT file FROM granted WHERE node = ?", (o,))
         return [file for (file,) in rows]
 

@@ -1,4 +1,4 @@
-"""A store, opened to ask questions: names, and the part of the network that a question is about."""
+"""An opened store, from which names and parts of its network are read."""
 
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -32,7 +32,7 @@ from foon_asp.text.repeated_node import RepeatedNode
 if TYPE_CHECKING:  # few answers need numpy
     from foon_asp.store.outline import Outline
 
-LISTED = 12  # node ids given with a label: as many as a message has room for
+LISTED = 12  # node ids returned with a label, as many as a message lists
 
 _NODE = (
     "SELECT node.id, name, states, relations, contents, kitchen, starting "
@@ -53,8 +53,8 @@ class Store:
     ``with Store(file) as store:`` closes it at the end, as :meth:`close` does; so does Python when nothing
     refers to the store any more.
 
-    Every method reads what it needs and no more, so that what it costs does not grow with the network.
-    Opening and each method raise :class:`UserError` where the store turns out to be none, newer or damaged.
+    Every method reads only what it needs, so that its time does not grow with the network. Opening and each
+    method raise :class:`UserError` for a file that is no store, is newer than this program or damaged.
     """
 
     level = 3
@@ -62,7 +62,7 @@ class Store:
     def __init__(self, file: Path) -> None:
         self.file, self.name = StoreFile(file), str(file)
         self._database = self.file.database
-        self._node_rows: dict[int, _NodeRow] = {}  # those read
+        self._node_rows: dict[int, _NodeRow] = {}  # rows of the nodes read so far
         self._nodes: dict[int, ObjectNode] = {}
         self._units: dict[int, _Unit] = {}
         self._origins: dict[int, tuple[str, tuple[str, ...]]] = {}  # files with their videos
@@ -72,9 +72,9 @@ class Store:
     def _read_head(self) -> None:
         about = self.file.about
         self.units, self.objects, self.left_out = (int(about(n)) for n in ("units", "objects", "left_out"))
-        self.has_kitchen = bool(about("kitchen"))  # if only an empty one
+        self.has_kitchen = bool(about("kitchen"))  # or an empty one
         self.has_unit_prices = bool(about("unit_prices"))
-        self.goals_from = str(about("goals_from"))  # what no goals file says
+        self.goals_from = str(about("goals_from"))  # empty where the goals are from a file
         self.repeated = tuple(
             RepeatedNode(node, Source(file, line, column), bool(meant))
             for node, file, line, column, meant in about("repeated")
@@ -90,17 +90,17 @@ class Store:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    # What stands beside the network.
+    # Goals, rates, prices and utensils imported with the network.
 
     @cached_property
     @reporting_damage
     def rates(self) -> dict[str, Fraction] | None:
         """The success rates of motions, or ``None`` when none were imported."""
         rates = self.file.about("rates")
-        found = None if rates is None else {motion: number_of(rate) for motion, rate in rates.items()}
-        if found and not all(0 < rate <= 1 for rate in found.values()):
+        by_motion = None if rates is None else {motion: number_of(rate) for motion, rate in rates.items()}
+        if by_motion and not all(0 < rate <= 1 for rate in by_motion.values()):
             raise ValueError("a success rate is not above 0 and at most 1")
-        return found
+        return by_motion
 
     @cached_property
     @reporting_damage
@@ -112,9 +112,9 @@ class Store:
     @cached_property
     @reporting_damage
     def digests(self) -> dict[str, str]:
-        """The digests of ``network``, ``kitchen`` and ``prices`` that were made when it was imported.
+        """The digests of ``network``, ``kitchen`` and ``prices`` that were computed when it was imported.
 
-        Certificates name them; nothing here says that they are true.
+        Certificates name them; they are not checked here.
         """
         digests = self.file.about("digests")
         return {name: bytes.fromhex(digests[name]).hex() for name in ("network", "kitchen", "prices")}
@@ -133,7 +133,7 @@ class Store:
 
     @reporting_damage
     def kitchen_items(self) -> tuple[ListedObject, ...]:
-        """Read the entries of the kitchen file: all of them, which only a whole network needs."""
+        """Read all entries of the kitchen file."""
         rows = self._database.execute("SELECT entry FROM kitchen_item ORDER BY number")
         return tuple(entry_of(entry) for (entry,) in rows)
 
@@ -143,8 +143,8 @@ class Store:
     def unit_prices(self, network: Network, from_file: bool) -> dict[FunctionalUnit, Fraction]:
         """Read the prices of single units of a part of the network, or of all of it.
 
-        They are those that the networks had which were imported, and with ``from_file`` those of the file
-        that was imported beside them, which count before the others.
+        These are the prices stated in the imported networks and, with ``from_file``, those of the imported
+        file of prices, which take precedence.
         """
         if not self.has_unit_prices:
             return {}
@@ -161,39 +161,43 @@ class Store:
     def unpriced(
         self, motions: Container[str], units: Iterable[FunctionalUnit], from_file: bool
     ) -> list[Unpriced]:
-        """Return the units that have no price, but for those with some motions, and for some others.
+        """Count the units without a price by motion, except those with the given motions and the given units.
 
-        ``from_file`` is as for :meth:`unit_prices`. All units are looked at where a motion has no price.
+        ``from_file`` is as for :meth:`unit_prices`. All units with other motions are read.
         """
-        lacking = [number for number, (name, _) in self._motions.items() if name not in motions]
-        if not lacking:
+        unpriced_motions = [number for number, (name, _) in self._motions.items() if name not in motions]
+        if not unpriced_motions:
             return []
-        known = {unit_id for unit in units if (unit_id := self.unit_id(unit)) is not None}
+        priced = {unit_id for unit in units if (unit_id := self.unit_id(unit)) is not None}
         rows = self.file.rows(
             f"SELECT motion, unit.id FROM unit LEFT JOIN price ON unit = unit.id "
             f"WHERE {_price(from_file)} IS NULL AND motion IN ids ORDER BY unit.id",
-            lacking,
+            unpriced_motions,
         )
-        found: dict[int, list[int]] = {}
+        units_by_motion: dict[int, list[int]] = {}
         for motion, unit in rows:
-            if unit not in known:
-                found.setdefault(motion, []).append(unit)
+            if unit not in priced:
+                units_by_motion.setdefault(motion, []).append(unit)
         return [
             Unpriced(
-                self._motions[motion][0], len(of_motion), self.sources_of(of_motion[:1])[of_motion[0]][0]
+                self._motions[motion][0],
+                len(motion_units),
+                self.sources_of(motion_units[:1])[motion_units[0]][0],
             )
-            for motion, of_motion in found.items()
+            for motion, motion_units in units_by_motion.items()
         ]
 
     # Object nodes, by id and by name.
 
     @reporting_damage
     def read_nodes(self, ids: Iterable[int]) -> None:
-        """Read some nodes together, which is quicker than one by one."""
-        known = self._node_rows
-        wanted = [o for o in ids if o not in known]
-        if wanted:
-            known.update((row[0], row) for row in self.file.rows(f"{_NODE} WHERE node.id IN ids", wanted))
+        """Read nodes in one query, which is faster than one by one."""
+        node_rows = self._node_rows
+        missing = [o for o in ids if o not in node_rows]
+        if missing:
+            node_rows.update(
+                (row[0], row) for row in self.file.rows(f"{_NODE} WHERE node.id IN ids", missing)
+            )
 
     @reporting_damage
     def _node_row(self, object_id: int) -> _NodeRow:
@@ -202,19 +206,19 @@ class Store:
         return self._node_rows[object_id]
 
     def node(self, object_id: int) -> ObjectNode:
-        """Return the node with that id."""
+        """Return the node with an id."""
         return self._nodes.get(object_id) or self.nodes((object_id,))[0]
 
     @reporting_damage
     def nodes(self, ids: Collection[int]) -> list[ObjectNode]:
-        """Return some nodes by id, in order."""
+        """Return the nodes with these ids, in order."""
         self.read_nodes(ids)
-        known = self._nodes
+        nodes = self._nodes
         for o in ids:
-            if o not in known:
+            if o not in nodes:
                 _, label, states, relations, contents, _, _ = self._node_rows[o]
-                known[o] = node_of(decoded_label(label), states, relations, contents)
-        return [known[o] for o in ids]
+                nodes[o] = node_of(decoded_label(label), states, relations, contents)
+        return [nodes[o] for o in ids]
 
     def in_kitchen(self, object_id: int) -> bool:
         """Whether the node is in the kitchen that was imported."""
@@ -232,12 +236,14 @@ class Store:
 
     @reporting_damage
     def find(self, pattern: NodePattern) -> list[int]:
-        """Return the ids of the nodes that a kitchen or goals entry stands for."""
-        where, columns = "states = ?", [listed(sorted(pattern.states))]
+        """Return the ids of the nodes that match a kitchen or goals entry."""
+        condition, columns = "states = ?", [listed(sorted(pattern.states))]
         if pattern.container is None and not pattern.relations:
-            where += " AND relations = '[]'"
-        found = [*self._named(pattern.label, where, *columns)]
-        return [o for o, node in zip(found, self.nodes(found), strict=True) if pattern.matches(node)]
+            condition += " AND relations = '[]'"
+        candidates = [*self._named(pattern.label, condition, *columns)]
+        return [
+            o for o, node in zip(candidates, self.nodes(candidates), strict=True) if pattern.matches(node)
+        ]
 
     def _named(self, label: str, where: str = "1", *columns: str) -> Iterator[int]:
         """Yield the ids of the nodes with a label, in order."""
@@ -249,21 +255,21 @@ class Store:
     @reporting_damage
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
         """Return how many nodes have a label, and the ids of the first :data:`LISTED`."""
-        found = [*self._named(label)]
-        return len(found), found[:LISTED]
+        ids = [*self._named(label)]
+        return len(ids), ids[:LISTED]
 
     @reporting_damage
-    def beginning(self, start: str, most: int) -> list[str]:
-        """Return at most ``most`` labels that begin with ``start``, in alphabetical order."""
-        return self._known(labels_beginning(self._database, start, most))
+    def beginning(self, start: str, max_labels: int) -> list[str]:
+        """Return at most ``max_labels`` labels that begin with ``start``, in alphabetical order."""
+        return self._checked_labels(labels_beginning(self._database, start, max_labels))
 
     @reporting_damage
-    def near(self, label: str, most: int) -> list[str]:
-        """Return at most ``most`` labels that are similar to one, the most similar first."""
-        return self._known(similar_labels(self._database, label, most))
+    def near(self, label: str, max_labels: int) -> list[str]:
+        """Return at most ``max_labels`` labels that are similar to one, the most similar first."""
+        return self._checked_labels(similar_labels(self._database, label, max_labels))
 
-    def _known(self, labels: list[str]) -> list[str]:
-        """Return labels that object nodes have to have."""
+    def _checked_labels(self, labels: list[str]) -> list[str]:
+        """Return labels as they are; raises :class:`LookupError` unless an object node has each."""
         for label in labels:
             if next(self._named(label), None) is None:
                 raise LookupError(f"no object node has the label {label!r}")
@@ -271,7 +277,7 @@ class Store:
 
     @reporting_damage
     def nodes_where(self, condition: str, *values: object) -> frozenset[int]:
-        """Return the ids of the nodes of which a condition on the columns of the table ``node`` holds."""
+        """Return the ids of the nodes that meet a condition on the columns of the table ``node``."""
         return frozenset(
             o for (o,) in self._database.execute(f"SELECT id FROM node WHERE {condition}", values)
         )
@@ -287,13 +293,13 @@ class Store:
 
     @reporting_damage
     def motion_sources(self) -> list[tuple[str, Source]]:
-        """Read every motion, with the place of the first unit that has it."""
+        """Read every motion, with the first source of the first unit that has it."""
         sources = self.sources_of([unit for _, unit in self._motions.values()])
         return [(motion, sources[unit][0]) for motion, unit in self._motions.values()]
 
     @reporting_damage
     def sources_of(self, units: Iterable[int]) -> dict[int, tuple[Source, ...]]:
-        """Read the places of some units, those of all copies of each."""
+        """Read the sources of some units, one for each copy."""
         rows = self.file.rows(f"{_SOURCE} WHERE unit IN ids ORDER BY unit, copy", units).fetchall()
         new = {origin for _, origin, _, _ in rows if origin not in self._origins}
         self._keep_origins(self.file.rows(f"{_ORIGIN} WHERE origin.id IN ids", new) if new else ())
@@ -308,15 +314,15 @@ class Store:
             file, videos = self._origins[origin]
             return Source(file, int(line), int(column), videos)
 
-        of_unit = groupby(rows, lambda row: row[0])
-        return {unit: tuple(source(*row) for row in copies) for unit, copies in of_unit}
+        copies_by_unit = groupby(rows, lambda row: row[0])
+        return {unit: tuple(source(*row) for row in copies) for unit, copies in copies_by_unit}
 
     @reporting_damage
     def read_units(self, ids: Iterable[int]) -> None:
-        """Read some units together, which is quicker than one by one."""
-        wanted = [unit for unit in ids if unit not in self._units]
-        if wanted:
-            for unit, motion, inputs, outputs in self.file.rows(f"{_UNIT} WHERE id IN ids", wanted):
+        """Read units in one query, which is faster than one by one."""
+        missing = [unit for unit in ids if unit not in self._units]
+        if missing:
+            for unit, motion, inputs, outputs in self.file.rows(f"{_UNIT} WHERE id IN ids", missing):
                 self._units[unit] = motion, ids_of(inputs), ids_of(outputs)
 
     @reporting_damage
@@ -327,14 +333,14 @@ class Store:
 
     @reporting_damage
     def unit_parts(self, unit: int) -> tuple[str, tuple[int, ...], tuple[int, ...], tuple[Source, ...]]:
-        """Return the motion, the inputs, the outputs and the places of a unit."""
+        """Return the motion, the inputs, the outputs and the sources of a unit."""
         motion, inputs, outputs = self._unit(unit)
         return self._motions[motion][0], inputs, outputs, self.sources_of((unit,))[unit]
 
     @reporting_damage
     def unit_id(self, unit: FunctionalUnit) -> int | None:
         """Return the id of a unit, or ``None`` when the network does not have it."""
-        inputs, outputs = ([self.object_id(node) for node in side] for side in (unit.inputs, unit.outputs))
+        inputs, outputs = ([self.object_id(node) for node in nodes] for nodes in (unit.inputs, unit.outputs))
         if None in inputs or None in outputs:
             return None
         if outputs:
@@ -354,53 +360,53 @@ class Store:
 
     @reporting_damage
     def producers_of(self, objects: Sequence[int]) -> list[list[int]]:
-        """Return for each of some nodes the units that have it as an output, in order."""
+        """Return for each of the nodes the units that have it as an output, in order."""
         rows = self.file.rows(
             "SELECT node, id, motion, inputs, outputs FROM producer JOIN unit ON id = unit WHERE node IN ids "
             "ORDER BY node, id",
             objects,
         )
-        found: dict[int, list[int]] = {o: [] for o in objects}
+        producers: dict[int, list[int]] = {o: [] for o in objects}
         for o, unit, motion, inputs, outputs in rows:
-            found[o].append(unit)
+            producers[o].append(unit)
             if unit not in self._units:
                 self._units[unit] = motion, ids_of(inputs), ids_of(outputs)
-        return [found[o] for o in objects]
+        return [producers[o] for o in objects]
 
     @reporting_damage
     def needs(
         self, units: Sequence[int], containers: ContainerRule, utensils: frozenset[str]
     ) -> list[list[int]]:
-        """Return what each of some units needs under a container rule; ``utensils`` are what it looks at."""
+        """Return for each of the units the nodes that it needs under a container rule and its utensils."""
         self.read_units(units)
         inputs = [self._unit(unit)[1] for unit in units]
         self.read_nodes(set(chain.from_iterable(inputs)))
         if containers is ContainerRule.STRICT:
             return [*map(list, inputs)]
-        found = []
-        for side in inputs:
-            nodes = tuple(self.nodes(side))
+        needs = []
+        for unit_inputs in inputs:
+            nodes = tuple(self.nodes(unit_inputs))
             needed = set(needed_inputs(FunctionalUnit("", nodes, ()), containers, utensils))
-            found.append([o for o, node in zip(side, nodes, strict=True) if node in needed])
-        return found
+            needs.append([o for o, node in zip(unit_inputs, nodes, strict=True) if node in needed])
+        return needs
 
     def cone(
         self,
         goals: Iterable[int],
         containers: ContainerRule,
         utensils: frozenset[str],
-        at_hand: Container[int],
-        most: int | None = None,
+        available: Container[int],
+        max_units: int | None = None,
     ) -> Cone:
-        """Find the units that goals can need: backwards through all producers, stopping at what is at hand.
+        """Read the cone of goals: backwards through all producers, stopping at ``available`` nodes.
 
-        ``utensils`` are what the container rule looks at. Whatever tree for these goals is best in the whole
-        network, without a unit to spare, is one of them. Producers are units with a node among their
-        outputs, whether or not the rule has them make it: there may be more than need be. With ``most``,
-        about as many are found at first.
+        ``utensils`` are those of the container rule. Every irredundant optimal tree for these goals consists
+        of units of the cone. Producers are units with a node among their outputs, whether or not they make it
+        under the rule, so the cone may hold more units than needed. With ``max_units``, reading stops after
+        about as many units.
         """
-        cone = Cone(goals, self, containers, utensils, at_hand)
-        cone.grow(sorted(cone.open), most)
+        cone = Cone(goals, self, containers, utensils, available)
+        cone.grow(sorted(cone.open), max_units)
         return cone
 
     # Networks.
@@ -408,20 +414,22 @@ class Store:
     @reporting_damage
     @uncollected()
     def part(self, units: Iterable[int], objects: Iterable[int] = ()) -> Network:
-        """Read some units, the nodes in them, and further nodes, as a part of the whole network."""
+        """Read units with their nodes, and the given further nodes, as a part of the whole network."""
         unit_ids = sorted(set(units))
         self.read_units(unit_ids)
-        parts = [self._unit(unit) for unit in unit_ids]
-        object_ids = sorted({*objects, *(o for _, *sides in parts for side in sides for o in side)})
-        new_ids = {o: place for place, o in enumerate(object_ids)}
+        rows = [self._unit(unit) for unit in unit_ids]
+        object_ids = sorted(
+            {*objects, *(o for _, *inputs_outputs in rows for nodes in inputs_outputs for o in nodes)}
+        )
+        new_ids = {o: new_id for new_id, o in enumerate(object_ids)}
         sources = self.sources_of(unit_ids)
-        network = self._network(parts, [sources[unit] for unit in unit_ids], self.nodes(object_ids), new_ids)
+        network = self._network(rows, [sources[unit] for unit in unit_ids], self.nodes(object_ids), new_ids)
         return replace(network, unit_numbers=tuple(unit_ids), object_numbers=tuple(object_ids))
 
     @reporting_damage
     @uncollected()
     def whole(self) -> tuple[Network, frozenset[int]]:
-        """Read the whole network, and which nodes are in the kitchen; the file has to have its digest."""
+        """Return the whole network and the ids of the kitchen nodes; checks the digest of the file first."""
         self.file.check_digest()
         labels = dict(self._database.execute("SELECT id, name FROM label"))
         labels = {number: decoded_label(name) for number, name in labels.items()}
@@ -445,7 +453,7 @@ class Store:
         objects: Sequence[ObjectNode],
         ids: Mapping[int, int] | range,
     ) -> Network:
-        """Put a network together; ``ids`` are the new ids of the nodes by the old ones."""
+        """Build a network; ``ids`` are the new ids of the nodes by their ids in the store."""
         motions: list[str] = []
         inputs: list[tuple[int, ...]] = []
         outputs: list[tuple[int, ...]] = []
@@ -455,10 +463,10 @@ class Store:
             inputs.append(tuple([ids[o] for o in ins]))
             outputs.append(tuple([ids[o] for o in outs]))
             unit_ids[motions[-1], frozenset(inputs[-1]), frozenset(outputs[-1])] = len(unit_ids)
-        object_ids = {node: place for place, node in enumerate(objects)}
+        object_ids = {node: new_id for new_id, node in enumerate(objects)}
         if (len(object_ids), len(unit_ids), len(sources)) != (len(objects), len(units), len(units)):
             raise ValueError("an object node or a unit is there twice")
-        if any(len(set(side)) != len(side) for side in (*inputs, *outputs)):
+        if any(len(set(nodes)) != len(nodes) for nodes in (*inputs, *outputs)):
             raise ValueError("a unit has an object node twice")
         return Network(
             tuple(objects),
@@ -482,5 +490,5 @@ class Store:
 
 
 def _price(from_file: bool) -> str:
-    """Return the column of a unit's price: its own, or where those of the file count, the file's if any."""
+    """Return the SQL expression of a unit's price: stated, or ``from_file`` the listed one before it."""
     return "coalesce(listed, stated)" if from_file else "stated"

@@ -1,4 +1,4 @@
-"""The file of a store: what is a store, and is it whole."""
+"""The file of a store, checked for its format and for damage."""
 
 import functools
 import json
@@ -17,7 +17,7 @@ from foon_asp.text.plain_file import STORE_MAGIC, read_beginning
 
 _HEADER = 100  # bytes; https://www.sqlite.org/fileformat2.html says what is where
 
-# What values of other types, lengths and ids than a store has end in.
+# Raised for values whose type, length or id is not that of a store.
 _DAMAGE = (
     sqlite3.Error,
     ValueError,
@@ -29,11 +29,11 @@ _DAMAGE = (
     RecursionError,
 )
 
-Words = ParamSpec("Words")
+Parameters = ParamSpec("Parameters")
 Value = TypeVar("Value")
 
 
-def is_database_of_ours(file: Path) -> bool:
+def is_store_database(file: Path) -> bool:
     """Whether a file begins like a store of any version, whole or not."""
     header = read_beginning(file, _HEADER)
     return header[: len(STORE_MAGIC)] == STORE_MAGIC and int.from_bytes(header[68:72]) == APPLICATION_ID
@@ -66,33 +66,33 @@ class StoreFile:
         self._closing()
 
     def rows(self, statement: str, ids: Iterable[int]) -> sqlite3.Cursor:
-        """Run a statement that names some ids as ``IN ids``."""
+        """Run a statement in which ``IN ids`` stands for these ids."""
         listed = "IN (SELECT value FROM json_each(?))"
         return self.database.execute(statement.replace("IN ids", listed), (json.dumps([*ids]),))
 
     def about(self, name: str) -> Any:
-        """Return what the store says of itself under a name."""
+        """Return the value of a name in the table ``about``."""
         row = self.database.execute("SELECT value FROM about WHERE name = ?", (name,)).fetchone()
         return decoded(row[0])
 
     def check_digest(self) -> None:
-        """Refuse a file that is not what the import wrote; all of it is read."""
+        """Raise :class:`UserError` if the file was changed after its import; all of it is read."""
         if not has_true_digest(self.file):
-            (found,) = self.database.execute("PRAGMA quick_check(1)").fetchone()
-            self.damaged("it was changed after the import" if found == "ok" else " ".join(found.split()))
+            (message,) = self.database.execute("PRAGMA quick_check(1)").fetchone()
+            self.damaged("it was changed after the import" if message == "ok" else " ".join(message.split()))
 
     def failed(self, error: BaseException) -> NoReturn:
-        """Return why nothing can be read."""
+        """Raise :class:`UserError` for an error while reading: the store was closed or is damaged."""
         if not self._closing.alive:
             raise UserError(f"{self.file}: the store was closed; open it again to read from it") from None
         self.damaged(str(error) or type(error).__name__)
 
     def damaged(self, what: str) -> NoReturn:
-        """Say that the store is of no use."""
+        """Raise :class:`UserError` for a damaged store; ``what`` is the damage."""
         raise UserError(f"{self.file}: the store is damaged ({what}); import its source files again")
 
     def _check_header(self) -> None:
-        """Refuse what is no store of ours, before SQLite looks at it."""
+        """Raise :class:`UserError` for a file that is no store of this version, before SQLite reads it."""
         file = self.file
         if file.exists() and not file.is_file():  # a pipe would be waited for
             raise UserError(f"{file}: not a file, expected a store")
@@ -125,25 +125,25 @@ class StoreFile:
 
 
 class _Reading(Protocol):
-    """What reads from a store."""
+    """A class that reads from a store."""
 
     @property
     def file(self) -> StoreFile:
-        """The file."""
+        """The file of the store."""
 
 
 Reader = TypeVar("Reader", bound=_Reading)
 
 
 def reporting_damage(
-    read: Callable[Concatenate[Reader, Words], Value],
-) -> Callable[Concatenate[Reader, Words], Value]:
-    """Make a method raise :class:`UserError` where what it reads is not what a store holds."""
+    read: Callable[Concatenate[Reader, Parameters], Value],
+) -> Callable[Concatenate[Reader, Parameters], Value]:
+    """Decorate a method to raise :class:`UserError` where the values that it reads are damaged."""
 
     @functools.wraps(read)
-    def guarded(reader: Reader, *words: Words.args, **named: Words.kwargs) -> Value:
+    def guarded(reader: Reader, *positional: Parameters.args, **named: Parameters.kwargs) -> Value:
         try:
-            return read(reader, *words, **named)
+            return read(reader, *positional, **named)
         except UserError:
             raise
         except _DAMAGE as error:

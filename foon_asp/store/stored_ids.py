@@ -1,4 +1,4 @@
-"""Sets of object nodes that a store has, without reading them all."""
+"""Sets of object nodes of a store, read element by element."""
 
 from collections.abc import Callable, Collection, Iterator
 

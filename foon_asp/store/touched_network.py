@@ -1,4 +1,4 @@
-"""The whole network of a store, of which no more is read than is looked at."""
+"""The whole network of a store, read lazily."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -11,8 +11,8 @@ from foon_asp.store.store import Store
 Value = TypeVar("Value")
 
 
-class _Each(Sequence[Value]):
-    """What each id has, which is read when it is asked for."""
+class _LazySequence(Sequence[Value]):
+    """A sequence by id whose values are read on access."""
 
     def __init__(self, size: int, read: Callable[[int], Value]) -> None:
         self._ids, self._read = range(size), read
@@ -21,39 +21,39 @@ class _Each(Sequence[Value]):
         return len(self._ids)
 
     @overload
-    def __getitem__(self, place: int) -> Value: ...
+    def __getitem__(self, index: int) -> Value: ...
     @overload
-    def __getitem__(self, place: slice) -> Sequence[Value]: ...
-    def __getitem__(self, place: int | slice) -> Value | Sequence[Value]:
-        if isinstance(place, slice):
-            return [self._read(number) for number in self._ids[place]]
-        return self._read(self._ids[place])
+    def __getitem__(self, index: slice) -> Sequence[Value]: ...
+    def __getitem__(self, index: int | slice) -> Value | Sequence[Value]:
+        if isinstance(index, slice):
+            return [self._read(number) for number in self._ids[index]]
+        return self._read(self._ids[index])
 
 
-def _each(size: int, read: Callable[[int], Value]) -> Any:  # in place of a tuple
-    return _Each(size, read)
+def _lazy(size: int, read: Callable[[int], Value]) -> Any:  # stands for a tuple
+    return _LazySequence(size, read)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TouchedNetwork(Network):
-    """The whole network of a store; looked at one by one, units and nodes are read one by one."""
+    """The whole network of a store, whose units and nodes are read on access, one by one."""
 
     store: Store = field(kw_only=True)
 
     @classmethod
     def of(cls, store: Store) -> Self:
         """Return the network of a store."""
-        nodes = _each(store.objects, store.node)
+        nodes = _lazy(store.objects, store.node)
         motions, inputs, outputs, sources = [
-            _each(store.units, lambda unit, part=part: store.unit_parts(unit)[part])  # type: ignore[misc]
-            for part in range(4)
+            _lazy(store.units, lambda unit, position=position: store.unit_parts(unit)[position])  # type: ignore[misc]
+            for position in range(4)
         ]
         return cls(nodes, motions, inputs, outputs, sources, {}, {}, store=store)
 
     @cached_property
     def producers(self) -> Any:
         """For each object node, the units that have it as an output, in order."""
-        return _each(self.store.objects, self.store.producers)
+        return _lazy(self.store.objects, self.store.producers)
 
     @cached_property
     def different_motions(self) -> frozenset[str]:

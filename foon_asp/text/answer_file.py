@@ -12,18 +12,18 @@ from foon_asp.text.json_value import Json, read_json, schema_name
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reader import FoonReader
 
-_WITH_TREE = ("answer", "search")  # kinds of documents
+_KINDS_WITH_TREE = ("answer", "search")  # kinds of documents
 _ATOM = r"[a-z]\w*(?:\([^()]*\))?\.?"
 _ATOMS = re.compile(rf"(?:^[ \t]*{_ATOM}(?:[ \t]+{_ATOM})*[ \t]*(?:\r?\n|\Z))+", re.MULTILINE | re.ASCII)
 _USE = re.compile(r"\buse\((\d+)\)", re.ASCII)
-_SAYS_TREE = "# Task tree for:"  # in the comments that FOON text begins with
+_TREE_COMMENT = "# Task tree for:"  # in the comments that FOON text begins with
 
 
 class ListedTree(NamedTuple):
-    """A tree as a file lists it: units with their places in the order listed, ``None`` for an answer without.
+    """A tree as a file lists it: units with their sources in order, ``None`` for an answer without a tree.
 
     ``goals``, ``status``, and the words for ``containers`` and ``items`` are those of an answer, empty for
-    files that do not know them. ``numbers`` are the ids of the atoms ``use(U)`` of clingo, in place of units.
+    other files. ``numbers`` are the ids of the atoms ``use(U)`` of clingo, in place of units.
     ``is_tree`` is false for FOON that does not say that it is a task tree, and may be a network.
     """
 
@@ -55,41 +55,41 @@ class ListedTree(NamedTuple):
 
 
 def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
-    """Read a tree; what ``reader`` has to say of FOON text is in its diagnostics.
+    """Read a tree; the diagnostics of FOON text are added to those of ``reader``.
 
-    Of what clingo printed, the last answer counts, which is the best.
+    Of clingo's output, the last answer counts, which is the best.
 
-    Raises :class:`UserError` for a document that has no place for a tree, is of another version, or is not of
+    Raises :class:`UserError` for a document that cannot have a tree, is of another version, or is not of
     the form of ``docs/json.md``.
     """
     if not file.exists():
         raise UserError(f"{file}: no such file")
-    text = read_plain_text(file)  # once: a pipe can be read no more than that
-    found = _document(text)
-    if numbers := _used(text):
+    text = read_plain_text(file)  # a pipe can be read only once
+    document = _document(text)
+    if numbers := _used_ids(text):
         return ListedTree((), numbers=numbers)
-    if found is None:
-        is_tree = _SAYS_TREE in text.partition("//")[0]
+    if document is None:
+        is_tree = _TREE_COMMENT in text.partition("//")[0]
         return ListedTree(tuple(reader.tree_units(text, str(file))), is_tree=is_tree)
     try:
-        answer = _with_tree(found)
+        answer = _with_tree(document)
         units = None if answer["units"] is None else tuple(map(_unit, answer["units"]))
         goals = tuple(map(read_node_json, answer["goals"]))
         status, containers, items = (str(answer.get(key, "")) for key in ("status", "containers", "items"))
         return ListedTree(units, goals, status, containers, items)
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
-        what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
-        raise UserError(f"{file}: expected an answer of foon-asp in JSON, but {what}") from None
+        fault = f"{error} is missing" if isinstance(error, KeyError) else str(error)
+        raise UserError(f"{file}: expected an answer of foon-asp in JSON, but {fault}") from None
 
 
-def _used(text: str) -> tuple[int, ...]:
-    """Return the ids in the last lines of atoms with ``use(U)``; none for anything but clingo's answers."""
+def _used_ids(text: str) -> tuple[int, ...]:
+    """Return the ids in the last lines of atoms with ``use(U)``; empty for texts not from clingo."""
     answers = [tuple(map(int, _USE.findall(block))) for block in _ATOMS.findall(text)]
     return next((numbers for numbers in reversed(answers) if numbers), ())
 
 
 def _document(text: str) -> Json | None:
-    """Return a document of ours, of whatever version; ``None`` for anything else."""
+    """Return a JSON document of foon-asp, of any version; ``None`` for any other text."""
     if not text.lstrip().startswith("{"):
         return None
     try:
@@ -99,22 +99,24 @@ def _document(text: str) -> Json | None:
     return value if isinstance(value, dict) and ("schema" in value or "units" in value) else None
 
 
-def _with_tree(found: Json) -> Json:
-    """Return the document with the tree: what other questions found has an answer within."""
-    within = found.get("answer")
-    answer, kind = within if isinstance(within, dict) else found, ""
-    for name in (found.get("schema"), answer.get("schema")):
+def _with_tree(document: Json) -> Json:
+    """Return the answer with the tree: the document itself, or the answer in that of another question."""
+    inner_answer = document.get("answer")
+    answer, kind = inner_answer if isinstance(inner_answer, dict) else document, ""
+    for name in (document.get("schema"), answer.get("schema")):
         kind = str(name).removeprefix("foon-asp/").rpartition("/")[0]
         if name != schema_name(kind):
             raise ValueError(f"found the schema {name!r}, expected {schema_name('answer')!r}")
-    if kind not in _WITH_TREE:
+    if kind not in _KINDS_WITH_TREE:
         raise ValueError(f"{schema_name(kind)!r} has no tree, or more than one")
     return answer
 
 
 def _unit(value: Json) -> tuple[FunctionalUnit, Source]:
     inputs, outputs = (tuple(map(read_node_json, value[key])) for key in ("inputs", "outputs"))
-    place = value["source"][0]
-    if not isinstance(value["motion"], str) or not isinstance(place, dict):
+    source = value["source"][0]
+    if not isinstance(value["motion"], str) or not isinstance(source, dict):
         raise TypeError("a unit is not written as one")
-    return FunctionalUnit.of(value["motion"], inputs, outputs), Source(str(place["file"]), int(place["line"]))
+    return FunctionalUnit.of(value["motion"], inputs, outputs), Source(
+        str(source["file"]), int(source["line"])
+    )

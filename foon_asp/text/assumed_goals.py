@@ -1,4 +1,4 @@
-"""The goals of networks that come without a list of goals: marked with ``!``, or what the last unit makes."""
+"""Assumed goals of networks without a list of goals: nodes marked with ``!``, or outputs of last units."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -9,26 +9,26 @@ MARKED, LAST = "marked", "last"
 
 
 def wanted_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterable[int]) -> list[int]:
-    """Return what the last unit of a file is for, of the ids on its sides: the outputs that no unit needs.
+    """Return the outputs that the last unit of a file is for, by id: those that no unit needs.
 
-    ``needed`` are those of the outputs that some unit has among its inputs. Where these are all, it is what
-    the unit was not given itself, and all of it where there is nothing else.
+    ``needed`` are the outputs that some unit has as inputs. If all are needed, the outputs that are no inputs
+    of the unit itself are returned, and if there are none, all outputs.
     """
     needed = set(needed)
     return [o for o in outputs if o not in needed] or [o for o in outputs if o not in inputs] or [*outputs]
 
 
 def as_entry(node: ObjectNode, source: Source) -> ListedObject:
-    """Return a node as an entry of a goals file would name it; ``source`` is where it was read."""
+    """Return a node as an entry of a goals file; ``source`` is where it was read."""
     return ListedObject(NodePattern.of(node), source._replace(videos=()))
 
 
 def last_goals(network: Network, last_units: Mapping[int, Source]) -> list[ListedObject]:
-    """Return what the last units, by id with their places, are for: as entries of a goals file."""
+    """Return the goals of the last units, by id with their sources, as entries of a goals file."""
     outputs = {o for unit in last_units for o in network.outputs[unit]}
     needed = {o for inputs in network.inputs for o in inputs if o in outputs}
-    found: dict[int, Source] = {}
-    for unit, place in last_units.items():
+    goal_sources: dict[int, Source] = {}
+    for unit, source in last_units.items():
         for o in wanted_outputs(network.inputs[unit], network.outputs[unit], needed):
-            found.setdefault(o, place)
-    return [as_entry(network.objects[o], source) for o, source in found.items()]
+            goal_sources.setdefault(o, source)
+    return [as_entry(network.objects[o], source) for o, source in goal_sources.items()]

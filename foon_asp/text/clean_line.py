@@ -1,6 +1,6 @@
-"""Lines of FOON text that are written as they should be, and labels alone: most are, and need no parser.
+"""Fast reading of well-formed lines of FOON text and of labels, which need no parser.
 
-To import Lark and build the parser takes a third of a cold ``solve``.
+Most lines are well-formed, and importing Lark and building the parser takes a third of a cold ``solve``.
 """
 
 import re
@@ -13,7 +13,7 @@ _MOTION = r"[^ *\t\r\n\[\]{}](?:[^*\t\r\n\[\]{}]*[^ *\t\r\n\[\]{}])?"
 _RELATED = r"[^ ,\[\]{}\t\r\n](?:[^,\[\]{}\t\r\n]*[^ ,\[\]{}\t\r\n])?"
 _OBJECT_LINE = re.compile(rf"O([0-9]*)\t({_NAME})(?:\t([01]))?")
 _MOTION_LINE = re.compile(rf"M([0-9]*)\t({_MOTION})((?:\t(?:[0-9]+:[0-9][0-9]|Assumed))*)")
-# with a blank for the tab before a place, as JSON has it; what contains [something] is a list in disguise
+# JSON has a blank for the tab before a bracket; contains [something] is a list in the wrong brackets
 _STATE_LINE = re.compile(
     rf"S([0-9]*)\t(?!contains[\t ]\[)({_NAME})(?:([\t ])\[({_RELATED})\]|\t\{{([^\[\]{{}}\t\r\n]*)\}})?"
 )
@@ -21,7 +21,7 @@ _LABEL = re.compile(r' *[^ ";\t\r\n\[\]{}][^;\t\r\n\[\]{}]*')
 
 
 def clean_line(text: str) -> Line | None:
-    """Return what a line says that is written as it should be; ``None`` for any other."""
+    """Return the parsed line of a well-formed text; ``None`` for any other text."""
     if match := _STATE_LINE.fullmatch(text):
         return _state(match)
     if match := _OBJECT_LINE.fullmatch(text):
@@ -48,8 +48,8 @@ def _state(match: re.Match[str]) -> StateLine:
         return StateLine(Relation(name, related), id_, remarks=tuple(remarks))
     if listed is None:
         return StateLine(name, id_)
-    found = items(listed, end + 3, remarks)
-    return StateLine(Contents(name, tuple(sorted(found))), id_, found, tuple(remarks))
+    ingredients = items(listed, end + 3, remarks)
+    return StateLine(Contents(name, tuple(sorted(ingredients))), id_, ingredients, tuple(remarks))
 
 
 def no_tab(bracket: str, column: int) -> Remark:
@@ -58,21 +58,21 @@ def no_tab(bracket: str, column: int) -> Remark:
 
 
 def items(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
-    """Split what is in brackets at its commas; ``column`` is that of its first letter.
+    """Split the text in brackets at its commas; ``column`` is that of its first letter.
 
-    What is dropped or doubtful is remarked on, once for each kind.
+    Dropped and doubtful items are remarked on, once for each kind of remark.
     """
     split = listed.split(",")
     if len(set(split)) == len(split) and all(item and item[0] != " " != item[-1] for item in split):
         return tuple(split)
-    found: list[str] = []
+    kept: list[str] = []
     seen: set[str] = set()
-    said: set[str] = set()
+    remarked: set[str] = set()
 
     def remark(code: str, message: str) -> None:
-        if code not in said:
+        if code not in remarked:
             remarks.append(Remark(column, code, message))
-            said.add(code)
+            remarked.add(code)
 
     for raw in split:
         item = raw.strip(" ")
@@ -83,7 +83,7 @@ def items(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
                 remark("outer-space", f"spaces around {item!r} left out")
             if item in seen:
                 remark("repeated-ingredient", f"ingredient {item!r} is listed twice")
-            found.append(item)
+            kept.append(item)
             seen.add(item)
         column += len(raw) + 1
-    return tuple(found)
+    return tuple(kept)

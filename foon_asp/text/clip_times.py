@@ -1,4 +1,4 @@
-"""How long the clips of annotated videos are, by motion."""
+"""Durations of the clips of annotated videos, by motion."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -15,19 +15,18 @@ _CLOCK = re.compile(r"\d+:\d\d(?::\d\d)?", re.ASCII)
 def median_clips(files: Iterable[Path], lenient: bool = False) -> dict[str, Fraction]:
     """Return the median of the clip times of each motion that has any, in seconds.
 
-    Units without two times, such as those that are assumed, and clips that do not end after they begin are
-    passed over, and with ``lenient`` so are lines that are not understood. Raises :class:`InputError` for
-    those otherwise.
+    Units without two times, such as assumed ones, and clips that do not end after they begin are skipped.
+    Lines that are not understood are skipped if ``lenient``, else :class:`InputError` is raised.
     """
     clips: dict[str, list[Fraction]] = {}
     for file in files:
         reader = FoonReader(lenient)
         for unit in reader.listed_units(reader.text(file), str(file)):
-            seconds = sum(_clips(MotionFields.of(unit.motion.fields).times))
-            if seconds:
-                clips.setdefault(unit.motion.motion, []).append(Fraction(seconds))
+            total = sum(_clips(MotionFields.of(unit.motion.fields).times))
+            if total:
+                clips.setdefault(unit.motion.motion, []).append(Fraction(total))
         reader.raise_errors()
-    return {motion: median(found) for motion, found in clips.items()}
+    return {motion: median(seconds) for motion, seconds in clips.items()}
 
 
 def _clips(times: tuple[str, ...]) -> Iterator[int]:
@@ -40,6 +39,6 @@ def _clips(times: tuple[str, ...]) -> Iterator[int]:
 
 def _seconds(clock: str) -> int:
     seconds = 0
-    for part in clock.split(":"):
-        seconds = 60 * seconds + int(part)
+    for number in clock.split(":"):
+        seconds = 60 * seconds + int(number)
     return seconds

@@ -1,4 +1,4 @@
-"""Taking FOON files from one dialect to another, and keeping count of what is lost on the way."""
+"""Conversion of FOON files from one dialect to another, with counts of losses."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ from foon_asp.text.conversion_ids import Numbering
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.foon_text import FoonText, rewritten
-from foon_asp.text.format import Dialect, Format, Part
+from foon_asp.text.format import Dialect, Format, WrittenPart
 from foon_asp.text.formats import format_of, format_with
 from foon_asp.text.json_writer import with_container
 from foon_asp.text.line import Line, MotionLine
@@ -20,14 +20,14 @@ from foon_asp.text.writer import write_line
 
 
 class Lost(NamedTuple):
-    """How often something of one kind could not be kept, and where first."""
+    """The number of losses of one kind, and the place of the first."""
 
     occurrences: int
     first: Source
 
 
 class Converted(NamedTuple):
-    """A text in another dialect, the dialect it was in, and what of it was lost."""
+    """A text in another dialect, the dialect it was in, and what was lost."""
 
     text: str
     dialect: Dialect
@@ -37,8 +37,8 @@ class Converted(NamedTuple):
 class Converter:
     """Converts any number of files to one dialect, with the same ids for the same names in all of them.
 
-    With ``lenient``, what cannot be understood or held is left out with a warning, or stays as it is where
-    lines are turned into lines. Warnings are in ``diagnostics``.
+    With ``lenient``, parts that cannot be understood or held are left out with a warning, or stay as they are
+    if text is converted to text. Warnings are in ``diagnostics``.
     """
 
     def __init__(self, target: Dialect, lenient: bool = False) -> None:
@@ -47,16 +47,16 @@ class Converter:
         self._reading = Reading(lenient)
         self._numbering = Numbering()
         self._writer = format_with(target).writer(target, self._numbering)
-        self._parts: dict[object, Part] = {}
+        self._written: dict[object, WrittenPart] = {}
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """What was remarked on in all files so far."""
+        """The diagnostics of all files so far."""
         return self._reading.diagnostics
 
     @property
     def left_out(self) -> int:
-        """How many lines were left out."""
+        """The number of lines left out."""
         return self._reading.left_out
 
     def learn(self, text: str) -> None:
@@ -66,9 +66,9 @@ class Converter:
                 self._numbering.learn(line)
 
     def convert(self, text: str, file: str) -> Converted:
-        """Convert a text; what it says on functional units or listed objects is the same before and after.
+        """Convert a text; its functional units or listed objects stay the same.
 
-        Raises :class:`InputError` with the place of everything that cannot be understood, or whose meaning
+        Raises :class:`InputError` with the places of all parts that cannot be understood, or whose meaning
         the target cannot hold.
         """
         earlier = len(self.diagnostics)
@@ -87,30 +87,30 @@ class Converter:
         return Converted(converted, dialect, lost.found)
 
     def _lines(self, text: str, file: str, writer: TextWriter, lost: "_Tally") -> str:
-        """Rewrite line by line, so that all between the lines stays."""
-        seen: dict[str, list[Loss]] = {}
+        """Rewrite line by line, so that comments and blank lines stay."""
+        losses_by_line: dict[str, list[Loss]] = {}
 
         def rewrite(line: Line, written: str) -> str:
-            held = writer.held(line)
-            seen[written] = lost_in_line(line, held)
-            return write_line(held)
+            target_line = writer.in_dialect(line)
+            losses_by_line[written] = lost_in_line(line, target_line)
+            return write_line(target_line)
 
-        new = rewritten(text, file, self.lenient, rewrite)
+        converted = rewritten(text, file, self.lenient, rewrite)
         for number, line in enumerate(split_lines(text), 1):
-            lost.add(seen.get(line, ()), Source(file, number))
-        return with_own_mark(new)
+            lost.add(losses_by_line.get(line, ()), Source(file, number))
+        return with_own_mark(converted)
 
     def _objects(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
         blocks = [with_container(*entry) for entry in format_.objects(text, file, self._reading)]
         if format_.has_comments:
             lost.comments(text, ())
-        parts: list[str] = []
+        texts: list[str] = []
         for block in blocks:
             try:
-                parts.append(self._part(block, block.source, lost, in_list=True))
+                texts.append(self._element(block, block.source, lost, in_list=True))
             except CannotHoldError as problem:
                 self._cannot_hold(problem, block.source)
-        return self._writer.objects(parts)
+        return self._writer.objects(texts)
 
     def _units(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
         listed = list(format_.listed_units(text, file, self._reading))
@@ -119,14 +119,14 @@ class Converter:
         return self._writer.network([unit for unit in written if unit], videos)
 
     def _unit(self, unit: ListedUnit, lost: "_Tally") -> str:
-        """Write a unit; it is empty where the target cannot hold it, which is noted."""
+        """Write a unit; the text is empty, and an error is recorded, if the target cannot hold it."""
         try:
             if not unit.inputs and not self._writer.holds_no_inputs:
                 raise CannotHoldError(f"the unit {unit.motion.motion!r} has no input objects")
-            motion = self._part(unit.motion, unit.motion_source, lost)
+            motion = self._element(unit.motion, unit.motion_source, lost)
             inputs, outputs = (
-                [self._part(block, block.source, lost) for block in side]
-                for side in (unit.inputs, unit.outputs)
+                [self._element(block, block.source, lost) for block in blocks]
+                for blocks in (unit.inputs, unit.outputs)
             )
         except CannotHoldError as problem:
             self._cannot_hold(problem, unit.motion_source)
@@ -134,25 +134,25 @@ class Converter:
         lost.add([Loss.PRICES] if unit.price and not self._writer.holds_prices else [], unit.motion_source)
         return self._writer.unit(inputs, motion, outputs, unit.price)
 
-    def _part(
-        self, said: ObjectBlock | MotionLine, source: Source, lost: "_Tally", in_list: bool = False
+    def _element(
+        self, element: ObjectBlock | MotionLine, source: Source, lost: "_Tally", in_list: bool = False
     ) -> str:
         """Write an object or a motion, and count what is lost of it; each distinct one is written once."""
-        key = said if isinstance(said, MotionLine) else (said.object, said.states, in_list)
-        part = self._parts.get(key)
-        if part is None:
-            part = self._parts[key] = (
-                self._writer.motion(said)
-                if isinstance(said, MotionLine)
-                else self._writer.block(said, in_list)
+        key = element if isinstance(element, MotionLine) else (element.object, element.states, in_list)
+        written = self._written.get(key)
+        if written is None:
+            written = self._written[key] = (
+                self._writer.motion(element)
+                if isinstance(element, MotionLine)
+                else self._writer.block(element, in_list)
             )
-        lost.add(part[1], source)
-        return part[0]
+        lost.add(written[1], source)
+        return written[0]
 
     def _videos(self, text: str, format_: Format, units: list[ListedUnit], lost: "_Tally") -> tuple[str, ...]:
-        """Return the videos that the result can name, those of the whole file, and count the others."""
-        found = {unit.sources[0].videos for unit in units}
-        common = found.pop() if len(found) == 1 else ()
+        """Return the videos of the whole file that the result can name, and count the others as lost."""
+        video_lists = {unit.sources[0].videos for unit in units}
+        common = video_lists.pop() if len(video_lists) == 1 else ()
         comments = [line for line in split_lines(text) if line[:1] == "#"]
         kept = self._writer.held_videos(common, comments)
         if format_.has_comments:
@@ -166,16 +166,16 @@ class Converter:
 
 
 class _Tally:
-    """Counts what is lost of one file."""
+    """Counts the losses of one file."""
 
     def __init__(self, file: str) -> None:
         self.file = file
         self.found: dict[Loss, Lost] = {}
 
-    def add(self, losses: list[Loss] | tuple[()], place: Source) -> None:
+    def add(self, losses: list[Loss] | tuple[()], source: Source) -> None:
         for loss in losses:
-            count, first = self.found.get(loss, (0, place))
-            self.found[loss] = Lost(count + 1, min(first, place))
+            count, first = self.found.get(loss, (0, source))
+            self.found[loss] = Lost(count + 1, min(first, source))
 
     def comments(self, text: str, kept: tuple[str, ...]) -> None:
         """Count the comments of a text that goes to JSON, but for videos that are kept."""

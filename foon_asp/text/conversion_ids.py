@@ -1,21 +1,21 @@
-"""Numbers for what a file has no ids for."""
+"""Ids for lines that have none."""
 
 from foon_asp.text.line import Line, name_of
 
-_DIGITS = 15  # an id with more is none that one could count on from
+_DIGITS = 15  # longer ids do not count for the highest one
 
 
 class Numbering:
-    """Gives ids to lines without one: objects by label, states by word, motions by label.
+    """A numbering of names, which adds ids to lines: objects by label, states by word, motions by label.
 
-    What has an id somewhere gets the first that was learnt; everything else a new one, higher than all of
-    its kind. So learn all lines before numbering the first.
+    A name with an id in some line keeps the first id learnt; other names get new ids, higher than all of
+    their kind. So all lines have to be learnt before the first is numbered.
     """
 
     def __init__(self) -> None:
         self._ids: dict[tuple[type, str], str] = {}
         self._highest: dict[type, int] = {}
-        self._taken: set[tuple[type, str]] = set()
+        self._used_ids: set[tuple[type, str]] = set()
 
     def learn(self, line: Line) -> None:
         """Record the id of a line, if it has one."""
@@ -23,7 +23,7 @@ class Numbering:
             return
         kind = type(line)
         self._ids.setdefault((kind, name_of(line)), line.id)
-        self._taken.add((kind, line.id))
+        self._used_ids.add((kind, line.id))
         if len(line.id) <= _DIGITS:
             self._highest[kind] = max(self._highest.get(kind, 0), int(line.id))
 
@@ -34,7 +34,7 @@ class Numbering:
         kind, name = type(line), name_of(line)
         if (kind, name) not in self._ids:
             number = self._highest.get(kind, 0) + 1
-            while (kind, str(number)) in self._taken:
+            while (kind, str(number)) in self._used_ids:
                 number += 1
             self._highest[kind] = number
             self._ids[kind, name] = str(number)

@@ -1,4 +1,4 @@
-"""What a conversion cannot keep: a line or object as it was read, against what is read from the result."""
+"""Losses of a conversion: a line or object as it was read, compared with what is read from the result."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from foon_asp.text.motion_times import MotionFields, in_two_fields
 
 
 class Loss(StrEnum):
-    """A kind of thing that some dialect cannot hold, in the words of the message."""
+    """A part of a file that some dialect cannot hold, in the words of the message."""
 
     IDS = "ids"
     MOTION_FLAGS = "motion flags"
@@ -39,7 +39,7 @@ class CannotHoldError(Exception):
 
 
 def lost_in_line(before: Line, after: Line) -> list[Loss]:
-    """Name what one line had that another has not, once for each time.
+    """Return the losses from one line to another, one entry for each occurrence.
 
     Raises :class:`CannotHoldError` when they do not say the same.
     """
@@ -61,10 +61,10 @@ def lost_in_line(before: Line, after: Line) -> list[Loss]:
 
 
 def lost_in_states(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) -> list[Loss]:
-    """Name what the state lines of one object had that those of another have not, once for each time.
+    """Return the losses from the state lines of one object to those of another, an entry for each occurrence.
 
     A relation without a word is a container that matches any. Raises :class:`CannotHoldError` when the two
-    objects differ in what is no known loss.
+    objects differ in other ways than known losses.
     """
     ids = Counter(s.id for s in before if s.id) - Counter(s.id for s in after)
     return [Loss.IDS] * ids.total() + _lost_attributes(before, after)
@@ -92,45 +92,52 @@ def _lost_times(before: MotionFields, after: MotionFields) -> Iterator[Loss]:
 
 
 def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) -> list[Loss]:
-    was, became = [s.attribute for s in before], [s.attribute for s in after]
-    missing, extra = Counter(was) - Counter(became), Counter(became) - Counter(was)
-    kept = Counter(was) - missing
+    old_attributes, new_attributes = [s.attribute for s in before], [s.attribute for s in after]
+    missing, extra = (
+        Counter(old_attributes) - Counter(new_attributes),
+        Counter(new_attributes) - Counter(old_attributes),
+    )
+    kept = Counter(old_attributes) - missing
     lost: list[Loss] = []
-    for said in missing.elements():
-        if isinstance(said, Relation):
-            lost.append(_lost_relation(said, extra))
-        elif isinstance(said, str):
-            if said not in kept:
-                raise CannotHoldError(f"the state {said!r} would be lost")
-        elif not said.ingredients:
+    for attribute in missing.elements():
+        if isinstance(attribute, Relation):
+            lost.append(_lost_relation(attribute, extra))
+        elif isinstance(attribute, str):
+            if attribute not in kept:
+                raise CannotHoldError(f"the state {attribute!r} would be lost")
+        elif not attribute.ingredients:
             lost.append(Loss.NO_CONTENTS)
-        elif said.word != "contains":
+        elif attribute.word != "contains":
             lost.append(Loss.CONTENTS_WORDS)
-    contents = [said for said in was if isinstance(said, Contents) and said.ingredients]
-    if len(contents) > 1 and any(isinstance(said, Contents) for said in missing):
+    contents = [
+        attribute for attribute in old_attributes if isinstance(attribute, Contents) and attribute.ingredients
+    ]
+    if len(contents) > 1 and any(isinstance(attribute, Contents) for attribute in missing):
         lost.append(Loss.CONTENTS_LISTS)
-    if _ingredients(was) != _ingredients(became):
-        raise CannotHoldError(f"{_shown(was)} would be read as {_shown(became)}")
-    left = [said for said in extra.elements() if not isinstance(said, Contents)]
-    if left:
-        raise CannotHoldError(f"{_shown(was)} would be read as {_shown(became)}")
+    if _ingredients(old_attributes) != _ingredients(new_attributes):
+        raise CannotHoldError(f"{_shown(old_attributes)} would be read as {_shown(new_attributes)}")
+    unexpected = [attribute for attribute in extra.elements() if not isinstance(attribute, Contents)]
+    if unexpected:
+        raise CannotHoldError(f"{_shown(old_attributes)} would be read as {_shown(new_attributes)}")
     if _in_order(before, kept) != _in_order(after, kept):
         lost.append(Loss.ORDER)
     return lost
 
 
-def _lost_relation(said: Relation, extra: Counter[str | Relation | Contents]) -> Loss:
-    """Tell what became of a relation, and take that from ``extra``."""
+def _lost_relation(relation: Relation, extra: Counter[str | Relation | Contents]) -> Loss:
+    """Return the loss of a relation, and remove the relation that replaces it from ``extra``."""
     for other in list(extra):
-        if isinstance(other, Relation) and other.object == said.object:
+        if isinstance(other, Relation) and other.object == relation.object:
             extra[other] -= 1
-            extra += Counter()  # only what is left
-            return Loss.RELATION_WORDS if said.word else Loss.CONTAINERS
+            extra += Counter()  # removes entries without a count
+            return Loss.RELATION_WORDS if relation.word else Loss.CONTAINERS
     return Loss.RELATIONS
 
 
 def _ingredients(attributes: list[str | Relation | Contents]) -> list[str]:
-    return sorted(i for said in attributes if isinstance(said, Contents) for i in said.ingredients)
+    return sorted(
+        i for contents in attributes if isinstance(contents, Contents) for i in contents.ingredients
+    )
 
 
 def _in_order(

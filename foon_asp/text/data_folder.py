@@ -1,4 +1,4 @@
-"""A folder of FOON data and the pieces it is made of."""
+"""Data folders: a network with its kitchen, goals, rates, prices and utensils."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -29,19 +29,19 @@ from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.tables import RATES, read_utensils
 from foon_asp.text.unit_price_list import UnitPriceList, read_unit_prices
 
-_RATES, _read_utensils, _UNIT_PRICES = "motion.txt", "utensils.txt", "unit_prices.txt"
-# In JSON or as FOON text, the first that is there.
+_RATES, _UTENSILS, _UNIT_PRICES = "motion.txt", "utensils.txt", "unit_prices.txt"
+# In JSON or as FOON text, the first that exists.
 _KITCHENS, _GOALS = ("kitchen.json", "kitchen.txt"), ("goal_nodes.json", "goal_nodes.txt")
 _OBJECT_KEY = re.compile(rb'"(?:input_nodes|functional_units|object_label|label)"\s*:')
 _FOR_SCHEDULES = {"durations.txt", "tools.txt"}
-_SIDE_TABLES = {_RATES, _read_utensils, _UNIT_PRICES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
+_SIDE_TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
 
 STARTING = Path("@starting")
-"""In place of a kitchen file: what makes the units of each file run is at hand."""
+"""In place of a kitchen file: the starting kitchen."""
 
 
 class DataFiles(NamedTuple):
-    """Where each piece is read from; ``None`` where there is none."""
+    """The files of the network and of the data beside it; ``None`` for a file that does not exist."""
 
     network: tuple[Path, ...]
     kitchen: Path | None = None
@@ -52,12 +52,12 @@ class DataFiles(NamedTuple):
 
 
 class Data(NamedTuple):
-    """Everything read: the merged network and what stands beside it.
+    """All data read: the merged network and the data beside it.
 
     ``kitchen`` are the ids of the object nodes that ``kitchen_items`` stand for. ``rates`` is ``None`` where
     there is no rates file, ``unit_prices`` where there is no file of prices and no unit has one.
-    ``warnings`` lists what was assumed while reading; ``left_out`` counts the lines dropped.
-    ``starting`` says that no file says what is at hand, so that it is the starting kitchen.
+    ``warnings`` lists the assumptions made while reading; ``left_out`` counts the lines dropped.
+    ``starting`` says that there is no kitchen file, so that the kitchen is the starting kitchen.
     ``goals_from`` says what ``goals`` were assumed from where no file lists them: those *marked*, or the
     *last* unit of each file; it is empty where a file does. ``repeated`` are nodes that a unit lists twice.
     """
@@ -85,25 +85,25 @@ def find_data(
     goals: Path | None = None,
     unit_prices: Path | None = None,
 ) -> DataFiles:
-    """Find the files of a question: the pieces given on their own, and the folder's for all others.
+    """Find the files of a question: those given on their own, and the folder's for all others.
 
     Without folder and network it is the bundled kitchen. A network of its own does not get the bundled
     kitchen and rates, which are made for another one.
     A folder has its network in ``FOON.txt`` or else in its other ``*.txt``, ``*.json`` and ``*.jsonl``
     files, and may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
-    ``unit_prices.txt``, and ``goal_nodes.json`` or ``goal_nodes.txt``. Raises :class:`UserError` where
-    something named does not exist.
+    ``unit_prices.txt``, and ``goal_nodes.json`` or ``goal_nodes.txt``. Raises :class:`UserError` for a
+    path that does not exist.
     """
     if folder is None and not network:
         folder = bundled_kitchen()
-    beside_it = (kitchen, rates, utensils, goals, unit_prices)
-    for path in (folder, *beside_it, *network):
+    own_files = (kitchen, rates, utensils, goals, unit_prices)
+    for path in (folder, *own_files, *network):
         if path is not None and path != STARTING and not path.exists():
             raise UserError(f"{path}: no such file or folder")
     if folder is not None and not folder.is_dir():
         raise UserError(f"{folder}: expected a folder; a single network is given with --network")
     sources = network or ([folder] if folder else [])
-    tables = {path.resolve() for path in beside_it if path is not None}
+    tables = {path.resolve() for path in own_files if path is not None}
     files = tuple(
         file
         for source in sources
@@ -113,18 +113,18 @@ def find_data(
     if not files:
         raise UserError("no network is given")
 
-    def beside(given: Path | None, *names: str) -> Path | None:
-        if given is None and folder is not None:
+    def own_or_in_folder(file: Path | None, *names: str) -> Path | None:
+        if file is None and folder is not None:
             return next((folder / name for name in names if (folder / name).exists()), None)
-        return given
+        return file
 
     return DataFiles(
         files,
-        beside(kitchen, *_KITCHENS),
-        beside(rates, _RATES),
-        beside(utensils, _read_utensils),
-        beside(goals, *_GOALS),
-        beside(unit_prices, _UNIT_PRICES),
+        own_or_in_folder(kitchen, *_KITCHENS),
+        own_or_in_folder(rates, _RATES),
+        own_or_in_folder(utensils, _UTENSILS),
+        own_or_in_folder(goals, *_GOALS),
+        own_or_in_folder(unit_prices, _UNIT_PRICES),
     )
 
 
@@ -134,7 +134,7 @@ def kitchen_file(folder: Path) -> Path | None:
 
 
 def network_files(path: Path) -> list[Path]:
-    """Return the network files that a path stands for: itself, or those of a folder in order of name."""
+    """Return the network files of a path: itself, or those of a folder in order of name."""
     if not path.is_dir():
         return [path]
     if (path / "FOON.txt").is_file():
@@ -147,7 +147,7 @@ def network_files(path: Path) -> list[Path]:
 
 
 def _may_be_network(file: Path) -> bool:
-    """Whether a name is that of a network; JSON is written for many things, so it has to name an object."""
+    """Whether a file may be a network: JSON if it names an object, other files by their suffix."""
     if file.name[0] == "." or not file.is_file():
         return False
     if file.suffix == ".json":
@@ -161,8 +161,8 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     """Read all pieces; raises :class:`InputError` for input that is not understood.
 
     With ``lenient`` the lines of a network that are not understood are left out with a warning. Below
-    ``level`` 3, network, kitchen and goals are taken at that level: an entry stands for all nodes that
-    are the same as it there.
+    ``level`` 3, network, kitchen and goals are taken at that level, where an entry matches all nodes
+    with the same remaining parts.
     """
     with uncollected():
         reader = FoonReader(lenient)
@@ -173,9 +173,9 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     items = () if files.kitchen is None or starting else tuple(read_object_list(files.kitchen, warnings))
     kitchen = set(starting_kitchen(network).nodes) if starting else set()
     for item in items:
-        found = network.find(pattern_at_level(item.pattern, level))
-        kitchen.update(found)
-        if not found:
+        matches = network.find(pattern_at_level(item.pattern, level))
+        kitchen.update(matches)
+        if not matches:
             warnings.append(kitchen_item_warning(item))
     if files.goals:
         listed_goals, goals_from = read_object_list(files.goals, warnings), ""
@@ -185,7 +185,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     listed = read_unit_prices(files.unit_prices) if files.unit_prices else None
     if listed:
         warnings += (
-            unit_price_warning(*each) for each in listed.sources.items() if whole.unit_id(each[0]) is None
+            unit_price_warning(*entry) for entry in listed.sources.items() if whole.unit_id(entry[0]) is None
         )
     return Data(
         network,
@@ -204,19 +204,19 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
 
 
 def _assumed_goals(reader: FoonReader, network: Network) -> tuple[list[ListedObject], str]:
-    """Return the goals of a network without a list of them: those marked, or what its last units are for."""
+    """Return the assumed goals of a network and their origin: marked nodes, or outputs of last units."""
     if reader.marked:
         return [as_entry(node, source) for node, source in reader.marked.items()], MARKED
     return last_goals(network, reader.last_units), LAST
 
 
 def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[int]:
-    """Return the object nodes that kitchen items stand for, at the level of the network."""
+    """Return the object nodes that match kitchen items, at the level of the network."""
     return frozenset(o for item in items for o in network.find(pattern_at_level(item.pattern, network.level)))
 
 
 def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrices | None:
-    """Put the prices of a file beside those that networks state of their units, which the file's replace.
+    """Return the prices of a file and those that networks state of their units; the file takes precedence.
 
     Raises :class:`InputError` for copies of a unit that disagree, where the file has no price for it.
     """
@@ -226,12 +226,12 @@ def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrice
 
 
 def unit_price_warning(unit: FunctionalUnit, source: Source) -> Diagnostic:
-    """Say that the price of a single unit is of no use."""
+    """Return the warning about the price of a unit that is not in the network."""
     message = f"the unit {str(unit)!r} is not in the network"
     return Diagnostic(Severity.WARNING, "unit-price", message, source)
 
 
 def kitchen_item_warning(item: ListedObject) -> Diagnostic:
-    """Say that a kitchen item is of no use."""
+    """Return the warning about a kitchen item that matches no object node."""
     message = f"the kitchen item {str(item.pattern)!r} matches no object node of the network"
     return Diagnostic(Severity.WARNING, "kitchen-item", message, item.source)

@@ -1,4 +1,4 @@
-"""What the readers have to say about their input, each remark with its place."""
+"""Diagnostics: errors, warnings and notes about places in input files."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -10,14 +10,14 @@ from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 from foon_asp.network import Source, counted
 
-_SHOWN = 40
+_SHOWN = 40  # errors in a message
 _BRIEF = 6  # lines that warnings may take before they are counted
 
 
 class Severity(StrEnum):
-    """How bad it is: an error stops the reading, a warning says what was assumed.
+    """The severity of a diagnostic: an error stops the reading, a warning says what was assumed.
 
-    Notes come from linting alone: what is worth a look, and may be meant.
+    Notes come from linting alone, on lines that are unusual and may be intended.
     """
 
     ERROR = "error"
@@ -34,7 +34,7 @@ class Rename(NamedTuple):
 
 
 class Diagnostic(NamedTuple):
-    """One remark about one place in an input file.
+    """A remark about one place in an input file.
 
     ``code`` names the kind of remark in a few words and is the same for all remarks of that kind;
     ``excerpt`` is the line of the file that it is about, without its end, or empty; ``fix`` is how that
@@ -86,12 +86,12 @@ class InputError(UserError):
 
 def in_brief(diagnostics: Sequence[Diagnostic]) -> list[str]:
     """Return warnings as :func:`summarize` does if that takes a few lines, else their number in one line."""
-    told = summarize(diagnostics)
-    if sum(1 + text.count("\n") for text in told) <= _BRIEF:
-        return told
+    summary = summarize(diagnostics)
+    if sum(1 + text.count("\n") for text in summary) <= _BRIEF:
+        return summary
     kinds = Counter(diagnostic.code for diagnostic in diagnostics)
     counts = ", ".join(f"{count} {code}" for code, count in kinds.most_common())
-    files = " ".join(dict.fromkeys(quote(escaped(each.source.file)) for each in diagnostics))
+    files = " ".join(dict.fromkeys(quote(escaped(diagnostic.source.file)) for diagnostic in diagnostics))
     return [
         f"warning: {counted(len(diagnostics), 'remark')} on the data ({counts}); see foon-asp lint {files}"
     ]
@@ -103,11 +103,11 @@ def summarize(diagnostics: Sequence[Diagnostic], places: int = 5) -> list[str]:
     for diagnostic in diagnostics:
         kinds.setdefault((diagnostic.source.file, diagnostic.code), []).append(diagnostic)
     lines = []
-    for (_, code), found in kinds.items():
-        text = str(found[0])
-        if len(found) > 1:
-            others = ", ".join(str(d.source.line) for d in found[1 : places + 1])
-            more = ", ..." if len(found) > places + 1 else ""
-            text += f"\n    {len(found)} warnings of this kind ({code}); others on line {others}{more}"
+    for (_, code), group in kinds.items():
+        text = str(group[0])
+        if len(group) > 1:
+            others = ", ".join(str(d.source.line) for d in group[1 : places + 1])
+            ellipsis = ", ..." if len(group) > places + 1 else ""
+            text += f"\n    {len(group)} warnings of this kind ({code}); others on line {others}{ellipsis}"
         lines.append(text)
     return lines

@@ -1,4 +1,4 @@
-"""Prices and rates as they are written, exact decimals from 0; and exact numbers written as decimals."""
+"""Exact decimals from 0, as prices and rates are written."""
 
 import re
 from fractions import Fraction
@@ -6,16 +6,16 @@ from fractions import Fraction
 from foon_asp.text.line import LineError
 
 _DECIMAL = re.compile(r"\d+(\.\d*)?|\.\d+", re.ASCII)
-LONGEST = 1000  # letters of a number: nobody means more
+LONGEST = 1000  # letters of a number
 
 
 def read_price(written: str, column: int = 1) -> Fraction:
-    """Read a price; raises :class:`LineError` for anything else, at the column where it stands."""
+    """Read a price; raises :class:`LineError` at its column for any other text."""
     return read_decimal(written, column, "a price from 0, as a decimal such as 1.99")
 
 
 def read_decimal(written: str, column: int, expected: str) -> Fraction:
-    """Read a number from 0; raises :class:`LineError` for anything else, with what is expected."""
+    """Read a number from 0; raises :class:`LineError` with the expectation for any other text."""
     if len(written) > LONGEST:
         raise LineError(column, f"a number of {len(written)} letters", (f"at most {LONGEST}",))
     if not _DECIMAL.fullmatch(written):

@@ -1,4 +1,4 @@
-"""The FOON files of a folder, wherever in it they stand."""
+"""The FOON files of folders and their sub-folders."""
 
 import re
 from collections.abc import Iterable
@@ -18,37 +18,37 @@ class FolderFile(NamedTuple):
     """A file, and its path within the folder that was named, or its name."""
 
     file: Path
-    within: Path
+    relative: Path
 
 
 def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
-    """Return the files that are named, and those of folders, sub-folders included, in order of name.
+    """Return the files named and those of the folders named, sub-folders included, in order of name.
 
-    Of a folder these are the ``*.txt``, ``*.json`` and ``*.jsonl`` in which there is anything of FOON,
-    networks and lists of objects alike. Raises :class:`UserError` where nothing is found.
+    Of a folder these are the ``*.txt``, ``*.json`` and ``*.jsonl`` files with FOON content, networks and
+    lists of objects alike. Raises :class:`UserError` for a folder without such files.
     """
-    found: dict[Path, FolderFile] = {}
+    files_by_path: dict[Path, FolderFile] = {}
     for path in paths:
         if not path.exists():
             raise UserError(f"{path}: no such file or folder")
         if not path.is_dir():
-            found.setdefault(path, FolderFile(path, Path(path.name)))
+            files_by_path.setdefault(path, FolderFile(path, Path(path.name)))
             continue
         files = [FolderFile(file, file.relative_to(path)) for file in sorted(path.rglob("*"))]
         files = [file for file in files if _is_foon(*file)]
         if not files:
             raise UserError(f"{path}: expected a folder with FOON files (*.txt, *.json, *.jsonl), found none")
         for file in files:
-            found.setdefault(file.file, file)
-    return list(found.values())
+            files_by_path.setdefault(file.file, file)
+    return list(files_by_path.values())
 
 
-def _is_foon(file: Path, within: Path) -> bool:
-    if any(part[:1] == "." for part in within.parts) or not file.is_file():
+def _is_foon(file: Path, relative: Path) -> bool:
+    if any(name[:1] == "." for name in relative.parts) or not file.is_file():
         return False
     if file.name.endswith(NEUTRAL_SUFFIXES):
         return NEUTRAL.recognises(beginning(file), "")
-    sign = {".txt": _LINE, ".json": _KEY}.get(file.suffix)
-    content = read_content(file) if sign else b""
-    # one in UTF-16 is not read, but whoever reads the folder has to be told
-    return sign is not None and (sign.search(content) is not None or content[:2] in _UTF_16)
+    pattern = {".txt": _LINE, ".json": _KEY}.get(file.suffix)
+    content = read_content(file) if pattern else b""
+    # UTF-16 cannot be read, which has to be reported to the caller
+    return pattern is not None and (pattern.search(content) is not None or content[:2] in _UTF_16)

@@ -1,4 +1,4 @@
-"""FOON units in JSON as a format, in both of the forms that are about, and lists of objects in JSON."""
+"""The JSON formats of FOON units, both published forms, and lists of objects in JSON."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class FoonJson(Format):
-    """JSON, whose form is told by its keys."""
+    """FOON in JSON; its keys tell which form it is."""
 
     dialects: tuple[Dialect, ...] = (Dialect.JSON, Dialect.JSON_LIST)
     suffix = list_suffix = ".json"
@@ -55,7 +55,7 @@ class FoonJson(Format):
             yield unit
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-        """Yield the objects of a kitchen or of goals; a ``container`` is in what they stand for alone."""
+        """Yield the objects of a kitchen or of goals; a ``container`` is only in their patterns."""
         return read_json_objects(text, file, reading)
 
     def lines(self, text: str) -> Iterator[Line]:
@@ -82,7 +82,7 @@ class FoonJson(Format):
         return laid_out.replace("\n", usual_line_end(text))
 
     def names(self, text: str, file: str) -> Iterator[Mention]:
-        """Yield every mention of a name; raises :class:`InputError` for what is not JSON."""
+        """Yield every mention of a name; raises :class:`InputError` for a text that is not JSON."""
         check_json(text, file)
         return json_mentions(text)
 
@@ -91,8 +91,8 @@ class FoonJson(Format):
         return renamed_json(text, renaming)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
-        """Return what writes a network, or a list of objects, in one of the forms."""
-        from foon_asp.text.json_writer import JsonWriter  # noqa: PLC0415 (for conversions alone)
+        """Return a writer of networks and lists of objects in one of the forms."""
+        from foon_asp.text.json_writer import JsonWriter  # noqa: PLC0415 (only for conversions)
 
         return JsonWriter(target)
 

@@ -24,11 +24,11 @@ _PIECE = 1_000_000  # letters of a file read at a time
 _BLANKS = {"outer-space", "space-for-tab"}
 
 Rewrite = Callable[[Line, str], str]
-"""What becomes of a line, given what it says and how it is written."""
+"""Returns the new text of a line from the parsed line and its text."""
 
 
 class FoonText(Format):
-    """FOON text in any of its dialects; what is in no other format is in this one."""
+    """FOON text in any of its dialects; the format of every text that no other format recognises."""
 
     dialects: tuple[Dialect, ...] = (Dialect.PLAIN, Dialect.NO_IDS, Dialect.IDS)
     suffix = list_suffix = ".txt"
@@ -40,13 +40,13 @@ class FoonText(Format):
 
     def dialect(self, text: str) -> Dialect:
         """Return the dialect: one line with an id, flag or time is enough."""
-        found = Dialect.PLAIN
+        dialect = Dialect.PLAIN
         for line in self.lines(text):
             if line.id:
                 return Dialect.IDS
             if isinstance(line, ObjectLine | MotionLine) and line.fields:
-                found = Dialect.NO_IDS
-        return found
+                dialect = Dialect.NO_IDS
+        return dialect
 
     def lists_objects(self, text: str) -> bool:
         """Whether there are object lines and no motion lines."""
@@ -54,7 +54,7 @@ class FoonText(Format):
         return "O" in starts and "M" not in starts
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a file, of which some pieces at a time are in memory."""
+        """Yield the units of a file, read in pieces."""
         return TextUnits(text_pieces(file, _PIECE), str(file), reading).units()
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
@@ -90,8 +90,8 @@ class FoonText(Format):
         return each_line(text, renaming.line)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
-        """Return what writes a network, or a list of objects, as lines."""
-        from foon_asp.text.text_writer import TextWriter  # noqa: PLC0415 (for conversions alone)
+        """Return a writer of networks and lists of objects as lines."""
+        from foon_asp.text.text_writer import TextWriter  # noqa: PLC0415 (only for conversions)
 
         return TextWriter(target, numbering)
 
@@ -101,7 +101,7 @@ def _units(text: str, file: str, reading: Reading) -> TextUnits:
 
 
 def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
-    """Write a text anew, line by line; ``rewrite`` says what becomes of those that say something.
+    """Return a text rewritten line by line; ``rewrite`` rewrites object, state and motion lines.
 
     Blanks at the end of lines go, every line ends in the way that most do, a last unit is closed by ``//``.
     Comments, blank lines and the order of everything stay, whether or not the lines make up units. Raises
@@ -109,32 +109,32 @@ def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
     """
     lines = split_lines(text)
     errors: list[Diagnostic] = []
-    written: dict[str, str] = {}
-    new: list[str] = []
+    rewritten_lines: dict[str, str] = {}
+    new_lines: list[str] = []
     for number, line in enumerate(lines, 1):
-        found = written.get(line)
-        if found is None:
-            found, error = _rewritten_line(line, rewrite)
+        new_line = rewritten_lines.get(line)
+        if new_line is None:
+            new_line, error = _rewritten_line(line, rewrite)
             if error and not lenient:
-                place = Source(file, number, error.column)
-                errors.append(Diagnostic(Severity.ERROR, "syntax", str(error), place, line))
+                source = Source(file, number, error.column)
+                errors.append(Diagnostic(Severity.ERROR, "syntax", str(error), source, line))
             else:
-                written[line] = found
-        new.append(found)
+                rewritten_lines[line] = new_line
+        new_lines.append(new_line)
     if errors:
         raise InputError(errors)
-    last = len(new) - 1
-    while last >= 0 and not new[last]:
+    last = len(new_lines) - 1
+    while last >= 0 and not new_lines[last]:
         last -= 1
     if _is_open_unit(lines):
-        new.insert(last + 1, "//")
-    if new[-1]:
-        new.append("")
-    return usual_line_end(text).join(new)
+        new_lines.insert(last + 1, "//")
+    if new_lines[-1]:
+        new_lines.append("")
+    return usual_line_end(text).join(new_lines)
 
 
 def _mended(line: Line, written: str) -> str:
-    """Return the canonical form of a line: itself, unless there is a remark on more than blanks in it.
+    """Return the canonical form of a line: itself, unless it has a remark on more than blanks.
 
     Blanks within a line stay, as the published universal FOON has them: ``{jelly, peanut butter}``, and a
     space for the tab before a bracket. Linting remarks on them.
@@ -162,6 +162,6 @@ def _is_open_unit(lines: list[str]) -> bool:
     start = len(lines)
     while start > 0 and not re.fullmatch(r"//[ \t]*", lines[start - 1]):
         start -= 1
-    rest = [read_line(line) for line in lines[start:] if line[:1] in {"O", "M"}]
-    motions = [index for index, line in enumerate(rest) if isinstance(line, MotionLine)]
-    return len(motions) == 1 and any(isinstance(line, ObjectLine) for line in rest[: motions[0]])
+    parsed_lines = [read_line(line) for line in lines[start:] if line[:1] in {"O", "M"}]
+    motions = [index for index, line in enumerate(parsed_lines) if isinstance(line, MotionLine)]
+    return len(motions) == 1 and any(isinstance(line, ObjectLine) for line in parsed_lines[: motions[0]])

@@ -1,4 +1,4 @@
-"""What there is to know of a way in which FOONs are written."""
+"""The interface of file formats and of their writers."""
 
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Dialect(StrEnum):
-    """A way in which FOON files are written; ``docs/formats.md`` has an example of each."""
+    """A dialect of FOON files; ``docs/formats.md`` has an example of each."""
 
     PLAIN = "plain"
     """``O⇥onion``, ``M⇥chop``: names only, as in a universal FOON."""
@@ -36,11 +36,11 @@ class Dialect(StrEnum):
 
 
 class Format(Protocol):
-    """A format of files: what the reader, ``fmt``, ``convert``, ``rename`` and ``lint`` ask of it.
+    """A format of files, as the reader, ``fmt``, ``convert``, ``rename`` and ``lint`` use it.
 
-    ``dialects`` are those that it has; ``suffix`` and ``list_suffix`` are how the names of its networks
+    ``dialects`` are its dialects; ``suffix`` and ``list_suffix`` are how the names of its networks
     and of its lists of objects end. ``has_comments`` says whether it has comments, and ``machine_written``
-    whether a node that a unit lists twice means two of it. A ``file`` is named in places and messages.
+    whether a node that a unit lists twice means two of it. A ``file`` is its name in messages.
     """
 
     dialects: tuple[Dialect, ...] = ()
@@ -53,7 +53,7 @@ class Format(Protocol):
         """Whether a text is in this format; of a long one, its beginning is enough."""
 
     def dialect(self, text: str) -> Dialect:
-        """Return the dialect of a text, whatever of it cannot be understood."""
+        """Return the dialect of a text, even if parts of it cannot be understood."""
 
     def lists_objects(self, text: str) -> bool:
         """Whether a text lists object nodes, as a kitchen or goals do, and has no functional units."""
@@ -63,22 +63,22 @@ class Format(Protocol):
         yield from self.units(read_plain_text(file), str(file), reading)
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order; what there is to say about it is noted in ``reading``."""
+        """Yield the units of a text in order; its diagnostics are added to ``reading``."""
         return (unit.identity for unit in self.listed_units(text, file, reading))
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
         """Yield the units of a text in order, with their lines as written."""
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-        """Yield the objects of a kitchen or of goals, each with what it stands for."""
+        """Yield the objects of a kitchen or of goals, each with its pattern."""
 
     def lines(self, text: str) -> Iterator[Line]:
-        """Yield all that can be understood of a text as the lines that FOON text has for it."""
+        """Yield the parts of a text that can be understood as lines of FOON text."""
 
     def normalised(self, text: str, file: str, lenient: bool = False) -> str:
         """Return a text in canonical form, which means the same.
 
-        Raises :class:`InputError` with all that cannot be understood; with ``lenient`` it stays as it is.
+        Raises :class:`InputError` with all faults; with ``lenient``, lines that cannot be understood stay.
         """
 
     def names(self, text: str, file: str) -> Iterator[Mention]:
@@ -88,11 +88,11 @@ class Format(Protocol):
         """Return a text with a new name for an old one; everything else stays as it is written."""
 
     def writer(self, target: Dialect, numbering: "Numbering") -> "Writer":
-        """Return what writes a network, or a list of objects, in a dialect of this format."""
+        """Return a writer of networks and lists of objects in a dialect of this format."""
 
 
-Part = tuple[str, "list[Loss]"]
-"""How a part of a unit is written, and what of it is lost."""
+WrittenPart = tuple[str, "list[Loss]"]
+"""The text of a part of a unit, and its losses."""
 
 
 class Writer(Protocol):
@@ -104,13 +104,13 @@ class Writer(Protocol):
     holds_prices: bool
     holds_no_inputs: bool
 
-    def block(self, block: ObjectBlock, in_list: bool) -> Part:
+    def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
         """Write an object, of a unit or of a list.
 
         Raises :class:`CannotHoldError` where it would be read as another.
         """
 
-    def motion(self, line: MotionLine) -> Part:
+    def motion(self, line: MotionLine) -> WrittenPart:
         """Write a motion; raises :class:`CannotHoldError` where it would be read as another."""
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
@@ -123,4 +123,4 @@ class Writer(Protocol):
         """Put a file together from its objects."""
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return those of the videos of a file, beside its comment lines, that the result can name."""
+        """Return the videos of a file, given with its comment lines, that the result can name."""

@@ -12,14 +12,14 @@ NEUTRAL: Final = NeutralLines()
 JSON: Final = FoonJson()
 TEXT: Final = FoonText()
 FORMATS: Final[tuple[Format, ...]] = (SideTable(), NEUTRAL, JSON, TEXT)
-"""In the order in which they are asked whether a file is theirs."""
+"""All formats, in the order in which they are tried on a file."""
 
 
 def format_of(text: str, file: str = "") -> Format:
     """Return the format of a text: the first that recognises it, by its beginning or the name of its file."""
-    return next(each for each in FORMATS if each.recognises(text, file))
+    return next(format_ for format_ in FORMATS if format_.recognises(text, file))
 
 
 def format_with(dialect: Dialect) -> Format:
     """Return the format that has a dialect."""
-    return next(each for each in FORMATS if dialect in each.dialects)
+    return next(format_ for format_ in FORMATS if dialect in format_.dialects)

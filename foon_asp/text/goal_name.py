@@ -1,4 +1,4 @@
-"""Finding the object node that a name means: of a goal, or of a thing in the kitchen."""
+"""Lookup of the object node that a name means, for goals and kitchen items."""
 
 import re
 import shlex
@@ -12,13 +12,13 @@ from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_name
 from foon_asp.text.object_list import ListedObject
 
-_SHOWN = 12
-_NEAR = 3  # labels shown that are like one that nobody has
+_MAX_SHOWN = 12  # candidates in a message
+_MAX_SIMILAR = 3  # labels shown that are similar to an unknown one
 _IN_QUOTES = re.compile(r' *"(?:\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4})|[^"\\])*("?)')  # closed or not
 
 
 class Wording(NamedTuple):
-    """How messages name the thing, and what comes before a name to paste."""
+    """The noun for the node in messages, and the option before a name to paste."""
 
     thing: str
     before: str
@@ -30,44 +30,44 @@ _GOAL = Wording("goal", "--goal")
 class GoalError(UserError):
     """A name that means no object node, or several.
 
-    ``said`` is the message without candidates, ``candidates`` are those shown, in one-line notation, and
-    ``more`` counts the others. As a string they are ready to paste, behind the words that stand ``before``.
+    ``message`` is without candidates, ``candidates`` are those shown, in one-line notation, and ``hidden``
+    counts the others. The text of the error has the candidates ready to paste, behind the option ``before``.
     """
 
     def __init__(
-        self, said: str, candidates: Sequence[str] = (), more: int = 0, before: str = _GOAL.before
+        self, message: str, candidates: Sequence[str] = (), hidden: int = 0, before: str = _GOAL.before
     ) -> None:
-        lines = [said, *(f"  {before} {shlex.quote(candidate)}" for candidate in candidates)]
-        if more:
-            lines.append(f"  ... and {more} more")
+        lines = [message, *(f"  {before} {shlex.quote(candidate)}" for candidate in candidates)]
+        if hidden:
+            lines.append(f"  ... and {hidden} more")
         super().__init__("\n".join(lines))
-        self.said, self.candidates, self.more = said, tuple(candidates), more
+        self.message, self.candidates, self.hidden = message, tuple(candidates), hidden
 
 
 class NodeNames(Protocol):
-    """What names are looked up in: a :class:`~foon_asp.network.Network`, or a store."""
+    """The names of nodes: a :class:`~foon_asp.network.Network`, or a store."""
 
     @property
     def level(self) -> int:
-        """How much of a node counts."""
+        """The level of FOON, from 1 to 3."""
 
     def object_id(self, node: ObjectNode) -> int | None:
-        """Return the id of a node, or ``None`` when it is not there."""
+        """Return the id of a node, or ``None`` if it does not exist."""
 
     def node(self, object_id: int) -> ObjectNode:
-        """Return the node with that id."""
+        """Return the node with an id."""
 
     def find(self, pattern: NodePattern) -> Sequence[int]:
-        """Return the ids of the nodes that a kitchen or goals entry stands for."""
+        """Return the ids of the nodes that match a kitchen or goals entry."""
 
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Return how many nodes have a label, and the first of them, a dozen or more."""
+        """Return the number of nodes with a label, and the ids of the first, a dozen or more."""
 
-    def beginning(self, start: str, most: int) -> Sequence[str]:
-        """Return labels that begin with ``start``, in alphabetical order, at most ``most``."""
+    def beginning(self, start: str, max_labels: int) -> Sequence[str]:
+        """Return labels that begin with ``start``, in alphabetical order, at most ``max_labels``."""
 
-    def near(self, label: str, most: int) -> Sequence[str]:
-        """Return labels similar to ``label``, the most similar first, at most ``most``."""
+    def near(self, label: str, max_labels: int) -> Sequence[str]:
+        """Return labels similar to ``label``, the most similar first, at most ``max_labels``."""
 
 
 def find_goal(
@@ -80,10 +80,10 @@ def find_goal(
 
     A name is the node itself in one-line notation (``sweet potato; chopped; in [cutting board]``, as
     ``str(node)`` has it), else the label of an entry of the goals file, else a label that one node alone has.
-    A label that cannot be read as the notation, or is no node by it, is taken as it is written. A semicolon
-    at the end (``onion;``) makes a label the notation, which no entry and no other node is meant by.
-    Raises :class:`GoalError` with candidates ready to paste when it is unknown or means several nodes;
-    ``wording`` is for other things than goals.
+    A label that cannot be read as the notation, or whose notation is no node, is taken as it is written. A
+    semicolon at the end (``onion;``) makes a label the notation, which means no entry and no other node.
+    Raises :class:`GoalError` with candidates ready to paste if the name is unknown or means several nodes;
+    ``wording`` is for other nouns than goals.
     """
     named: str | ObjectNode = name
     fault = None
@@ -95,8 +95,8 @@ def find_goal(
     else:
         node = node_at_level(ObjectNode(named) if isinstance(named, str) else named, names.level)
     for exact in (node, as_written):
-        if (found := names.object_id(exact)) is not None:
-            return found
+        if (object_id := names.object_id(exact)) is not None:
+            return object_id
     label = named if isinstance(named, str) else as_written.label
     entries = [entry for entry in listed if entry.pattern.label == label]
     if entries:
@@ -112,30 +112,30 @@ def find_goal(
         )
     count, labelled = names.labelled(node.label)
     if count:
-        said = f"no object node is exactly {str(node)!r}; with that label there are"
-        raise _unclear(said, names, count, _likest(node, labelled, names), wording)
+        message = f"no object node is exactly {str(node)!r}; with that label there are"
+        raise _unclear(message, names, count, _most_similar_first(node, labelled, names), wording)
     raise _unknown(f"no object node has the label {node.label!r}", node, names, wording)
 
 
-def nodes_beginning(start: str, names: NodeNames, most: int) -> list[int]:
+def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
     """Return the ids of nodes whose one-line notation, or whose label, begins with ``start``, by label.
 
-    At most ``most`` are returned. Up to the first semicolon that is a label, and of it as many letters as
-    there are; it may be in quotes.
+    At most ``max_nodes`` are returned. The text before the first semicolon is a whole label; without a
+    semicolon, ``start`` is the beginning of one. The label may be in quotes.
     """
     label, semicolon, _ = start.partition(";")
     labels = [label] if semicolon else []
     if begun := _IN_QUOTES.match(start):
         label = unquoted(begun[0].strip(" ") + '"' * (not begun[1]))
-        labels = [label] if begun[1] else [*names.beginning(label, most)]
-    found: dict[int, None] = {}
-    for each in dict.fromkeys([*labels, *names.beginning(start, most)]):
-        for o in names.labelled(each)[1]:
-            if each.startswith(start) or str(names.node(o)).startswith(start):
-                found[o] = None
-        if len(found) >= most:
+        labels = [label] if begun[1] else [*names.beginning(label, max_nodes)]
+    nodes: dict[int, None] = {}
+    for candidate in dict.fromkeys([*labels, *names.beginning(start, max_nodes)]):
+        for o in names.labelled(candidate)[1]:
+            if candidate.startswith(start) or str(names.node(o)).startswith(start):
+                nodes[o] = None
+        if len(nodes) >= max_nodes:
             break
-    return [*found][:most]
+    return [*nodes][:max_nodes]
 
 
 def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[str]:
@@ -143,62 +143,65 @@ def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[st
     counts = Counter(entry.pattern.label for entry in listed)
     for entry in listed:
         label = entry.pattern.label
-        found = names.find(entry.pattern)
+        nodes = names.find(entry.pattern)
         exact = names.object_id(ObjectNode(label))
-        if len(found) != 1 or (counts[label] == 1 and exact in {None, found[0]}):
+        if len(nodes) != 1 or (counts[label] == 1 and exact in {None, nodes[0]}):
             yield str(ObjectNode(label))
         else:
-            yield str(names.node(found[0]))
+            yield str(names.node(nodes[0]))
 
 
 def listed_goal(entry: ListedObject, names: NodeNames) -> int:
-    """Return the one node that an entry of a goals file stands for; raises :class:`UserError` for several."""
-    found = listed_nodes(entry, names)
-    return _only(str(entry.pattern), names, len(found), found, _GOAL)
+    """Return the only node that matches an entry of a goals file; raises :class:`UserError` for several."""
+    nodes = listed_nodes(entry, names)
+    return _only(str(entry.pattern), names, len(nodes), nodes, _GOAL)
 
 
 def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
-    """Return the nodes that an entry of a goals file stands for; raises :class:`UserError` for none."""
-    found = names.find(entry.pattern)
-    if not found:
+    """Return the nodes that match an entry of a goals file; raises :class:`UserError` if there are none."""
+    nodes = names.find(entry.pattern)
+    if not nodes:
         count, labelled = names.labelled(entry.pattern.label)
-        place = f"{entry.source}:{entry.source.column}"
-        said = f"{place}: error: the goal {str(entry.pattern)!r} matches no object node"
+        position = f"{entry.source}:{entry.source.column}"
+        message = f"{position}: error: the goal {str(entry.pattern)!r} matches no object node"
         if count:
-            raise _unclear(f"{said}; with that label there are", names, count, labelled, _GOAL)
-        raise _unknown(f"{said} of the network", ObjectNode(entry.pattern.label), names, _GOAL)
-    return found
+            raise _unclear(f"{message}; with that label there are", names, count, labelled, _GOAL)
+        raise _unknown(f"{message} of the network", ObjectNode(entry.pattern.label), names, _GOAL)
+    return nodes
 
 
-def _only(name: str, names: NodeNames, count: int, found: Sequence[int], wording: Wording) -> int:
+def _only(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording: Wording) -> int:
     if count > 1:
-        said = f"the {wording.thing} {name!r} means {count} object nodes"
-        raise _unclear(f"{said}; paste the one you mean", names, count, found, wording)
-    return found[0]
+        message = f"the {wording.thing} {name!r} means {count} object nodes"
+        raise _unclear(f"{message}; paste the one you mean", names, count, nodes, wording)
+    return nodes[0]
 
 
-def _likest(node: ObjectNode, found: Sequence[int], names: NodeNames) -> Sequence[int]:
-    """Order nodes by how like one that is not there they are written; a label alone says nothing."""
+def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames) -> Sequence[int]:
+    """Return nodes, most similar in notation to an unknown one first; unsorted if it is a label alone."""
     if node == ObjectNode(node.label):
-        return found
-    import difflib  # noqa: PLC0415 (for faults alone)
+        return nodes
+    import difflib  # noqa: PLC0415 (only for error messages)
 
-    written = {str(names.node(o)): o for o in found}
-    return [written[each] for each in difflib.get_close_matches(str(node), written, len(written), cutoff=0)]
-
-
-def _unknown(said: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
-    """Name nodes whose labels begin so or are near, a few of each label, if there are any."""
-    labels = dict.fromkeys((*names.beginning(node.label, _SHOWN), *names.near(node.label, _NEAR)))
-    found = [names.labelled(like) for like in labels]
-    if not found:
-        return GoalError(said)
-    each = max(1, _SHOWN // len(found))
-    total = sum(count for count, _ in found)
-    first = [o for _, some in found for o in _likest(node, some, names)[:each]]
-    return _unclear(f"{said}; similar are", names, total, first, wording)
+    by_notation = {str(names.node(o)): o for o in nodes}
+    return [
+        by_notation[text]
+        for text in difflib.get_close_matches(str(node), by_notation, len(by_notation), cutoff=0)
+    ]
 
 
-def _unclear(said: str, names: NodeNames, count: int, first: Iterable[int], wording: Wording) -> GoalError:
-    shown = [str(names.node(o)) for o in [*first][:_SHOWN]]
-    return GoalError(said, shown, count - len(shown), wording.before)
+def _unknown(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
+    """Return the error about an unknown node, with some nodes of each similar label."""
+    labels = dict.fromkeys((*names.beginning(node.label, _MAX_SHOWN), *names.near(node.label, _MAX_SIMILAR)))
+    counted_nodes = [names.labelled(label) for label in labels]
+    if not counted_nodes:
+        return GoalError(message)
+    share = max(1, _MAX_SHOWN // len(counted_nodes))
+    total = sum(count for count, _ in counted_nodes)
+    first = [o for _, nodes in counted_nodes for o in _most_similar_first(node, nodes, names)[:share]]
+    return _unclear(f"{message}; similar are", names, total, first, wording)
+
+
+def _unclear(message: str, names: NodeNames, count: int, first: Iterable[int], wording: Wording) -> GoalError:
+    shown = [str(names.node(o)) for o in [*first][:_MAX_SHOWN]]
+    return GoalError(message, shown, count - len(shown), wording.before)

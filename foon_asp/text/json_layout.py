@@ -1,4 +1,4 @@
-"""How a JSON text is laid out: four spaces for each level, as the FOON files in JSON have it."""
+"""Layout of JSON texts: four spaces for each level, as in published FOON files."""
 
 import json
 import re
@@ -19,17 +19,17 @@ def lay_out(text: str, level: int = 0) -> str:
     be JSON: see :func:`check_json`.
     """
     parts: list[str] = []
-    before = ""
+    previous = ""
     for token in TOKEN.findall(text):
         if token in {"]", "}"}:
             level -= 1
-            if before not in {"[", "{"}:
+            if previous not in {"[", "{"}:
                 parts.append("\n" + STEP * level)
-        elif before in {"[", "{", ","}:
+        elif previous in {"[", "{", ","}:
             parts.append("\n" + STEP * level)
         parts.append(": " if token == ":" else token)
         level += token in {"[", "{"}
-        before = token
+        previous = token
     return "".join(parts)
 
 

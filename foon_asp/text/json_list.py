@@ -13,20 +13,20 @@ from foon_asp.text.plain_file import FENCE
 _SPACE = re.compile(r"[ \t\r\n]*")
 _COMMA_BEFORE_END = re.compile(r",[ \t\r\n]*([\]}])")
 _BLANKS = " \t\r\n"
-_BEGINNING = 2_000  # letters of a text that are looked at for JSON
+_BEGINNING = 2_000  # letters of a text that are searched for JSON
 _JSON_LINE = re.compile(r"^[ \t]*[\[{]", re.MULTILINE)
 _FOON_LINE = re.compile(r"[OSM]\d*[ \t]|//|#")
 
 
 class JsonElement(NamedTuple):
-    """One element of a list and the place where it begins."""
+    """An element of a list, and the place where it begins."""
 
     value: object
     source: Source
 
 
 class JsonList:
-    """The elements of a list, read one by one; what is wrong is collected in ``errors``.
+    """The elements of a list, read one by one; faults are collected in ``errors``.
 
     The list is the file's only value, or with ``key`` the value of that key of an object, whose other
     values are in ``others`` when all has been read.
@@ -38,27 +38,27 @@ class JsonList:
         self._text = text
         self._file = str(file)
         self._key = key
-        self._line, self._counted = 1, 0  # the line at an offset before, so that lines are counted once
+        self._line, self._counted = 1, 0  # the line at the last offset, so that lines are counted once
 
     def __iter__(self) -> Iterator[JsonElement]:
         try:
             for offset, value in self._elements():
-                yield JsonElement(value, self.place(offset))
+                yield JsonElement(value, self.position_of(offset))
         except json.JSONDecodeError as problem:
-            found = json_fault(problem)
-            self.error(self.place(found.offset), found.message)
+            syntax_fault = json_fault(problem)
+            self.error(self.position_of(syntax_fault.offset), syntax_fault.message)
         except JsonFaultError as fault:
-            self.error(self.place(fault.position), str(fault))
+            self.error(self.position_of(fault.position), str(fault))
         except RecursionError:
-            self.error(self.place(0), "found lists nested too deeply, expected a list of objects")
+            self.error(self.position_of(0), "found lists nested too deeply, expected a list of objects")
 
     def error(self, source: Source, message: str) -> None:
         """Record an error at a place of the file."""
         excerpt = self._text.split("\n", source.line)[source.line - 1].rstrip("\r")
         self.errors.append(Diagnostic(Severity.ERROR, "json", message, source, excerpt))
 
-    def place(self, offset: int) -> Source:
-        """Return the line and column of an offset; offsets that only grow are the fast way to ask."""
+    def position_of(self, offset: int) -> Source:
+        """Return the line and column of an offset, fastest for ascending offsets."""
         if offset < self._counted:
             self._line, self._counted = 1, 0
         self._line += self._text.count("\n", self._counted, offset)
@@ -71,7 +71,7 @@ class JsonList:
             yield from self._in_object(start + 1)
             return
         end = yield from self._in_list(start)
-        self._nothing_after(end)
+        self._expect_end(end)
 
     def _in_object(self, position: int) -> Iterator[tuple[int, object]]:
         """Yield the elements of the list under the key; the values of other keys are kept aside."""
@@ -97,7 +97,7 @@ class JsonList:
                     raise self._unexpected("a key in quotes", position)
         if self._key not in seen:
             raise self._unexpected(f"a list, or an object with the key {self._key!r}", 0)
-        self._nothing_after(position + 1)
+        self._expect_end(position + 1)
 
     def _in_list(self, position: int) -> Generator[tuple[int, object], None, int]:
         """Yield the elements of the list that begins there, and return where it ends."""
@@ -124,17 +124,19 @@ class JsonList:
             raise self._unexpected(what or character, position)
         return self._skip(position + 1)
 
-    def _nothing_after(self, end: int) -> None:
-        rest = self._skip(end)
-        if rest != len(self._text):
-            raise self._unexpected("the end of the file after the list: remove what stands behind it", rest)
+    def _expect_end(self, end: int) -> None:
+        position = self._skip(end)
+        if position != len(self._text):
+            raise self._unexpected(
+                "the end of the file after the list: remove what stands behind it", position
+            )
 
     def _unexpected(self, expected: str, position: int) -> "JsonFaultError":
         if position == self._skip(0) and (message := before_json(self._text)):
             return JsonFaultError(message, position)
-        found = self._text[position:].split("\n", 1)[0].rstrip("\r")
-        found = found if len(found) <= 24 else found[:24] + "..."
-        shown = repr(found) if found else "the end of the line"
+        text = self._text[position:].split("\n", 1)[0].rstrip("\r")
+        text = text if len(text) <= 24 else text[:24] + "..."
+        shown = repr(text) if text else "the end of the line"
         return JsonFaultError(f"found {shown}, expected {expected}", position)
 
     def _skip(self, position: int) -> int:
@@ -143,14 +145,14 @@ class JsonList:
 
 
 class JsonNumber:
-    """A number as it is written: none is calculated with, and ids and rates are kept to the letter."""
+    """A number as it is written, so that ids and rates keep their digits."""
 
     def __init__(self, text: str) -> None:
         self.text = text
 
 
 class JsonFaultError(Exception):
-    """What is wrong with a JSON text that is well-formed, and the offset where."""
+    """A fault of a well-formed JSON text, and its offset."""
 
     def __init__(self, message: str, position: int) -> None:
         super().__init__(message)
@@ -180,7 +182,7 @@ def begins_json(text: str) -> bool:
 
 
 def before_json(text: str) -> str:
-    """Return an error message about what stands before JSON in a text; empty where nothing does."""
+    """Return an error message about text before JSON; empty for other texts."""
     begins = text[:_BEGINNING].lstrip(_BLANKS)
     first = begins.split("\n", 1)[0].rstrip()
     if not _JSON_LINE.search(begins) or begins_json(begins) or _FOON_LINE.match(first):
@@ -193,7 +195,7 @@ def before_json(text: str) -> str:
 
 
 class JsonFault(NamedTuple):
-    """What is wrong, at which offset of the text, and which line and column that is, counted from 1."""
+    """A syntax fault: its message, its offset, and its line and column, counted from 1."""
 
     message: str
     offset: int
@@ -202,10 +204,9 @@ class JsonFault(NamedTuple):
 
 
 def json_fault(error: json.JSONDecodeError) -> JsonFault:
-    """Say in our words what the standard library found.
+    """Return the fault that the standard library found.
 
-    A comma before the end of a list or an object is where the Pythons differ: some name the comma, some
-    what stands behind it. Here it is the comma.
+    A comma before the end of a list or an object is reported at the comma, while Python versions differ.
     """
     text, offset, message = error.doc, error.pos, error.msg
     start = offset

@@ -24,11 +24,11 @@ _IDS = {NameKind.OBJECT: "object_id", NameKind.MOTION: "motion_id"}
 
 
 def json_mentions(text: str) -> Iterator[Mention]:
-    """Yield every mention of a name in a text that is JSON; a state may be written as a state line is."""
-    for found in _json_names(text):
-        state = read_line(f"S\t{found.name}") if _is_state_line(found) else None
+    """Yield every mention of a name in a JSON text; a state may be written as on a state line."""
+    for json_name in _json_names(text):
+        state = read_line(f"S\t{json_name.name}") if _is_state_line(json_name) else None
         if state is None or isinstance(state, LineError):
-            yield Mention(found.kind, found.name, found.id)
+            yield Mention(json_name.kind, json_name.name, json_name.id)
         else:
             yield from line_names(state)
 
@@ -43,36 +43,36 @@ def renamed_json(text: str, renaming: "Renaming") -> str:
             f"JSON lists ingredients under the word {_CONTENTS!r} alone, which cannot be renamed there; "
             "convert the file to text before"
         )
-    for found in names:
-        name = found.name
-        if _is_state_line(found):
+    for json_name in names:
+        name = json_name.name
+        if _is_state_line(json_name):
             spelt = renaming.line(f"S\t{name}").removeprefix("S\t").replace("\t", " ")
         else:
-            spelt = renaming.name(found.kind, name)
+            spelt = renaming.name(json_name.kind, name)
         if spelt != name:
-            edits.append((found.start, found.end, json_line(spelt + found.rest)))
-            if found.id_span:
-                start, end = found.id_span
-                edits.append((start, end, text[start:end].replace(found.id, renaming.id(found.id))))
+            edits.append((json_name.start, json_name.end, json_line(spelt + json_name.suffix)))
+            if json_name.id_span:
+                start, end = json_name.id_span
+                edits.append((start, end, text[start:end].replace(json_name.id, renaming.id(json_name.id))))
     parts: list[str] = []
-    done = 0
+    copied = 0
     for start, end, spelt in sorted(edits):
-        parts += text[done:start], spelt
-        done = end
-    return "".join((*parts, text[done:]))
+        parts += text[copied:start], spelt
+        copied = end
+    return "".join((*parts, text[copied:]))
 
 
 class _JsonName(NamedTuple):
     """A name in JSON: where its quotes are, and the id beside it with its place, if there is one.
 
-    ``rest`` is what stands behind the name and is no part of it: the ``*`` of a composite motion.
+    ``suffix`` is the text behind the name that is no part of it: the ``*`` of a composite motion.
     """
 
     kind: NameKind
     name: str
     start: int
     end: int
-    rest: str = ""
+    suffix: str = ""
     id: str = ""
     id_span: tuple[int, int] | None = None
 
@@ -92,34 +92,34 @@ class _Level:
 
 
 def _json_names(text: str) -> list[_JsonName]:
-    """Return the names of a text that is JSON, those of an object when it ends."""
+    """Return the names of a JSON text, those of an object at its end."""
     levels = [_Level("", True)]
-    found: list[_JsonName] = []
+    names: list[_JsonName] = []
     tokens = list(TOKEN.finditer(text))
-    for match, after in zip(tokens, [*tokens[1:], None], strict=True):
+    for match, next_token in zip(tokens, [*tokens[1:], None], strict=True):
         token, level = match[0], levels[-1]
         if token in {"{", "["}:
-            levels.append(_Level(level.key, token == "[", len(found)))
+            levels.append(_Level(level.key, token == "[", len(names)))
         elif token in {"}", "]"}:
             levels.pop()
-            found += _with_ids(level)
+            names += _with_ids(level)
             if level.is_list and level.owner == "ingredients":
-                levels[-1].lists_ingredients = any(not is_none(each.name) for each in found[level.first :])
+                levels[-1].lists_ingredients = any(not is_none(each.name) for each in names[level.first :])
             elif level.lists_ingredients:
-                _name_contents(found, level.first)
+                _name_contents(names, level.first)
         elif token in {":", ","}:
             continue
-        elif not level.is_list and after is not None and after[0] == ":":
+        elif not level.is_list and next_token is not None and next_token[0] == ":":
             level.key = str(json.loads(token))
         elif level.key.endswith("_id"):
             level.ids[level.key] = token.strip('"'), match.span()
         elif token[0] == '"' and (kind := _json_kind(level)):
             written = str(json.loads(token, strict=False))
             composite = kind is NameKind.MOTION and level.key != "id" and written.rstrip(" ").endswith("*")
-            name = written.strip(" ").rstrip("* ") if composite else written.strip(" ")
-            rest = "*" if composite else ""
-            level.names.append((level.key, _JsonName(kind, name, *match.span(), rest)))
-    return found
+            plain_name = written.strip(" ").rstrip("* ") if composite else written.strip(" ")
+            suffix = "*" if composite else ""
+            level.names.append((level.key, _JsonName(kind, plain_name, *match.span(), suffix)))
+    return names
 
 
 def _with_ids(level: _Level) -> Iterator[_JsonName]:
@@ -143,12 +143,12 @@ def _name_contents(names: list[_JsonName], first: int) -> None:
             return
 
 
-def _is_state_line(found: _JsonName) -> bool:
-    return found.kind is NameKind.STATE and re.search(r"[\[{]", found.name) is not None
+def _is_state_line(json_name: _JsonName) -> bool:
+    return json_name.kind is NameKind.STATE and re.search(r"[\[{]", json_name.name) is not None
 
 
 def _json_kind(level: _Level) -> NameKind | None:
-    """Say of what kind a text is, by the keys over it."""
+    """Return the kind of a text from the keys above it, ``None`` if it is no name."""
     key = level.key
     if key in {"motion_label", "motion_node", "id"}:
         return NameKind.MOTION

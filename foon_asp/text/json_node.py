@@ -1,14 +1,14 @@
-"""Object nodes read from our own JSON."""
+"""Reading object nodes from the JSON that foon-asp writes."""
 
 from foon_asp.network import ObjectNode
 from foon_asp.text.json_value import Json
 
 
 def read_node_json(value: Json) -> ObjectNode:
-    """Return the node that plain values of a :class:`foon_asp.results.values.Node` stand for.
+    """Return the node of the plain values of a :class:`foon_asp.results.values.Node`.
 
-    Raises :class:`KeyError` or :class:`TypeError` for what has another form, and :class:`ValueError` where
-    the notation and the parts are not the same node.
+    Raises :class:`KeyError` or :class:`TypeError` for values of another form, and :class:`ValueError` if
+    the notation and the parts are different nodes.
     """
     node = ObjectNode.of(
         value["label"],

@@ -1,4 +1,4 @@
-"""One object node in JSON, in either of the forms that are about."""
+"""Reading object nodes from JSON, in either of the published forms."""
 
 import json
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from foon_asp.text.line_parser import parse_node, read_state
 from foon_asp.text.listed_unit import ObjectBlock
 from foon_asp.text.reading import Reading
 
-# The names that say the same, and which of them are read at all.
+# The equivalent keys of the two forms, and the keys that are allowed.
 _LABEL, _STATES = ("label", "object_label"), ("states", "object_states")
 _STATE_LABEL, _RELATED = ("state_label", "label"), ("relative_object", "related_object")
 _OTHERS = {"ingredients", "container", "object_id", "object_in_motion", "has_portions", "recipe_category"}
@@ -27,7 +27,7 @@ _STATE_KEYS = {*_STATE_LABEL, *_RELATED, "state_id"}
 class JsonObject(NamedTuple):
     """An object node as an object line and state lines, and the container that is named without a word.
 
-    ``remarks`` say what was repaired, and what the node has that lines cannot hold.
+    ``remarks`` are repairs, and parts of the node that lines cannot hold.
     """
 
     line: ObjectLine
@@ -40,16 +40,16 @@ def read_object(value: object) -> JsonObject:
     """Read a node from ``{"label", "states", "ingredients", "container"}`` or the names of the other form.
 
     States are names, also ``in [bowl]``, or objects with ``state_label`` and ``relative_object``. The
-    ingredients are those of a state that says ``contains``, which need not be there. What is missing,
-    null, empty or ``"None"`` is none. Raises :class:`ValueError` for a value of another form.
+    ingredients are those of a state ``contains``, which may be missing. A missing, null or empty value and
+    ``"None"`` are no value. Raises :class:`ValueError` for a value of another form.
     """
     if not isinstance(value, dict):
         raise ValueError(f'found {shown(value)}, expected an object {{"label": ..., "states": [...]}}')
     check_keys(value, KEYS)
-    key, found = first_of(value, _LABEL)
-    label = _name(found, key).strip(" ")
+    label_key, label_value = first_of(value, _LABEL)
+    label = _name(label_value, label_key).strip(" ")
     if not label:
-        raise ValueError(f'found {shown(found)} as "{key}", expected a name')
+        raise ValueError(f'found {shown(label_value)} as "{label_key}", expected a name')
     states = [_state(state) for state in _list(value, *first_of(value, _STATES))]
     listed = _list(value, "ingredients", value.get("ingredients"))
     ingredients = tuple(item for item in map(_ingredient, listed) if item)
@@ -65,9 +65,9 @@ def read_object(value: object) -> JsonObject:
 
 
 def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-    """Read a list of objects; what there is to say about them is noted in ``reading``.
+    """Yield the objects of a list with their patterns; diagnostics are added to ``reading``.
 
-    A ``container`` is in what an object stands for, and not among its states.
+    A ``container`` is in the pattern of an object, and not among its states.
     """
     elements = JsonList(text, Path(file))
     for block, pattern, remarks in read_objects(elements):
@@ -78,7 +78,7 @@ def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[
 
 
 def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern, tuple[str, ...]]]:
-    """Read the entries of a list with what they match and remarks; what is none is noted as its error.
+    """Yield the entries of a list with their patterns and remarks; faults are errors of the list.
 
     An entry is a node as :func:`read_object` reads it, one in one-line notation, or one of an answer in JSON.
     """
@@ -93,13 +93,13 @@ def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern,
         else:
             block = ObjectBlock(line, states, source)
             pattern = NodePattern.of(block.node)._replace(container=container)
-            if isinstance(value, dict) and value.get("ingredients"):  # which are under whatever word
+            if isinstance(value, dict) and value.get("ingredients"):  # under any word
                 pattern = pattern._replace(contents=())
             yield block, pattern, remarks
 
 
 def _whole_node(value: object) -> ObjectNode | None:
-    """Read a node that is written as our own output has it; ``None`` for another form."""
+    """Return a node in one-line notation or as in an answer; ``None`` for another form."""
     if isinstance(value, str):
         try:
             return parse_node(value)
@@ -122,26 +122,26 @@ def _block(node: ObjectNode, source: Source) -> ObjectBlock:
     return ObjectBlock(ObjectLine(node.label), tuple(states), source)
 
 
-def check_keys(value: dict[str, object], known: set[str]) -> None:
-    """Raise :class:`ValueError` for a key that nothing reads."""
-    if not value.keys() <= known:
-        unknown = min(value.keys() - known)
-        raise ValueError(f"found the key {unknown!r}, expected one of {', '.join(sorted(known))}")
+def check_keys(value: dict[str, object], allowed: set[str]) -> None:
+    """Raise :class:`ValueError` for a key that is not allowed."""
+    if not value.keys() <= allowed:
+        unknown = min(value.keys() - allowed)
+        raise ValueError(f"found the key {unknown!r}, expected one of {', '.join(sorted(allowed))}")
 
 
 def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
-    """Return the one of several keys that an object has, and its value; else the first key and ``None``.
+    """Return the key of ``keys`` that an object has, and its value; else the first key and ``None``.
 
-    Raises :class:`ValueError` when it has two of them.
+    Raises :class:`ValueError` if it has two of the keys.
     """
-    here = [key for key in keys if key in value] or [keys[0]]
-    if len(here) > 1:
-        raise ValueError(f"found both {here[0]!r} and {here[1]!r}, expected one of them")
-    return here[0], value.get(here[0])
+    present = [key for key in keys if key in value] or [keys[0]]
+    if len(present) > 1:
+        raise ValueError(f"found both {present[0]!r} and {present[1]!r}, expected one of them")
+    return present[0], value.get(present[0])
 
 
 def optional_name(value: object, key: str) -> str | None:
-    """Return a name; ``None`` for what is null, empty or ``"None"``, however its letters are written."""
+    """Return a name; ``None`` for null, an empty text and ``"None"`` in letters of any case."""
     if value is None:
         return None
     name = _name(value, key, "a name or null").strip(" ")
@@ -149,19 +149,19 @@ def optional_name(value: object, key: str) -> str | None:
 
 
 def is_none(name: str) -> bool:
-    """Whether a text stands for no value: it is empty, or ``None`` in letters of any case."""
+    """Whether a text means no value: it is empty, or ``None`` in letters of any case."""
     return name.strip().lower() in {"", "none"}
 
 
 def number(value: dict[str, object], key: str) -> str:
     """Return the digits of a number, which may be written as text; empty if there is none."""
-    found = value.get(key)
-    if found is None or (isinstance(found, str) and is_none(found)):
+    field = value.get(key)
+    if field is None or (isinstance(field, str) and is_none(field)):
         return ""
-    written = found.text if isinstance(found, JsonNumber) else found
+    written = field.text if isinstance(field, JsonNumber) else field
     if isinstance(written, str) and is_number(written):
         return written
-    raise ValueError(f'found {shown(found)} as "{key}", expected a number')
+    raise ValueError(f'found {shown(field)} as "{key}", expected a number')
 
 
 def price_of(value: object, exponents: bool = False) -> str:
@@ -189,12 +189,14 @@ def price_of(value: object, exponents: bool = False) -> str:
 def _state(value: object) -> StateLine:
     if isinstance(value, dict):
         check_keys(value, _STATE_KEYS)
-        key, found = first_of(value, _STATE_LABEL)
-        state = _state(_name(found, key))
+        label_key, label_value = first_of(value, _STATE_LABEL)
+        state = _state(_name(label_value, label_key))
         related = optional_name(first_of(value, _RELATED)[1], _RELATED[0])
         if related:
             if not isinstance(state.attribute, str):
-                raise ValueError(f"found the related object {related!r} besides the one in {shown(found)}")
+                raise ValueError(
+                    f"found the related object {related!r} besides the one in {shown(label_value)}"
+                )
             state = state._replace(attribute=Relation(state.attribute, related))
         return state._replace(id=number(value, "state_id"))
     name = _name(value, "states", "a name").strip(" ")
@@ -205,7 +207,7 @@ def _state(value: object) -> StateLine:
 
 
 def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
-    """Put the ingredients where a state says ``contains``, or behind all states."""
+    """Return states with the ingredients in the state ``contains``, or else behind all states."""
     contents = Contents("contains", tuple(sorted(ingredients)))
     for index, state in enumerate(states):
         if state.attribute == contents.word:
@@ -226,18 +228,18 @@ def _left_out(value: dict[str, object], flag: str, category: str, ingredients: l
 
 
 def _ingredient(value: object) -> str:
-    """An ingredient is a name; where it is a whole object, its label."""
+    """Return the name of an ingredient, the label of a whole object."""
     if isinstance(value, dict):
         return read_object(value).line.label
     return _name(value, "ingredients").strip(" ")
 
 
-def _list(value: dict[str, object], key: str, found: object) -> list[object]:
-    if found is None:
+def _list(value: dict[str, object], key: str, items: object) -> list[object]:
+    if items is None:
         return []
-    if not isinstance(found, list):
-        raise ValueError(f'found {shown(found)} as "{key}", expected a list of names')
-    return found
+    if not isinstance(items, list):
+        raise ValueError(f'found {shown(items)} as "{key}", expected a list of names')
+    return items
 
 
 def _name(value: object, key: str, expected: str = "a name") -> str:

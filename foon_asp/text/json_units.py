@@ -1,8 +1,8 @@
-"""FOON units in JSON, in the two forms that are about.
+"""FOON units in JSON, in the two published forms.
 
 The one is ``{"source": [...], "functional_units": [...]}`` with ``object_label``, ``object_states`` and ids;
 the other a bare list of units whose objects have ``label``, ``states``, ``ingredients`` and ``container``.
-Both are read into the lines that FOON text would have, so that nothing after the reading knows which it was.
+Both are read into the lines of FOON text, so that all later stages are independent of the form.
 """
 
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_ty
 
 
 def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-    """Yield the units in order; what there is to say about them is noted in ``reading``.
+    """Yield the units in order; diagnostics are added to ``reading``.
 
     An object whose ``container`` is named without a word is ``in`` it.
     """
@@ -58,9 +58,9 @@ def _is_object(value: object) -> bool:
 
 
 def _videos(value: object) -> tuple[str, ...]:
-    """The videos that were annotated: one address, or a list."""
-    found = value if isinstance(value, list) else [value]
-    return tuple(" ".join(video.split()) for video in found if isinstance(video, str) and video.strip())
+    """Return the addresses of the annotated videos from one address or a list."""
+    values = value if isinstance(value, list) else [value]
+    return tuple(" ".join(video.split()) for video in values if isinstance(video, str) and video.strip())
 
 
 def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, list[str]]:
@@ -70,21 +70,21 @@ def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, li
         raise ValueError(f"found no functional unit, expected an object with {', '.join(sorted(_NEEDED))}")
     check_keys(value, _KEYS)
     remarks: list[str] = []
-    inputs, outputs = (_side(value, key, source, remarks) for key in ("input_nodes", "output_nodes"))
+    inputs, outputs = (_blocks(value, key, source, remarks) for key in ("input_nodes", "output_nodes"))
     motion = _motion(value["motion_node"], remarks)
     price = price_of(value.get("price"))
     unit = ListedUnit(motion, inputs, outputs, (source._replace(videos=videos),), source, price)
     return unit, list(dict.fromkeys(remarks))
 
 
-def _side(unit: dict[str, object], key: str, source: Source, remarks: list[str]) -> tuple[ObjectBlock, ...]:
+def _blocks(unit: dict[str, object], key: str, source: Source, remarks: list[str]) -> tuple[ObjectBlock, ...]:
     objects = unit[key]
     if not isinstance(objects, list):
         raise ValueError(f'found no list as "{key}", expected a list of objects')
     blocks = []
     for value in objects:
-        line, states, container, said = read_object(value)
-        remarks += said
+        line, states, container, object_remarks = read_object(value)
+        remarks += object_remarks
         if container is not None and not any(_names(state, container) for state in states):
             states = (*states, StateLine(Relation("in", container)))
         blocks.append(ObjectBlock(line, states, source))

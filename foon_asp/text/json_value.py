@@ -1,4 +1,4 @@
-"""JSON texts and plain values, and the names of what we write, with the version in them."""
+"""JSON texts and plain values, and the schema names of foon-asp with their versions."""
 
 import json
 import re
@@ -10,12 +10,12 @@ Json = dict[str, Any]
 
 _encode = json.JSONEncoder(ensure_ascii=False).encode
 _WIDTH = 95  # of a line of a text, without the key before it
-_FOLDER = re.compile(r'"/[^"]*/')  # of a file: where somebody keeps it changes no line break
-_VERSIONS = {"verify": 2}  # 1 of all else; what changes the meaning of a key, or takes one away, is another
+_FOLDER = re.compile(r'"/[^"]*/')  # of a file; its folder does not affect line breaks
+_VERSIONS = {"verify": 2}  # 1 for all others; changing or removing a key needs a new version
 
 
 def schema_name(kind: str) -> str:
-    """Return the name of a kind of JSON, ``foon-asp/answer/1``; ``foon-asp schema`` says what is in it."""
+    """Return the schema name of a kind of JSON, ``foon-asp/answer/1``; ``foon-asp schema`` describes it."""
     return f"foon-asp/{kind}/{_VERSIONS.get(kind, 1)}"
 
 
@@ -31,16 +31,16 @@ def _laid_out(value: object, newline: str) -> str:
     inner = f"{newline}  "
     if isinstance(value, dict):
         opening, closing = "{}"
-        parts = [f"{json_line(str(key))}: {_laid_out(part, inner)}" for key, part in value.items()]
+        items = [f"{json_line(str(key))}: {_laid_out(item, inner)}" for key, item in value.items()]
     elif isinstance(value, list | tuple):
         opening, closing = "[]"
-        parts = [_laid_out(part, inner) for part in value]
+        items = [_laid_out(item, inner) for item in value]
     else:
         return json_line(value)
-    line = f"{opening}{', '.join(parts)}{closing}"
+    line = f"{opening}{', '.join(items)}{closing}"
     if "\n" not in line and len(newline) + len(_FOLDER.sub('"', line)) <= _WIDTH:
         return line
-    return f"{opening}{inner}{f',{inner}'.join(parts)}{newline}{closing}"
+    return f"{opening}{inner}{f',{inner}'.join(items)}{newline}{closing}"
 
 
 def json_line(value: object, default: Callable[[Any], object] | None = None) -> str:
@@ -56,8 +56,8 @@ def json_line(value: object, default: Callable[[Any], object] | None = None) -> 
 def read_json(text: str | bytes, pairs: Callable[[list[tuple[str, Any]]], object] | None = None) -> Any:
     """Parse a JSON text; ``pairs`` makes the objects, as ``json.loads`` has it.
 
-    Raises :class:`ValueError` for whatever is wrong with it: also for what is nested deeper than Python can
-    read, and for a number with more digits than Python turns into one.
+    Raises :class:`ValueError` for any fault, also for lists nested deeper and numbers longer than Python can
+    read.
     """
     try:
         return json.loads(text, object_pairs_hook=pairs)

@@ -1,6 +1,6 @@
-"""Writing units and objects in JSON, in the two forms that are about.
+"""Writing units and objects in JSON, in the two published forms.
 
-What is written is laid out like the files in these forms, and read by :mod:`foon_asp.text.json_units`.
+The texts are laid out like the published files, and read by :mod:`foon_asp.text.json_units`.
 """
 
 import re
@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from foon_asp.network import Contents, NodePattern, Relation
 from foon_asp.text.conversion_loss import CannotHoldError, lost_in_line, lost_in_states
 from foon_asp.text.diagnostics import Severity
-from foon_asp.text.format import Dialect, Part
+from foon_asp.text.format import Dialect, WrittenPart
 from foon_asp.text.json_layout import STEP, lay_out
 from foon_asp.text.json_list import JsonNumber
 from foon_asp.text.json_object import read_json_objects
@@ -26,7 +26,7 @@ _NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
 
 
 class JsonWriter:
-    """Writes one of the forms, and reads each part back: names may mean something else there."""
+    """A writer of one of the forms, which reads each part back to find changed meanings and losses."""
 
     holds_prices = True
     holds_no_inputs = False
@@ -35,7 +35,7 @@ class JsonWriter:
         self._is_list = target is Dialect.JSON_LIST
         self._level = 1 if self._is_list else 2  # at which a unit stands
 
-    def block(self, block: ObjectBlock, in_list: bool) -> Part:
+    def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
         """Write an object."""
         line, states = block.object, block.states
         text = (list_object if self._is_list else json_object)(line, states)
@@ -43,7 +43,7 @@ class JsonWriter:
         losses = lost_in_line(line, back.object) + lost_in_states(states, back.states)
         return lay_out(text, 1 if in_list else self._level + 2), losses
 
-    def motion(self, line: MotionLine) -> Part:
+    def motion(self, line: MotionLine) -> WrittenPart:
         """Write a motion."""
         text = (list_motion if self._is_list else json_motion)(line)
         back = _unit('{"label":"x"}', text).motion
@@ -62,7 +62,7 @@ class JsonWriter:
         return written_list(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return the videos, where they are those of the whole file and one key can name them."""
+        """Return the videos if the form has a key for them and they are those of the whole file, or none."""
         named = tuple(video for video in map(read_video, comments) if video)
         return videos if not self._is_list and named == videos and not any(map(read_copy, comments)) else ()
 
@@ -76,21 +76,21 @@ def with_container(block: ObjectBlock, pattern: NodePattern) -> ObjectBlock:
 
 def _listed(text: str) -> ObjectBlock:
     reading = Reading()
-    found = [with_container(*entry) for entry in read_json_objects(f"[{text}]", "", reading)]
+    blocks = [with_container(*entry) for entry in read_json_objects(f"[{text}]", "", reading)]
     _raise_first_error(reading)
-    return found[0]
+    return blocks[0]
 
 
 def _unit(node: str, motion: str) -> ListedUnit:
     text = f'[{{"input_nodes":[{node}],"motion_node":{motion},"output_nodes":[{node}]}}]'
     reading = Reading()
-    found = list(read_json_units(text, "", reading))
+    units = list(read_json_units(text, "", reading))
     _raise_first_error(reading)
-    return found[0]
+    return units[0]
 
 
 def _raise_first_error(reading: Reading) -> None:
-    """Refuse what cannot be read back; what is only in doubt there was so before, or counts as lost."""
+    """Raise :class:`CannotHoldError` for an error; warnings were made before, or count as losses."""
     for diagnostic in reading.diagnostics:
         if diagnostic.severity is Severity.ERROR:
             raise CannotHoldError(diagnostic.message)
@@ -106,19 +106,19 @@ def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
     container = None
     written: list[dict[str, object]] = []
     for state in states:
-        said = state.attribute
-        label, related = str(said), None
-        if isinstance(said, Relation):
-            if not said.word:
-                container = said.object
+        attribute = state.attribute
+        label, related = str(attribute), None
+        if isinstance(attribute, Relation):
+            if not attribute.word:
+                container = attribute.object
                 continue
-            label, related = said
-        elif isinstance(said, Contents):
-            bare = any(other["state_label"] == "contains" for other in written)
-            if said.word == "contains" and state.listed and not bare:
+            label, related = attribute
+        elif isinstance(attribute, Contents):
+            has_contents = any(other["state_label"] == "contains" for other in written)
+            if attribute.word == "contains" and state.listed and not has_contents:
                 label, ingredients = "contains", state.listed
             else:
-                label = f"{said.word} {{{','.join(state.listed)}}}"
+                label = f"{attribute.word} {{{','.join(state.listed)}}}"
         written.append({"state_id": _number(state.id), "state_label": label, "relative_object": related})
     value: dict[str, object] = {
         "object_id": _number(line.id),
@@ -127,7 +127,7 @@ def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
         "ingredients": list(ingredients),
         "object_in_motion": _number(line.motion_flag or ""),
     }
-    if line.category and line.motion_flag:  # behind no flag it would be read as one
+    if line.category and line.motion_flag:  # without a flag before it, it would be read as the flag
         value["recipe_category"] = _number(line.category)
     if container is not None:
         value["container"] = container
@@ -151,15 +151,18 @@ def json_motion(line: MotionLine) -> str:
 
 
 def list_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
-    """Write an object with label, states, ingredients and one container, by ``in`` if it has such a one."""
-    said = [state.attribute for state in states]
-    places = sorted((place for place in said if isinstance(place, Relation)), key=lambda p: p.word != "in")
+    """Write an object with label, states, ingredients and one container, that of ``in`` if it has one."""
+    attributes = [state.attribute for state in states]
+    relations = sorted(
+        (attribute for attribute in attributes if isinstance(attribute, Relation)),
+        key=lambda p: p.word != "in",
+    )
     return _text(
         {
             "label": line.label,
-            "states": [state for state in said if isinstance(state, str)],
+            "states": [state for state in attributes if isinstance(state, str)],
             "ingredients": [item for state in states for item in state.listed],
-            "container": places[0].object if places else None,
+            "container": relations[0].object if relations else None,
         }
     )
 
@@ -170,26 +173,26 @@ def list_motion(line: MotionLine) -> str:
 
 
 def written_unit(inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str, level: int) -> str:
-    """Put a unit together from the texts of its parts, laid out for a unit that stands at that level.
+    """Return the text of a unit at a level from the texts of its parts.
 
-    Its motion then stands one level deeper, and its objects two. ``price`` is empty where it has none.
+    Its motion is laid out one level deeper, and its objects two. ``price`` is empty for none.
     """
     key = "\n" + STEP * (level + 1)
-    sides = (written_list(side, level + 1) for side in (inputs, outputs))
+    lists = (written_list(objects, level + 1) for objects in (inputs, outputs))
     last = f',{key}"price": {_text(_number(price))}' if price else ""
     return '{{{0}"input_nodes": {1},{0}"motion_node": {3},{0}"output_nodes": {2}{4}{5}}}'.format(
-        key, *sides, motion, last, "\n" + STEP * level
+        key, *lists, motion, last, "\n" + STEP * level
     )
 
 
 def written_network(videos: Sequence[str], units: Sequence[str]) -> str:
-    """Put a whole file together from the texts of its units, laid out for their level 2."""
+    """Return the text of a whole file from the texts of its units, laid out for level 2."""
     source = f'    "source": {written_list(list(map(_text, videos)), 1)},\n' if videos else ""
     return f'{{\n{source}    "functional_units": {written_list(units, 1)}\n}}\n'
 
 
 def written_list(values: Sequence[str], level: int) -> str:
-    """Put a list together from the texts of its values, laid out for one level deeper than its own."""
+    """Return the text of a list from the texts of its values, laid out one level deeper."""
     if not values:
         return "[]"
     start = "\n" + STEP * (level + 1)

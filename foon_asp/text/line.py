@@ -1,4 +1,4 @@
-"""One line of FOON text and what it says."""
+"""Parsed lines of FOON text."""
 
 from collections.abc import Iterator
 from enum import StrEnum
@@ -11,7 +11,7 @@ SLIPPED_FLAGS = {"00", "01"}
 
 
 class NameKind(StrEnum):
-    """What a name is for; an object is named by its label, as a container and as an ingredient."""
+    """The kind of a name; objects, containers and ingredients are one kind."""
 
     OBJECT = "object"
     STATE = "state"
@@ -20,7 +20,7 @@ class NameKind(StrEnum):
 
 
 class Mention(NamedTuple):
-    """A name where it stands in a file, with the id that stands with it, if any."""
+    """A mention of a name in a file, with its id, if any."""
 
     kind: NameKind
     name: str
@@ -28,7 +28,7 @@ class Mention(NamedTuple):
 
 
 class Remark(NamedTuple):
-    """A warning about one column (from 1) of a line that could be read all the same."""
+    """A warning about one column (from 1) of a line that could be read nevertheless."""
 
     column: int
     code: str
@@ -95,7 +95,7 @@ Line = ObjectLine | StateLine | MotionLine
 
 
 def name_of(line: Line) -> str:
-    """Return what an id stands for: a label, a motion, a state, or the word of a relation or of contents."""
+    """Return the name that the id of a line is for: label, motion, state or relation word."""
     if isinstance(line, ObjectLine):
         return line.label
     if isinstance(line, MotionLine):
@@ -104,7 +104,7 @@ def name_of(line: Line) -> str:
 
 
 def kind_of(line: Line) -> NameKind:
-    """Return of what kind that name is."""
+    """Return the kind of :func:`name_of` a line."""
     if isinstance(line, StateLine):
         return NameKind.STATE if isinstance(line.attribute, str) else NameKind.WORD
     return NameKind.OBJECT if isinstance(line, ObjectLine) else NameKind.MOTION
@@ -121,20 +121,22 @@ def line_names(line: Line) -> Iterator[Mention]:
 
 
 class LineError(Exception):
-    """A line that the grammar does not accept: where (column from 1), what was found, what may be there.
+    """A line that the grammar does not accept: the column (from 1), what was found, and what was expected.
 
-    ``advice`` says what to write instead, if that can be guessed.
+    ``advice`` is a correction, if it can be guessed.
     """
 
     def __init__(self, column: int, found: str, expected: tuple[str, ...], advice: str = "") -> None:
-        wanted = ", ".join(expected[:-1]) + " or " + expected[-1] if len(expected) > 1 else "".join(expected)
-        super().__init__(f"found {found}, expected {wanted}" + (f"; {advice}" if advice else ""))
+        alternatives = (
+            ", ".join(expected[:-1]) + " or " + expected[-1] if len(expected) > 1 else "".join(expected)
+        )
+        super().__init__(f"found {found}, expected {alternatives}" + (f"; {advice}" if advice else ""))
         self.column = column
         self.found = found
         self.expected = expected
 
     def kept(self) -> Self:
-        """Return the error to keep as a value: without what was going on when it was raised."""
+        """Return the error as a value to keep, without traceback and context."""
         self.__context__ = None
         return self.with_traceback(None)
 

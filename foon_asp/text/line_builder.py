@@ -1,4 +1,4 @@
-"""Lines of FOON text token by token, through the Lark grammar ``foon.lark``."""
+"""Parsing of lines of FOON text and of node notation with the Lark grammar ``foon.lark``."""
 
 import re
 from functools import cache
@@ -23,7 +23,7 @@ from foon_asp.text.motion_times import MotionFields, is_time, mended_time
 from foon_asp.text.plain_file import FENCE
 
 _GRAMMAR = Path(__file__).with_name("foon.lark")
-_NAME_LENGTH = 40  # letters of a line that may be a name
+_MAX_NAME_LENGTH = 40  # letters of a line that may be a name
 _ITEM = re.compile(r' *"(?:\\.|[^"\\])*" *|[^,]+')  # between commas, which quotes may hold too
 _TERMINALS = {
     "OBJECT": "an object line (O, tab, label)",
@@ -44,7 +44,7 @@ _TERMINALS = {
 
 
 class _LineBuilder(Transformer[Token, object]):
-    """Turns parsed lines into values; columns in remarks come from the tokens."""
+    """A transformer of parse trees into lines and nodes; columns in remarks come from the tokens."""
 
     def object(self, tokens: list[Token]) -> ObjectLine:
         remarks: list[Remark] = []
@@ -88,10 +88,14 @@ class _LineBuilder(Transformer[Token, object]):
         token = tokens[2]
         column = (token.column or 1) + len(token) - len(token.lstrip("\t "))
         name = token.strip("\t ")
-        bracket, what = ("{%s}", "a list") if "," in name or word == "contains" else ("[%s]", "an object")
+        bracket, assumption = (
+            ("{%s}", "a list") if "," in name or word == "contains" else ("[%s]", "an object")
+        )
         shown = bracket % name.rstrip("]}")
-        remarks.append(Remark(column, "bracket", f"{name!r} is not in brackets; read as {what}, {shown}"))
-        # the first item stands where the remark says, behind a bracket that is not there
+        remarks.append(
+            Remark(column, "bracket", f"{name!r} is not in brackets; read as {assumption}, {shown}")
+        )
+        # the column of the first item is that of the remark, without a bracket before it
         return _bracketed(word, Token("BARE", shown, column=column - 1), id_, remarks)
 
     def related(self, tokens: list[Token]) -> StateLine:
@@ -103,7 +107,7 @@ class _LineBuilder(Transformer[Token, object]):
     holding = related
 
     def node(self, parts: list[Token | str | Relation | Contents]) -> ObjectNode:
-        label, *notes = (part for part in parts if not isinstance(part, Token) or part.type == "NAME")
+        label, *notes = (token for token in parts if not isinstance(token, Token) or token.type == "NAME")
         return ObjectNode(
             unquoted(str(label)),
             frozenset(note for note in notes if isinstance(note, str)),
@@ -122,7 +126,7 @@ class _LineBuilder(Transformer[Token, object]):
 
 
 def _noted(word: str, bracket: str) -> str | Relation | Contents:
-    """Return what a bracket of the notation says; names in quotes are read to the letter."""
+    """Return the relation, contents or state of a bracket; names in quotes are read to the letter."""
     written = [item.strip(" ") for item in _ITEM.findall(bracket[1:-1])]
     if not any(item.startswith('"') for item in written):
         return _bracketed(word, Token("PLACE", bracket), "", []).attribute
@@ -136,7 +140,7 @@ def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
 
 
 def _id(letter: Token, remarks: list[Remark]) -> str:
-    """Return the id behind the letter; one tab has to follow."""
+    """Return the id behind the letter of a line, with a remark unless exactly one tab follows."""
     if letter[-1] == "\t" and letter[-2] not in "\t ":
         return letter[1:-1]
     id_ = letter[1:].rstrip("\t ")
@@ -165,18 +169,20 @@ def _fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, ...]:
 
 
 def _flag_and_tag(tokens: list[Token], fields: tuple[str, ...], remarks: list[Remark]) -> tuple[str, ...]:
-    """Check what follows a label: a motion flag, then for a goal its category or ``!``."""
-    places = [token for token in tokens[2:] if token.strip("\t ")]
+    """Return the fields behind a label, checked: a motion flag, then for a goal its category or ``!``."""
+    field_tokens = [token for token in tokens[2:] if token.strip("\t ")]
     flag = fields[0]
     if flag in SLIPPED_FLAGS:
-        remarks.append(_remark(places[0], "motion-flag", f"motion flag {flag!r} read as {flag[1]!r}", 1))
+        remarks.append(
+            _remark(field_tokens[0], "motion-flag", f"motion flag {flag!r} read as {flag[1]!r}", 1)
+        )
         fields = (flag[1], *fields[1:])
     elif flag not in MOTION_FLAGS and flag != "!":
-        remarks.append(_remark(places[0], "motion-flag", f"motion flag {flag!r} is not 0 or 1", 1))
-    for field, place in zip(fields[1:], places[1:], strict=True):
+        remarks.append(_remark(field_tokens[0], "motion-flag", f"motion flag {flag!r} is not 0 or 1", 1))
+    for field, token in zip(fields[1:], field_tokens[1:], strict=True):
         if not is_number(field) and field != "!":
             message = f"{field!r} is neither a category nor the goal mark !"
-            remarks.append(_remark(place, "unknown-field", message, 1))
+            remarks.append(_remark(token, "unknown-field", message, 1))
     return fields
 
 
@@ -187,7 +193,7 @@ def _blank_end(tokens: list[Token], remarks: list[Remark]) -> None:
 
 
 def _tabbed(tokens: list[Token], remarks: list[Remark]) -> tuple[str, Token]:
-    """Return the word and the bracket without the tab that should stand between them."""
+    """Return the word and the bracket without the tab between them, with a remark if it is missing."""
     _, word, bracket = tokens
     column = bracket.column or 1
     if bracket[0] == "\t" and bracket[1] in "[{":
@@ -211,16 +217,18 @@ def _name(token: Token, remarks: list[Remark]) -> str:
 
 
 def _bracketed(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
-    """``word [object]`` or ``word {list}``; a list, or the word ``contains``, in ``[]`` is still a list.
+    """Return the state line of ``word [object]`` or ``word {list}``.
+
+    A list, or the word ``contains``, in ``[]`` is still a list.
 
     Empty ``[]`` leave the word alone, which then is a state, as in ``on``.
     """
     closing = "]" if bracket[0] == "[" else "}"
     if bracket[-1] != closing or len(bracket) == 1:
-        whole = bracket.rstrip("]}") + closing
-        what = "closed by the wrong bracket" if bracket[-1] in "]}" else "not closed"
-        remarks.append(_remark(bracket, "bracket", f"{bracket} is {what}; read as {whole}"))
-        bracket = Token(bracket.type, whole, column=bracket.column)
+        closed = bracket.rstrip("]}") + closing
+        fault = "closed by the wrong bracket" if bracket[-1] in "]}" else "not closed"
+        remarks.append(_remark(bracket, "bracket", f"{bracket} is {fault}; read as {closed}"))
+        bracket = Token(bracket.type, closed, column=bracket.column)
     if closing == "]":
         if "," not in bracket and name != "contains":
             return _related(name, bracket, id_, remarks)
@@ -251,7 +259,7 @@ def _parser() -> Lark:
 
 
 def build(start: str, text: str) -> object:
-    """Parse a line with its line end, or a node in one-line notation, and return what it says.
+    """Return the parsed line of a text with its line end, or the node of a one-line notation.
 
     Raises :class:`LineError` for a text that the grammar does not accept, taken as one line.
     """
@@ -259,7 +267,7 @@ def build(start: str, text: str) -> object:
         return _parser().parse(text, start=start)
     except UnexpectedInput as error:
         fault = _line_error(error, text, in_file=start == "line")
-    raise fault  # with nothing of what the parser had in its hands
+    raise fault  # raised here, so that it has no context of the parser
 
 
 def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
@@ -275,28 +283,28 @@ def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
         names = set(error.expected)
     if in_file:
         names.discard("$END")  # a line ends by its newline
-    rest = text[column - 1 :]
+    remaining = text[column - 1 :]
     if in_file:
-        rest = rest.removesuffix("\n")
-    found = "the end of the line"
-    if rest:
-        found = repr(rest if len(rest) <= 24 else rest[:24] + "...")
+        remaining = remaining.removesuffix("\n")
+    shown = "the end of the line"
+    if remaining:
+        shown = repr(remaining if len(remaining) <= 24 else remaining[:24] + "...")
     advice = ""
     if in_file and {"OBJECT", "STATE", "MOTION"} <= names:
         names.add("SEPARATOR")
-        advice = _advice(rest)
+        advice = _advice(remaining)
     expected = tuple(dict.fromkeys(phrase for name, phrase in _TERMINALS.items() if name in names))
-    return LineError(column, found, expected, advice)
+    return LineError(column, shown, expected, advice)
 
 
 def _advice(line: str) -> str:
-    """Return how to write a line that begins with none of the letters; empty where that cannot be guessed."""
+    """Return advice on a line without a letter at its beginning; empty if it cannot be guessed."""
     if not line.replace("\t", " ").isprintable():
         return ""
     if line.startswith(FENCE):
         return "remove this line: a code fence is no part of FOON text"
     if begins := re.match(r"([osm]\d*)[ \t]+(\S.*)", line):
         return f"write {begins[1].upper()}, a tab, and {begins[2]}"
-    if re.fullmatch(r"[^\W\d_][^\t\[\]{};:]*", line) and len(line) <= _NAME_LENGTH:
+    if re.fullmatch(r"[^\W\d_][^\t\[\]{};:]*", line) and len(line) <= _MAX_NAME_LENGTH:
         return f"an object is written O, a tab, and {line}"
     return ""

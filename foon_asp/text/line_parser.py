@@ -1,6 +1,6 @@
 """Reading lines of FOON text and nodes in one-line notation.
 
-Lark is imported for what is not written as it should be.
+Lark is imported only for lines that are not well-formed.
 """
 
 from functools import lru_cache
@@ -11,7 +11,7 @@ from foon_asp.network import ObjectNode
 from foon_asp.text.clean_line import clean_line, clean_node
 from foon_asp.text.line import Line, LineError, StateLine
 
-_LONGEST = 1_000_000  # letters of a line: no FOON line means more
+_MAX_LINE = 1_000_000  # letters of a line
 
 
 def parse_line(text: str) -> Line:
@@ -24,10 +24,10 @@ def parse_line(text: str) -> Line:
 
 @lru_cache(50_000)  # of the 35,576 lines of the universal FOON, 2,123 are different
 def read_line(text: str) -> Line | LineError:
-    """Return what a line says, or its error."""
+    """Return the parsed line of a text, or its error."""
     try:
-        if len(text) > _LONGEST:
-            raise LineError(_LONGEST + 1, f"a line of {len(text)} letters", (f"at most {_LONGEST}",))
+        if len(text) > _MAX_LINE:
+            raise LineError(_MAX_LINE + 1, f"a line of {len(text)} letters", (f"at most {_MAX_LINE}",))
         return parse_line(text)
     except LineError as error:
         return error.kept()
@@ -59,7 +59,7 @@ def parse_node(notation: str) -> ObjectNode:
 
 
 def parse_name(text: str) -> str | ObjectNode:
-    """Return the label that a text is alone, or the node in one-line notation; ``onion;`` is a node.
+    """Return the label if a text is a label alone, else the node of a one-line notation, as ``onion;`` is.
 
     Raises :class:`LineError` like :func:`parse_node`.
     """
@@ -69,7 +69,7 @@ def parse_name(text: str) -> str | ObjectNode:
 
 
 def read_state(text: str) -> StateLine:
-    """Read what a state of a JSON file says, as on a state line: ``whole``, ``in [bowl]``, ``coated {a,b}``.
+    """Read a state of a JSON file as on a state line: ``whole``, ``in [bowl]``, ``coated {a,b}``.
 
     Raises :class:`LineError`, with the column in ``text``, when the grammar does not accept it.
     """
@@ -85,6 +85,6 @@ def read_state(text: str) -> StateLine:
 
 
 def _build(start: str, text: str) -> object:
-    from foon_asp.text.line_builder import build  # noqa: PLC0415 (takes Lark along)
+    from foon_asp.text.line_builder import build  # noqa: PLC0415 (imports Lark)
 
     return build(start, text)

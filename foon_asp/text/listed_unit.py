@@ -1,4 +1,4 @@
-"""Object blocks and functional units as they stand in a file, with all that is no part of their identity."""
+"""Object blocks and functional units as listed in a file, with lines, ids and sources."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -8,7 +8,7 @@ from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine
 
 
 class ObjectBlock(NamedTuple):
-    """One mention of an object node: its object line, the state lines under it, and where it begins."""
+    """A mention of an object node: its object line, the state lines under it, and its source."""
 
     object: ObjectLine
     states: tuple[StateLine, ...]
@@ -21,12 +21,12 @@ class ObjectBlock(NamedTuple):
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """Its lines, in order."""
+        """The lines of the block, in order."""
         return self.object, *self.states
 
 
 class ReadUnit(NamedTuple):
-    """One copy of a unit: what makes its identity, nodes in the order listed, and where it was read.
+    """A copy of a unit: its motion, its nodes in the order listed, and its sources.
 
     ``sources`` has one entry, unless a merged file says from which copies the unit came.
     """
@@ -43,7 +43,7 @@ class ReadUnit(NamedTuple):
 
 
 class ListedUnit(NamedTuple):
-    """One copy of a functional unit with its lines as read, nodes in the order listed.
+    """A copy of a functional unit with its lines as read, nodes in the order listed.
 
     ``sources`` has one entry, unless a merged file says from which copies the unit came;
     ``motion_source`` is the place of its motion. ``price`` is that of this copy as written,
@@ -69,7 +69,7 @@ class ListedUnit(NamedTuple):
 
 
 def node_of(label: str, attributes: Iterable[str | Relation | Contents]) -> ObjectNode:
-    """Build the node of a label and what the state lines under it say."""
+    """Return the node of a label and the attributes of the state lines under it."""
     states: list[str] = []
     relations: list[Relation] = []
     contents: list[Contents] = []

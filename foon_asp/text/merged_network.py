@@ -13,13 +13,13 @@ def merged_text(network: Network, comment: str) -> Iterator[str]:
     """Yield the text piece by piece: a comment, then the units in order of first reading, in plain form.
 
     Above each unit stands a line ``# From:`` for every copy of it, with file, line and videos; a copy that
-    is known twice, from a file and from what that was merged into, stands there once. Reading the text gives
+    was read twice, from a file and from a merge of that file, is listed once. Reading the text gives
     the same network and the same sources, except that columns are not written. Raises :class:`UserError`
     for a name that a line of text cannot hold, and for a unit without inputs.
     """
     blocks = list(map(write_node, network.objects))
     motions = {motion: write_motion(motion) for motion in dict.fromkeys(network.motions)}
-    known: dict[Source, str] = {}
+    comments: dict[Source, str] = {}
     yield f"# {comment}\n//\n"
     for motion, inputs, outputs, sources in zip(
         network.motions, network.inputs, network.outputs, network.sources, strict=True
@@ -27,7 +27,7 @@ def merged_text(network: Network, comment: str) -> Iterator[str]:
         if not inputs:
             raise UserError(f"the unit {motion!r} has no inputs, which FOON text cannot hold; a store can")
         for source in dict.fromkeys(source._replace(column=1) for source in sources):
-            yield known.get(source) or known.setdefault(source, _copy(source))
+            yield comments.get(source) or comments.setdefault(source, _copy(source))
         yield from (blocks[node] for node in inputs)
         yield motions[motion]
         yield from (blocks[node] for node in outputs)
@@ -35,7 +35,7 @@ def merged_text(network: Network, comment: str) -> Iterator[str]:
 
 
 def _copy(source: Source) -> str:
-    """Write a place, and read it back: the name of a file may hold what ends it in a line of text."""
+    """Return the comment of a source; raises :class:`UserError` if it is not read back as the same source."""
     written = write_copy(source)
     if (
         "\n" in written[:-1]

@@ -1,4 +1,4 @@
-"""What stands behind a motion: when in the source video it begins and ends, and who moves."""
+"""The fields of motion lines: times in the source video, the moving entity, its success rate."""
 
 import re
 from typing import NamedTuple
@@ -13,14 +13,14 @@ _TIME = re.compile(
 
 
 def is_time(field: str) -> bool:
-    """Whether a field says when: ``1:10``, ``0:02:50``, ``Assumed``, ``<0:12-0:34,0:40-0:44>``."""
+    """Whether a field is a time: ``1:10``, ``0:02:50``, ``Assumed``, ``<0:12-0:34,0:40-0:44>``."""
     return _TIME.fullmatch(field) is not None
 
 
 def mended_time(field: str) -> str:
-    """Return the time that was meant where that is beyond doubt, and else the field as it is.
+    """Return the time of a field with an obvious slip, and any other field as it is.
 
-    Only a letter missing in ``Assumed`` and a bracket too many or too few are.
+    Obvious slips are a letter missing in ``Assumed`` and a bracket too many or too few.
     """
     if _TIME.fullmatch(field):
         return field
@@ -37,7 +37,7 @@ def is_rate(field: str) -> bool:
 
 
 class MotionFields(NamedTuple):
-    """The fields of a motion line: its times, and with a success rate who moves and the rate."""
+    """The fields of a motion line: its times, and with a success rate the moving entity and the rate."""
 
     times: tuple[str, ...]
     entity: str | None = None
@@ -45,7 +45,7 @@ class MotionFields(NamedTuple):
 
     @classmethod
     def of(cls, fields: tuple[str, ...]) -> "MotionFields":
-        """Tell the fields apart: a rate is the last, behind an entity that is no time."""
+        """Return the fields by their kind: a rate is the last one, behind an entity that is no time."""
         if len(fields) > 1 and is_rate(fields[-1]) and not is_time(fields[-2]):
             return cls(fields[:-2], fields[-2], fields[-1])
         return cls(fields)
@@ -68,7 +68,7 @@ def in_two_fields(times: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def in_one_field(times: tuple[str, ...]) -> tuple[str, ...]:
-    """Write ``0:14`` and ``0:20`` as ``<0:14,0:20>``; what would be no time stays as it is."""
+    """Write ``0:14`` and ``0:20`` as ``<0:14,0:20>``; other fields stay as they are."""
     if len(times) == 2 and not any(time[:1] == "<" for time in times):
         begin, end = times
         field = f"<{begin}>" if begin == end and begin[:1] in {"A", "a"} else f"<{begin},{end}>"

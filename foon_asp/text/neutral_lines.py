@@ -1,7 +1,7 @@
 """Networks in the neutral form: a unit on each line, as JSON with plain names.
 
 ``{"id": "drive a b", "inputs": ["at a"], "outputs": ["at b"], "price": 3}``: the id is the motion, and a name
-is the label of an object node without states, to the letter; nothing in it is notation.
+is the label of an object node without states, and is never read as notation.
 """
 
 import json
@@ -21,14 +21,14 @@ from foon_asp.text.json_object import check_keys, price_of, shown
 from foon_asp.text.line import Mention, MotionLine, ObjectLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
 from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, not_utf_8, opened, split_lines, usual_line_end
-from foon_asp.text.reading import Reading, told
+from foon_asp.text.reading import Reading, progress_report
 
 if TYPE_CHECKING:
     from foon_asp.text.conversion_ids import Numbering
 
 _NEEDED = {"id", "inputs", "outputs"}
 _KEYS = {*_NEEDED, "price"}
-_TOLD = 65_536  # bytes from one report of progress to the next
+_REPORT_BYTES = 65_536  # bytes from one report of progress to the next
 
 
 class NeutralLines(FoonJson):
@@ -71,8 +71,8 @@ class NeutralLines(FoonJson):
         """Yield the units of a text in order, with the lines that they would have."""
         for unit, price in _units(split_lines(text), file, reading):
             inputs, outputs = (
-                tuple(ObjectBlock(ObjectLine(node.label), (), unit.source) for node in side)
-                for side in (unit.inputs, unit.outputs)
+                tuple(ObjectBlock(ObjectLine(node.label), (), unit.source) for node in nodes)
+                for nodes in (unit.inputs, unit.outputs)
             )
             yield ListedUnit(MotionLine(unit.motion), inputs, outputs, unit.sources, unit.source, price)
 
@@ -92,14 +92,14 @@ class NeutralLines(FoonJson):
         return json_mentions(text)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
-        """Return what writes a network, or a list of its names."""
-        from foon_asp.text.neutral_writer import NeutralWriter  # noqa: PLC0415 (for conversions alone)
+        """Return a writer of networks, and of lists of their names."""
+        from foon_asp.text.neutral_writer import NeutralWriter  # noqa: PLC0415 (only for conversions)
 
         return NeutralWriter()
 
 
 def _priced(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator[ReadUnit]:
-    """Yield units, and note their prices; of copies, the cheapest counts."""
+    """Yield units, and record their prices; of copies, the cheapest counts."""
     exact = cache(read_price)
     for unit, price in units:
         if price:
@@ -109,27 +109,27 @@ def _priced(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator
 
 
 def _lines_of(file: Path) -> Iterator[str]:
-    """Yield the lines of a file as they are asked for.
+    """Yield the lines of a file, read lazily.
 
     Raises :class:`InputError` with line and column of the first byte that is not UTF-8.
     """
-    tell, untold = told(), 0
+    report, unreported = progress_report(), 0
     with opened(file) as lines:
         for number, line in enumerate(lines, 1):
-            untold += len(line)
-            if tell and untold >= _TOLD:
-                tell(untold)
-                untold = 0
+            unreported += len(line)
+            if report and unreported >= _REPORT_BYTES:
+                report(unreported)
+                unreported = 0
             try:
                 yield line.decode("utf-8-sig" if number == 1 else "utf-8")
             except UnicodeDecodeError as error:
                 raise not_utf_8(line, error, file, number) from None
-    if tell:
-        tell(untold)
+    if report:
+        report(unreported)
 
 
 def _units(lines: Iterable[str], file: str, reading: Reading) -> Iterator[tuple[ReadUnit, str]]:
-    """Yield the units in order with their prices, exact decimals, which are empty where there is none."""
+    """Yield the units in order with their prices, exact decimals as text, empty for none."""
     nodes: dict[str, ObjectNode] = {}
     for number, line in enumerate(lines, 1):
         line = line.rstrip("\r\n")  # noqa: PLW2901 (a fault at the end is on this line)
@@ -155,8 +155,8 @@ def _unit(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[Read
     try:
         value = DECODER.decode(line)
     except json.JSONDecodeError as problem:
-        found = json_fault(problem)
-        raise _LineError(found.message, found.column) from None
+        syntax_fault = json_fault(problem)
+        raise _LineError(syntax_fault.message, syntax_fault.column) from None
     except JsonFaultError as fault:
         raise _LineError(str(fault), 1) from None
     except RecursionError:
@@ -170,9 +170,9 @@ def _unit(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[Read
         name = value[key]
         name = _name(name.text if isinstance(name, JsonNumber) else name, key)
         key = "inputs"
-        inputs = _side(value[key], key, nodes)
+        inputs = _nodes(value[key], key, nodes)
         key = "outputs"
-        outputs = _side(value[key], key, nodes)
+        outputs = _nodes(value[key], key, nodes)
         key = "price"
         price = value.get(key)
         written = _number_price(price.text) if isinstance(price, JsonNumber) else price_of(price)
@@ -186,15 +186,15 @@ def _number_price(written: str) -> str:
     return price_of(JsonNumber(written), exponents=True)
 
 
-def _side(value: object, key: str, nodes: dict[str, ObjectNode]) -> list[ObjectNode]:
+def _nodes(value: object, key: str, nodes: dict[str, ObjectNode]) -> list[ObjectNode]:
     if not isinstance(value, list):
         raise ValueError(f'found {shown(value)} as "{key}", expected a list of names')
-    side = []
+    listed = []
     for name in value:
         if not isinstance(name, str) or name not in nodes:
             nodes[name] = ObjectNode(_name(name, key))
-        side.append(nodes[name])
-    return side
+        listed.append(nodes[name])
+    return listed
 
 
 def _name(value: object, key: str) -> str:

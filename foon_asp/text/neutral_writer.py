@@ -5,7 +5,7 @@ from decimal import Decimal
 
 from foon_asp.network import ObjectNode
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line
-from foon_asp.text.format import Part
+from foon_asp.text.format import WrittenPart
 from foon_asp.text.json_value import json_line
 from foon_asp.text.json_writer import written_list
 from foon_asp.text.line import MotionLine, ObjectLine
@@ -15,20 +15,20 @@ from foon_asp.text.text_writer import with_word
 
 def write_neutral_unit(id_: str, inputs: Iterable[str], outputs: Iterable[str], price: str) -> str:
     """Write a unit as one line of plain names."""
-    needs, gives = (", ".join(map(json_line, side)) for side in (inputs, outputs))
+    input_list, output_list = (", ".join(map(json_line, names)) for names in (inputs, outputs))
     last = f', "price": {Decimal(price):f}' if price else ""
-    return f'{{"id": {json_line(id_)}, "inputs": [{needs}], "outputs": [{gives}]{last}}}\n'
+    return f'{{"id": {json_line(id_)}, "inputs": [{input_list}], "outputs": [{output_list}]{last}}}\n'
 
 
 class NeutralWriter:
-    """Writes a unit with the motion as its id, and each object node as one name, in one-line notation."""
+    """A writer of units with the motion as id, and object nodes as names in one-line notation."""
 
     holds_prices = holds_no_inputs = True
 
     def __init__(self) -> None:
         self._names: dict[str, ObjectNode] = {}
 
-    def block(self, block: ObjectBlock, in_list: bool) -> Part:
+    def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
         """Return the plain name of an object node, which no other node has."""
         states = tuple(map(with_word, block.states))
         node = block._replace(states=states).node
@@ -42,7 +42,7 @@ class NeutralWriter:
         losses += [Loss.CONTAINERS] * (states != block.states)
         return name, losses
 
-    def motion(self, line: MotionLine) -> Part:
+    def motion(self, line: MotionLine) -> WrittenPart:
         """Return the id of a unit."""
         return line.motion, lost_in_line(line, MotionLine(line.motion))
 

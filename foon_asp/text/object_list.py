@@ -11,7 +11,7 @@ from foon_asp.text.reading import Reading
 
 
 class ListedObject(NamedTuple):
-    """One entry of a kitchen or goals file and the place where it stands."""
+    """An entry of a kitchen or goals file, and its source."""
 
     pattern: NodePattern
     source: Source
@@ -20,8 +20,8 @@ class ListedObject(NamedTuple):
 def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> list[ListedObject]:
     """Read a JSON list of ``{"label", "states", "ingredients", "container"}``, or object blocks.
 
-    In JSON, ``states``, ``ingredients`` and ``container`` may be missing (none). What was assumed while
-    reading is added to ``warnings``. Raises :class:`InputError` with the line and column of every entry
+    In JSON, ``states``, ``ingredients`` and ``container`` may be missing (none). Warnings are added
+    to ``warnings``. Raises :class:`InputError` with the line and column of every entry
     that is not of this form.
     """
     text = read_plain_text(file)

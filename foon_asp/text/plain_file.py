@@ -1,4 +1,4 @@
-"""Text files as they come, UTF-8 with or without a byte order mark; and what is none."""
+"""Text files, UTF-8 with or without a byte order mark, and how to tell stores from them."""
 
 import re
 from codecs import BOM_UTF8, getincrementaldecoder
@@ -17,19 +17,19 @@ _BEGINNING = 1_000_000  # bytes; a unit of the neutral form may be that long
 _LINE = re.compile(r"([^\r\n]*)(\r\n|\r|\n|\Z)")
 _LINE_END = re.compile(r"\r\n|\r|\n")
 FENCE = "```"
-"""How a line begins by which Markdown, and who writes it, tells code from prose."""
+"""The beginning of lines around code in Markdown."""
 STORE_MAGIC = b"SQLite format 3\0"  # how every database begins
 
 
 def is_store(file: Path) -> bool:
-    """Whether a path is no text but a store: it is named like one, or begins like any database."""
+    """Whether a path is a store: it has the suffix of one, or begins like an SQLite database."""
     if file.suffix == STORE_SUFFIX and not file.is_dir():
         return True
     return read_beginning(file, len(STORE_MAGIC)) == STORE_MAGIC
 
 
 def read_beginning(file: Path, length: int) -> bytes:
-    """Return the first bytes of a file; nothing where it cannot be read, or can be once only, as a pipe."""
+    """Return the first bytes of a file; empty if it cannot be read, or only once, as a pipe."""
     if not file.is_file():
         return b""
     try:
@@ -62,7 +62,7 @@ def _unreadable(file: Path, error: OSError) -> UserError:
 def text_pieces(file: Path, size: int) -> Iterator[str]:
     """Yield the text of a file in pieces of some ``size``, every line end as a line feed.
 
-    Raises as :func:`read_plain_text` does, before it gives anything.
+    Raises as :func:`read_plain_text` does, before it yields a piece.
     """
     with opened(file) as stream:
         begins = stream.read(len(STORE_MAGIC))
@@ -75,7 +75,7 @@ def text_pieces(file: Path, size: int) -> Iterator[str]:
         except UnicodeDecodeError:
             begins = STORE_MAGIC
         if begins == STORE_MAGIC:
-            read_plain_text(file)  # says what is wrong
+            read_plain_text(file)  # raises the error
         stream.seek(0)
         with TextIOWrapper(stream, "utf-8-sig", newline=None) as text:
             while piece := text.read(size):
@@ -83,7 +83,7 @@ def text_pieces(file: Path, size: int) -> Iterator[str]:
 
 
 def split_lines(text: str) -> list[str]:
-    """Return the lines of a text without their ends, whatever these are."""
+    """Return the lines of a text without their line ends, of any kind."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
@@ -99,7 +99,7 @@ def usual_line_end(text: str) -> str:
 
 
 def with_own_mark(text: str) -> str:
-    """Return what to write for a text: a byte order mark that begins it would be lost in reading."""
+    """Return a text as it is to be written, with a second byte order mark if it begins with one."""
     return f"\ufeff{text}" if text.startswith("\ufeff") else text
 
 

@@ -1,4 +1,4 @@
-"""Where units come from: the comment lines of a FOON file that say so.
+"""The provenance of units: comment lines of a FOON file that name videos and copies.
 
 ``# Source:⇥ADDRESS`` at the top of a file names a video that was annotated. ``# From:⇥FILE:LINE⇥ADDRESS``
 above a unit of a merged file names one copy that the unit was merged from, and the videos of that copy.
@@ -8,7 +8,7 @@ from foon_asp.network import Source
 
 _VIDEO = "# Source:"
 _COPY = "# From:"
-_LINE_DIGITS = 9  # of a line number, at most
+_MAX_LINE_DIGITS = 9  # of a line number
 
 
 def read_video(comment: str) -> str | None:
@@ -27,9 +27,9 @@ def read_copy(comment: str) -> Source | None:
     """Return the place that a comment line above a merged unit names; ``None`` for another comment."""
     if not comment.startswith(_COPY):
         return None
-    place, *videos = comment[len(_COPY) :].lstrip("\t ").split("\t")
-    file, colon, line = (place if videos else place.rstrip()).rpartition(":")
-    if not (file and colon and line.isascii() and line.isdigit() and len(line) <= _LINE_DIGITS):
+    position, *videos = comment[len(_COPY) :].lstrip("\t ").split("\t")
+    file, colon, line = (position if videos else position.rstrip()).rpartition(":")
+    if not (file and colon and line.isascii() and line.isdigit() and len(line) <= _MAX_LINE_DIGITS):
         return None
     return Source(file, int(line), 1, tuple(_fields("\t".join(videos))))
 
@@ -40,5 +40,5 @@ def write_copy(source: Source) -> str:
 
 
 def _fields(text: str) -> list[str]:
-    """Return what stands between tabs, without blanks around it: in linear time, whatever it is."""
+    """Return the texts between tabs without blanks around them, in linear time."""
     return [field.strip() for field in text.split("\t") if field.strip()]

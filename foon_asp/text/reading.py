@@ -1,4 +1,4 @@
-"""What is found in files while they are read, and how far their reading has come."""
+"""The state of reading files: diagnostics, prices and goal marks, and reports of progress."""
 
 import contextlib
 from collections.abc import Callable, Iterable, Iterator
@@ -10,14 +10,14 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.repeated_node import RepeatedNode
 from foon_asp.text.stated_prices import StatedPrices
 
-Tell = Callable[[int], None]
-"""Is called with the number of bytes that were read since it was called last."""
+Report = Callable[[int], None]
+"""Is called with the number of bytes read since its last call."""
 
-_tell: ContextVar[Tell | None] = ContextVar("_tell", default=None)
+_report: ContextVar[Report | None] = ContextVar("_report", default=None)
 
 
 class Reading:
-    """What files say beside their units, and what there is to say about them.
+    """The diagnostics of files, and the prices and marks that they have beside their units.
 
     With ``lenient``, what is not understood is left out with a warning; otherwise it is an error.
     ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that are in no
@@ -35,7 +35,7 @@ class Reading:
         self.repeated: list[RepeatedNode] = []
 
     def reject(self, code: str, message: str, source: Source, excerpt: str = "") -> None:
-        """Record what is not understood: an error, or with ``lenient`` a warning that it was left out."""
+        """Record a fault as an error, or with ``lenient`` as a warning that its line was left out."""
         severity = Severity.WARNING if self.lenient else Severity.ERROR
         message += "; left out" if self.lenient else ""
         self.diagnostics.append(Diagnostic(severity, code, message, source, excerpt))
@@ -43,7 +43,7 @@ class Reading:
     def warn(
         self, code: str, message: str, source: Source, excerpt: str = "", fix: str | None = None
     ) -> None:
-        """Record what was assumed."""
+        """Record a warning about an assumption."""
         self.diagnostics.append(Diagnostic(Severity.WARNING, code, message, source, excerpt, fix))
 
     def raise_errors(self, earlier: int = 0) -> None:
@@ -61,20 +61,20 @@ class Reading:
 
 
 @contextlib.contextmanager
-def telling(tell: Tell) -> Iterator[None]:
-    """Call a function now and then, as networks are read in a ``with`` block."""
-    token = _tell.set(tell)
+def telling(report: Report) -> Iterator[None]:
+    """Report progress to a function while networks are read in a ``with`` block."""
+    token = _report.set(report)
     try:
         yield
     finally:
-        _tell.reset(token)
+        _report.reset(token)
 
 
-def told() -> Tell | None:
-    """Return the function to call, if there is one."""
-    return _tell.get()
+def progress_report() -> Report | None:
+    """Return the function that receives reports of progress, if any."""
+    return _report.get()
 
 
 def size_of(files: Iterable[Path]) -> int:
-    """Return how many bytes there are to read."""
+    """Return the total size of files in bytes."""
     return sum(file.stat().st_size for file in files if file.is_file())

@@ -1,4 +1,4 @@
-"""One name written otherwise everywhere in a file: FOON text, JSON, and the tables beside them."""
+"""Renaming of a name everywhere in a file: FOON text, JSON, and the tables beside them."""
 
 import re
 from collections import Counter
@@ -24,10 +24,10 @@ _FIELD = re.compile(r"[^\t\[\]{},]+")
 
 
 class Renaming:
-    """Says how names are written when one is renamed, after all mentions in all files have been learnt.
+    """A renaming of one name, applied after all mentions in all files have been learnt.
 
     Where the new name has an id already, the lines of the old one get it; else they keep theirs.
-    ``mentions`` counts how often the old name stood, ``already`` how often the new one did.
+    ``mentions`` counts the mentions of the old name, ``already`` those of the new one.
     """
 
     def __init__(self, rename: Rename) -> None:
@@ -36,7 +36,7 @@ class Renaming:
         self._ids: Counter[str] = Counter()
 
     def learn(self, mentions: Iterable[Mention]) -> None:
-        """Count the names of a file, and note the ids of the new one."""
+        """Count the mentions in a file, and record the ids of the new name."""
         kind, old, new = self.rename
         for name_kind, name, id_ in mentions:
             if name_kind == kind and name == new:
@@ -45,7 +45,7 @@ class Renaming:
             self.mentions += name_kind == kind and name == old
 
     def learn_ids(self, ids: Mapping[str, int]) -> None:
-        """Record how often which ids stand with the new name, where that is known already."""
+        """Add counts of the ids of the new name."""
         self._ids.update(ids)
 
     def line(self, line: str) -> str:
@@ -55,36 +55,38 @@ class Renaming:
         parsed = read_line(line)
         if isinstance(parsed, LineError):
             return line
-        wanted = self._said(parsed)
-        if wanted == parsed:
+        renamed = self._renamed(parsed)
+        if renamed == parsed:
             return line
         if self._names_it(parsed):
-            wanted = wanted._replace(id=self.id(parsed.id))
+            renamed = renamed._replace(id=self.id(parsed.id))
         letter = line.partition("\t")[0]
         fields = line[len(letter) :]
-        head = f"{line[:1]}{wanted.id}" if letter == f"{line[:1]}{parsed.id}" else letter
+        head = f"{line[:1]}{renamed.id}" if letter == f"{line[:1]}{parsed.id}" else letter
         _, old, new = self.rename
-        spelt = head + _FIELD.sub(
+        text = head + _FIELD.sub(
             lambda m: m[0].replace(old, new) if m[0].strip(" *") == old else m[0], fields
         )
-        found = read_line(spelt)
-        # what else stands in the line stays as it is written, unless the name stands in it for something else
-        same = not isinstance(found, LineError) and found._replace(remarks=()) == wanted._replace(remarks=())
-        return spelt if same else write_line(wanted)
+        parsed_back = read_line(text)
+        # the spelling of the line stays, unless the old name is in it with another meaning
+        is_same = not isinstance(parsed_back, LineError) and parsed_back._replace(
+            remarks=()
+        ) == renamed._replace(remarks=())
+        return text if is_same else write_line(renamed)
 
     def _names_it(self, line: Line) -> bool:
         """Whether the id of a line is that of the old name."""
         return name_of(line) == self.rename.old and self.rename.kind == kind_of(line)
 
-    def id(self, before: str) -> str:
-        """Return the id that a line gets: that of the new name, if there are any."""
-        return self._ids.most_common(1)[0][0] if before and self._ids else before
+    def id(self, old_id: str) -> str:
+        """Return the new id of a line with an id: the most frequent of the new name, if it has any."""
+        return self._ids.most_common(1)[0][0] if old_id and self._ids else old_id
 
     def name(self, kind: NameKind, name: str) -> str:
-        """Return the name that a name of some kind gets."""
+        """Return a name of a kind, renamed if it is the old one."""
         return self.rename.new if (kind, name) == self.rename[:2] else name
 
-    def _said(self, line: Line) -> Line:
+    def _renamed(self, line: Line) -> Line:
         if isinstance(line, ObjectLine):
             return line._replace(label=self.name(NameKind.OBJECT, line.label))
         if isinstance(line, MotionLine):
@@ -100,38 +102,40 @@ class Renaming:
         return Contents(word, tuple(sorted(self._items(attribute.ingredients))))
 
     def _items(self, items: tuple[str, ...]) -> tuple[str, ...]:
-        """Return ingredients with the new name, once where it stands among them already."""
+        """Return ingredients with the new name, without the old one if the new one is among them already."""
         kind, old, new = self.rename
         if kind == NameKind.OBJECT and new in items:
             return tuple(item for item in items if item != old)
         return tuple(self.name(NameKind.OBJECT, item) for item in items)
 
     def node(self, field: str) -> str:
-        """Return a node in one-line notation with the new name; what is none stays."""
+        """Return a node in one-line notation with the new name; other texts stay."""
         try:
             node = parse_node(field.strip())
         except LineError:
             return field
-        wanted = ObjectNode.of(
+        renamed = ObjectNode.of(
             self.name(NameKind.OBJECT, node.label),
             (self.name(NameKind.STATE, state) for state in node.states),
             (self._attribute(relation) for relation in node.relations),  # type: ignore[misc]
             (self._attribute(contents) for contents in node.contents),  # type: ignore[misc]
         )
-        return field if wanted == node else str(wanted) + ";" * field.rstrip().endswith(";")
+        return field if renamed == node else str(renamed) + ";" * field.rstrip().endswith(";")
 
 
 def is_name(kind: str, name: str) -> bool:
-    """Whether a text can be a name of a kind, wherever names of that kind stand in FOON text."""
+    """Whether a text can be a name of a kind in all positions of FOON text."""
     if not name or any(letter in name for letter in "\r\n"):
         return False
     letter, brackets = {"object": ("O", ("[", "]", "{", "}")), "motion": ("M", ())}.get(kind, ("S", ()))
     written = f"{letter}\t{name}" + "\t[x]" * (kind == NameKind.WORD)
     lines = [written, *(f"S\tin\t{o}{name}{c}" for o, c in zip(brackets[::2], brackets[1::2], strict=True))]
     try:
-        said = [
+        names = [
             name_ for line in map(parse_line, lines) if not line.remarks for _, name_, _ in line_names(line)
         ]
     except LineError:
         return False
-    return said == ([name, "in", name, "in", name] if brackets else [name, "x"] if len(said) == 2 else [name])
+    return names == (
+        [name, "in", name, "in", name] if brackets else [name, "x"] if len(names) == 2 else [name]
+    )

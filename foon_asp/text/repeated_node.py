@@ -1,4 +1,4 @@
-"""A node that a unit lists twice: it counts once, which is false where somebody means two of it."""
+"""Object nodes that a unit lists twice, which count once even if two were meant."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -8,9 +8,9 @@ from foon_asp.network import ObjectNode, Source, counted
 
 
 class RepeatedNode(NamedTuple):
-    """The first node that a copy of a unit lists twice on one side, and where.
+    """The first node that a copy of a unit lists twice on one side, and its source.
 
-    ``meant`` says that it is in neutral lines or JSON, which machines write: there it means two of it.
+    ``meant`` says that two are meant, as in neutral lines and JSON, which machines write.
     """
 
     node: str
@@ -19,15 +19,15 @@ class RepeatedNode(NamedTuple):
 
 
 def repeated_node(inputs: Sequence[ObjectNode], outputs: Sequence[ObjectNode]) -> ObjectNode | None:
-    """Return the first node that is twice on one side of a unit."""
+    """Return the first node that is twice on one side of a unit, else ``None``."""
     for nodes in (inputs, outputs):
         if len(set(nodes)) < len(nodes):
-            return next(node for at, node in enumerate(nodes) if node in nodes[:at])
+            return next(node for index, node in enumerate(nodes) if node in nodes[:index])
     return None
 
 
 def repeated_note(repeated: Sequence[RepeatedNode]) -> list[str]:
-    """Return a line about all of them, or none."""
+    """Return a note of one line about all repeated nodes; empty if there are none."""
     if not repeated:
         return []
     first = repeated[0]

@@ -1,4 +1,4 @@
-"""The tables beside a network as a format: they are known by the names of their files."""
+"""The format of the tables beside a network, recognised by file name."""
 
 from collections.abc import Iterator
 from pathlib import Path, PurePath
@@ -22,11 +22,11 @@ TABLES: dict[str, Table[Any, Any]] = {
     "utensils.txt": UTENSILS,
     "tools.txt": TOOLS,
 }
-"""By the name of the file."""
+"""The tables by file name."""
 
 
 class SideTable(FoonText):
-    """A table, as the files of a folder are renamed together; as FOON text, it has no units."""
+    """A table beside a network, which has names to rename and no units."""
 
     dialects = ()
 

@@ -38,14 +38,14 @@ def starter_files(
     this is not known.
     """
     motions = sorted(dict.fromkeys(network.motions))
-    known = {motion: (rates or {}).get(motion, Fraction(1)) for motion in motions}
+    all_rates = {motion: (rates or {}).get(motion, Fraction(1)) for motion in motions}
     return {
         "recipe.txt": recipe,
         "kitchen.txt": _KITCHEN + "".join(write_node(network.objects[o]) for o in sorted(kitchen)),
         "motion.txt": _MOTIONS
         + ("" if rates else _UNKNOWN)
-        + "".join(f"{motion}\t{_decimal(rate)}\n" for motion, rate in known.items()),
-        "utensils.txt": _UTENSILS + "".join(f"{label}\n" for label in _holders(network.objects)),
+        + "".join(f"{motion}\t{_decimal(rate)}\n" for motion, rate in all_rates.items()),
+        "utensils.txt": _UTENSILS + "".join(f"{label}\n" for label in _utensils(network.objects)),
         "goal_nodes.txt": _GOALS + "".join(map(write_node, goals)),
     }
 
@@ -54,8 +54,8 @@ def _decimal(rate: Fraction) -> str:
     return f"{float(rate):g}"
 
 
-def _holders(nodes: Sequence[ObjectNode]) -> list[str]:
-    """Return the labels of what holds something, and is no ingredient itself."""
+def _utensils(nodes: Sequence[ObjectNode]) -> list[str]:
+    """Return the labels of objects that contain others and are no ingredients."""
     holding = {node.label for node in nodes if node.ingredients}
     places = {relation.object for node in nodes for relation in node.relations}
     return sorted((holding & places).difference(item for node in nodes for item in node.ingredients))

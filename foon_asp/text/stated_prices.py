@@ -1,4 +1,4 @@
-"""Prices that networks state of their own units."""
+"""Prices that networks state for their units."""
 
 from collections.abc import Mapping
 from fractions import Fraction
@@ -8,7 +8,7 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 
 class StatedPrices:
-    """The prices of copies of units, as they come; ``len`` counts the units that have any."""
+    """A collection of prices of copies of units; ``len`` counts the units with a price."""
 
     def __init__(self) -> None:
         self._copies: dict[FunctionalUnit, dict[Fraction, Source]] = {}
@@ -29,18 +29,18 @@ class StatedPrices:
     def settled(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
         """Return the one price of each unit; where copies disagree, it is the ``chosen`` one.
 
-        Of a unit with a copy of which the cheapest counts, it is the least.
+        For a unit recorded with :meth:`add_least`, it is the least price.
 
-        Raises :class:`InputError` for copies that disagree where none is chosen.
+        Raises :class:`InputError` for copies that disagree unless a price is chosen.
         """
         errors: list[Diagnostic] = []
-        found = dict(self._least)
+        settled_prices = dict(self._least)
         for unit, prices in self._copies.items():
             (price, first), *others = prices.items()
-            if unit in found:
-                found[unit] = min(found[unit], *prices)
+            if unit in settled_prices:
+                settled_prices[unit] = min(settled_prices[unit], *prices)
                 continue
-            found[unit] = chosen.get(unit, price) if others else price
+            settled_prices[unit] = chosen.get(unit, price) if others else price
             if others and unit not in chosen:
                 _, second = others[0]
                 message = (
@@ -50,4 +50,4 @@ class StatedPrices:
                 errors.append(Diagnostic(Severity.ERROR, "unit-price", message, second))
         if errors:
             raise InputError(errors)
-        return found
+        return settled_prices

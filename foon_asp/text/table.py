@@ -1,4 +1,4 @@
-"""Tables beside a network: on each line a name, a tab and what is said of it."""
+"""Tables beside a network: on each line a name, a tab and a value."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +14,7 @@ V = TypeVar("V")
 
 
 class Row(NamedTuple, Generic[K, V]):
-    """A name, what is said of it, and where that stands."""
+    """A row of a table: a name, its value, and its source."""
 
     name: K
     value: V
@@ -24,10 +24,10 @@ class Row(NamedTuple, Generic[K, V]):
 class Table(NamedTuple, Generic[K, V]):
     """The description of a kind of table.
 
-    ``code`` is that of its faults, ``names`` says of what kind the names in the first column are, and
-    ``expected`` what stands behind the tab; it is empty for a table of one column. ``row`` reads the name
-    before the tab and the text behind it, which begins in a column; it raises :class:`LineError`. ``second``
-    is the fault of a name of which two things are said.
+    ``code`` is that of its faults, ``names`` is the kind of the names in the first column, and ``expected``
+    describes the value behind the tab, empty for a table of one column. ``row`` reads the name before the
+    tab, and the text behind it with its column; it raises :class:`LineError`. ``second`` is the message about
+    a name with two values.
     """
 
     code: str
@@ -37,24 +37,24 @@ class Table(NamedTuple, Generic[K, V]):
     second: str = ""
 
     def rows(self, file: Path, text: str | None = None) -> list[Row[K, V]]:
-        """Read the rows of a file, or of its text where that is known, each name once.
+        """Return the rows of a file, or of its text if it is given, each name once.
 
-        Blank lines and ``#`` comments are passed over. Raises :class:`InputError` with every line of another
-        form, and with each that says another thing of a name than one above.
+        Blank lines and ``#`` comments are skipped. Raises :class:`InputError` with every line of another
+        form, and with each that has another value for a name than a line above.
         """
-        found: dict[K, Row[K, V]] = {}
+        rows_by_name: dict[K, Row[K, V]] = {}
 
         def read(name: str, value: str, source: Source) -> None:
             row = Row(*self.row(name.strip(), value, len(name) + 2), source)
-            if found.setdefault(row.name, row).value != row.value:
+            if rows_by_name.setdefault(row.name, row).value != row.value:
                 second = self.second.format(name=str(row.name), value=value)
                 raise LineError(len(name) + 2 + value.rfind("\t") + 1, second, ("one",))
 
         read_rows(file, self.code, self.expected, read, text)
-        return list(found.values())
+        return list(rows_by_name.values())
 
     def read(self, file: Path) -> dict[K, V]:
-        """Read what a file says, by name; raises as :meth:`rows` does."""
+        """Return the values of a file by name; raises as :meth:`rows` does."""
         return {row.name: row.value for row in self.rows(file)}
 
 
@@ -65,11 +65,11 @@ def read_rows(
     read: Callable[[str, str, Source], None],
     text: str | None = None,
 ) -> None:
-    """Hand every line of a file to ``read``: what stands before the tab, what behind it, and the place.
+    """Call ``read`` with each line of a file: the name before the tab, the value behind it, and the source.
 
-    The file is not read where its ``text`` is known.
+    The file is not read if its ``text`` is given.
 
-    Blank lines and ``#`` comments are passed over. Raises :class:`InputError`, under ``code``, with every
+    Blank lines and ``#`` comments are skipped. Raises :class:`InputError`, under ``code``, with every
     line without a tab, unless nothing is ``expected`` behind it, and with those for which ``read`` raises
     :class:`LineError`.
     """
@@ -78,13 +78,13 @@ def read_rows(
     for index, line in enumerate(lines, 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
-        name, tab, field = line.partition("\t") if expected else (line, "", "")
+        name, tab, value = line.partition("\t") if expected else (line, "", "")
         try:
             if expected and not tab:
                 raise LineError(len(line) + 1, "the end of the line", (f"a tab and {expected}",))
-            read(name, field.strip(), Source(str(file), index))
+            read(name, value.strip(), Source(str(file), index))
         except LineError as error:
-            place = Source(str(file), index, error.column)
-            errors.append(Diagnostic(Severity.ERROR, code, str(error), place, line))
+            source = Source(str(file), index, error.column)
+            errors.append(Diagnostic(Severity.ERROR, code, str(error), source, line))
     if errors:
         raise InputError(errors)

@@ -1,4 +1,4 @@
-"""The tables that there are beside a network, column by column."""
+"""The kinds of tables beside a network, and how their columns are read."""
 
 import re
 from collections.abc import Mapping
@@ -21,13 +21,13 @@ _DURATION = "a number of seconds such as 90 or 1.5, or of minutes or hours such 
 _PRICE = re.compile(r"\d{1,9}(\.\d{1,6})?", re.ASCII)
 _TOOLS = re.compile(r"[1-9]\d{0,5}", re.ASCII)
 _COPIES = re.compile(r"\d+", re.ASCII)
-_MAX_COPIES = 1_000_000  # of a node: clingo's numbers are not without end
+_MAX_COPIES = 1_000_000  # of a node; clingo's integers are limited
 _STAYS = {"stays": True, "used-up": False}
 _OBJECT_LINE = re.compile(r"^(?:\ufeff)?O\d*[\t ]", re.MULTILINE)
 
 
 class Duration(NamedTuple):
-    """How many ``seconds`` a motion takes; a ``passive`` one needs nobody to stand by, as baking does.
+    """The duration of a motion in ``seconds``; a ``passive`` one needs nobody to stand by, as baking does.
 
     Example:
         >>> foon_asp.Duration(1500, passive=True).seconds
@@ -39,14 +39,14 @@ class Duration(NamedTuple):
 
 
 def motion_column(name: str, what: str) -> str:
-    """Read the motion of which something is said; raises :class:`LineError` where there is none."""
+    """Return the motion in the first column; raises :class:`LineError` if it is empty."""
     if not name:
         raise LineError(1, what, ("the motion before it",))
     return name
 
 
 def stated_name(name: str) -> str | ObjectNode:
-    """Read what something is said of: a label, which stands for all of its nodes, or a node.
+    """Return the name in the first column: a label, which means all of its nodes, or a node.
 
     A semicolon behind a label alone makes it the node that has nothing else. Raises :class:`LineError`.
     """
@@ -158,10 +158,10 @@ def read_stock(file: Path) -> dict[ObjectNode, int]:
     reading = Reading()
     blocks = TextUnits([text], str(file), reading).objects()
     reading.raise_errors()
-    found: dict[ObjectNode, int] = {}
+    copies: dict[ObjectNode, int] = {}
     for block in blocks:
-        found[block.node] = found.get(block.node, 0) + 1
-    return found
+        copies[block.node] = copies.get(block.node, 0) + 1
+    return copies
 
 
 def read_default_duration(written: str) -> Fraction:
@@ -173,9 +173,11 @@ def read_default_duration(written: str) -> Fraction:
 
 
 def template_text(motions: Mapping[str, Duration | None]) -> str:
-    """Return a file of durations in which the word SECONDS stands for those that are not known."""
+    """Return a file of durations with the word SECONDS for unknown ones."""
     lines = ["# motion, tab, seconds (or 25 min, 1.5 h); behind another tab passive, if nobody stands by"]
-    for motion, known in motions.items():
-        seconds = "SECONDS" if known is None else decimal_text(Fraction(known.seconds))
-        lines.append(f"{motion}\t{seconds}" + ("\tpassive" if known is not None and known.passive else ""))
+    for motion, duration in motions.items():
+        seconds = "SECONDS" if duration is None else decimal_text(Fraction(duration.seconds))
+        lines.append(
+            f"{motion}\t{seconds}" + ("\tpassive" if duration is not None and duration.passive else "")
+        )
     return "\n".join(lines) + "\n"

@@ -1,7 +1,7 @@
 """The units of FOON text, and the objects of one that lists them without motions.
 
-A unit that is written as it should be is read by its object blocks, each distinct one once; every other one
-is read line by line, with all that there is to remark on.
+A well-formed unit is read by its object blocks, each distinct one once; any other one is read line by line,
+with remarks.
 """
 
 from collections.abc import Iterable, Iterator
@@ -16,20 +16,20 @@ from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit, node_of
 from foon_asp.text.plain_file import split_lines
 from foon_asp.text.provenance import is_video, read_copy, read_video
-from foon_asp.text.reading import Reading, told
+from foon_asp.text.reading import Reading, progress_report
 from foon_asp.text.writer import write_line
 
 _SEPARATOR = "\n//\n"
-_TOLD = 65_536  # bytes from one report of progress to the next
+_REPORT_BYTES = 65_536  # bytes from one report of progress to the next
 
-_Open = tuple[ObjectLine, list[StateLine], Source]  # an object block, while lines may still be added
+_OpenBlock = tuple[ObjectLine, list[StateLine], Source]  # an object block, while lines may still be added
 
 
 @lru_cache(50_000)  # of the 11,625 object blocks of the universal FOON, 4,361 are different
 def _clean_node(block: str) -> ObjectNode | None:
     """Return the node of an object block, given without its first letter.
 
-    It is ``None`` where there is anything to remark on, and for a goal, whose place has to be noted.
+    ``None`` for a block with remarks, and for a goal, whose source has to be recorded.
     """
     first, *others = map(read_line, f"O{block}".split("\n"))
     if not isinstance(first, ObjectLine) or first.remarks or first.is_goal:
@@ -45,7 +45,7 @@ def _clean_nodes(blocks: str) -> list[ObjectNode] | None:
 
 
 class TextUnits:
-    """One pass over the text of a file, which may come in pieces whose lines end with a line feed."""
+    """A pass over the text of a file, which may come in pieces whose lines end with a line feed."""
 
     def __init__(self, pieces: Iterable[str], file: str, reading: Reading) -> None:
         self.reading = reading
@@ -82,39 +82,39 @@ class TextUnits:
         return self._objects
 
     def _chunks(self) -> Iterator[tuple[str, bool]]:
-        """Cut the text at its separators; give each chunk, and whether it is the last."""
-        tell, untold = told(), 0
-        waiting = [next(self._pieces, "")]
-        if message := before_json(waiting[0]):
-            self._reject_json(message, waiting[0])
+        """Yield the text between separators, each chunk with whether it is the last."""
+        report, unreported = progress_report(), 0
+        pieces = [next(self._pieces, "")]
+        if message := before_json(pieces[0]):
+            self._reject_json(message, pieces[0])
             return
         for piece in chain(self._pieces, [""]):
-            waiting.append(piece)
-            # the more is left, the more is added: the time for a text without separators stays linear
-            if piece and sum(map(len, waiting)) < 2 * len(waiting[0]):
+            pieces.append(piece)
+            # doubling: the time for a text without separators stays linear
+            if piece and sum(map(len, pieces)) < 2 * len(pieces[0]):
                 continue
-            *chunks, rest = "".join(waiting).split(_SEPARATOR)
-            waiting = [rest]
+            *chunks, remainder = "".join(pieces).split(_SEPARATOR)
+            pieces = [remainder]
             for chunk in chunks:
                 yield chunk, False
                 self._number += chunk.count("\n") + 2
-                if tell:
-                    untold += len(chunk.encode()) + len(_SEPARATOR)
-                    if untold >= _TOLD:
-                        tell(untold)
-                        untold = 0
-        yield waiting[0], True
-        if tell:
-            tell(untold + len(waiting[0].encode()))
+                if report:
+                    unreported += len(chunk.encode()) + len(_SEPARATOR)
+                    if unreported >= _REPORT_BYTES:
+                        report(unreported)
+                        unreported = 0
+        yield pieces[0], True
+        if report:
+            report(unreported + len(pieces[0].encode()))
 
     def _reject_json(self, message: str, text: str) -> None:
-        """Record what stands before JSON, as the only fault of the file."""
+        """Record text before JSON, as the only fault of the file."""
         begins = text.lstrip()
         line = text[: len(text) - len(begins)].count("\n") + 1
         self.reading.reject("json", message, Source(self.file, line, 1), split_lines(begins)[0])
 
     def _clean_unit(self, chunk: str) -> ReadUnit | None:
-        """Read a unit by its object blocks; ``None`` where it has to be read line by line."""
+        """Read a unit by its object blocks; ``None`` if it has to be read line by line."""
         first, copies = self._number, []
         while chunk[:1] == "#":
             comment, line_end, chunk = chunk.partition("\n")
@@ -185,7 +185,7 @@ class TextUnits:
             self._objects += _blocks(section.inputs + section.outputs)
             return None
         if len(section.motions) != 1 or not section.inputs:
-            self._no_unit(section)
+            self._warn_of_no_unit(section)
             return None
         index, motion = section.motions[0]
         if not section.outputs:
@@ -194,11 +194,11 @@ class TextUnits:
         for block in (*inputs, *outputs):
             if block.object.is_goal:
                 self.reading.marked.setdefault(block.node, block.source)
-        sources = tuple(section.copies) or (self._place(section.first)._replace(videos=self._videos),)
-        return ListedUnit(motion, inputs, outputs, sources, self._place(index))
+        sources = tuple(section.copies) or (self._source(section.first)._replace(videos=self._videos),)
+        return ListedUnit(motion, inputs, outputs, sources, self._source(index))
 
     def _line(self, section: "_Section", index: int) -> None:
-        """Put a line where it belongs, or say why it belongs nowhere."""
+        """Add a line to its section, or record the fault of a line that fits nowhere."""
         line = self._lines[index]
         parsed = read_line(line)
         if isinstance(parsed, LineError):
@@ -220,8 +220,8 @@ class TextUnits:
         section.lost = False
         if isinstance(parsed, ObjectLine):
             section.states = []
-            side = section.outputs if section.motions else section.inputs
-            side.append((parsed, section.states, self._place(index)))
+            blocks = section.outputs if section.motions else section.inputs
+            blocks.append((parsed, section.states, self._source(index)))
             return
         section.states = None
         section.motions.append((index, parsed))
@@ -233,8 +233,8 @@ class TextUnits:
             self._reject("second-motion", message, index)
             section.blamed = True
 
-    def _no_unit(self, section: "_Section") -> None:
-        """Say that lines are no unit, unless an error among them already says why."""
+    def _warn_of_no_unit(self, section: "_Section") -> None:
+        """Warn that lines are no unit, unless an error among them explains it already."""
         if section.blamed and not self.reading.lenient:
             return
         lines, first = self._lines, section.first
@@ -249,11 +249,11 @@ class TextUnits:
         elif not section.closed and self._sections == 1:
             self._warn("no-motion", no_motion(len(section.inputs)), first)
         else:
-            found = "found //" if section.closed else "the file ends"
-            message = f"{found}, expected a motion line: {unit} has no motion; left out"
+            fault = "found //" if section.closed else "the file ends"
+            message = f"{fault}, expected a motion line: {unit} has no motion; left out"
             self._warn("no-motion", message, section.end if section.closed else meaningful[-1])
 
-    def _place(self, index: int, column: int = 1) -> Source:
+    def _source(self, index: int, column: int = 1) -> Source:
         return Source(self.file, self._number + index, column)
 
     def _remark(self, line: Line, index: int) -> None:
@@ -265,27 +265,27 @@ class TextUnits:
 
     def _warn(self, code: str, message: str, index: int, column: int = 1, fix: str | None = None) -> None:
         line = self._lines[index] if index < len(self._lines) else "//"
-        self.reading.warn(code, message, self._place(index, column), line, fix)
+        self.reading.warn(code, message, self._source(index, column), line, fix)
 
     def _reject(self, code: str, message: str, index: int, column: int = 1) -> None:
         self.reading.left_out += self.reading.lenient
-        self.reading.reject(code, message, self._place(index, column), self._lines[index])
+        self.reading.reject(code, message, self._source(index, column), self._lines[index])
 
 
 class _Section:
-    """The lines between two separators, while they are read one by one; places are indices of lines.
+    """The lines between two separators, while they are read one by one; positions are indices of lines.
 
-    ``states`` are those under the object line at hand, ``None`` before the first; ``lost`` says that this
-    object line cannot be read, and that the states under it go with it. ``blamed`` says that an error among
-    the lines can be why a motion or an object is missing. ``left_out`` is the count of before.
+    ``states`` are those under the current object line, ``None`` before the first; ``lost`` says that this
+    object line cannot be read, so that the states under it are left out. ``blamed`` says that an error among
+    the lines may be the reason for a missing motion or object. ``left_out`` is the count before the section.
     """
 
     def __init__(self, end: int, closed: bool, left_out: int) -> None:
         self.end, self.closed, self.left_out = end, closed, left_out
         self.first = -1
         self.motions: list[tuple[int, MotionLine]] = []
-        self.inputs: list[_Open] = []
-        self.outputs: list[_Open] = []
+        self.inputs: list[_OpenBlock] = []
+        self.outputs: list[_OpenBlock] = []
         self.copies: list[Source] = []
         self.states: list[StateLine] | None = None
         self.lost = self.blamed = False
@@ -297,5 +297,5 @@ def no_motion(objects: int) -> str:
     return f"{listed} and no motion: a list such as a kitchen or goals, without units"
 
 
-def _blocks(side: list[_Open]) -> tuple[ObjectBlock, ...]:
-    return tuple(ObjectBlock(line, tuple(states), source) for line, states, source in side)
+def _blocks(open_blocks: list[_OpenBlock]) -> tuple[ObjectBlock, ...]:
+    return tuple(ObjectBlock(line, tuple(states), source) for line, states, source in open_blocks)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from foon_asp.network import Relation
 from foon_asp.text.conversion_ids import Numbering
 from foon_asp.text.conversion_loss import CannotHoldError, lost_in_line
-from foon_asp.text.format import Dialect, Part
+from foon_asp.text.format import Dialect, WrittenPart
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ObjectBlock
@@ -15,7 +15,7 @@ from foon_asp.text.writer import write_line
 
 
 class TextWriter:
-    """Writes FOON text, and reads each line back: what stood in JSON may mean something else in text."""
+    """A writer of FOON text, which reads each line back: names from JSON may mean something else in text."""
 
     holds_prices = holds_no_inputs = False
 
@@ -23,12 +23,12 @@ class TextWriter:
         self._target = target
         self._numbering = numbering
 
-    def block(self, block: ObjectBlock, in_list: bool) -> Part:
+    def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
         """Write an object block."""
         parts = list(map(self._line, block.lines))
         return "".join(text for text, _ in parts), [loss for _, lost in parts for loss in lost]
 
-    def motion(self, line: MotionLine) -> Part:
+    def motion(self, line: MotionLine) -> WrittenPart:
         """Write a motion line."""
         return self._line(line)
 
@@ -49,8 +49,8 @@ class TextWriter:
         """Return the videos that a comment line can name."""
         return tuple(video for video in videos if read_video(f"# Source:\t{video}") == video)
 
-    def held(self, line: Line) -> Line:
-        """Return a line as the dialect has it."""
+    def in_dialect(self, line: Line) -> Line:
+        """Return a line with the parts that the dialect has."""
         line = line._replace(remarks=())
         line = with_word(line) if isinstance(line, StateLine) else line
         line = self._numbering.number(line) if self._target is Dialect.IDS else line._replace(id="")
@@ -59,13 +59,13 @@ class TextWriter:
                 return line._replace(fields=())
             return line._replace(fields=(), composite=False) if isinstance(line, MotionLine) else line
         if isinstance(line, MotionLine):
-            said = MotionFields.of(line.fields)
-            change = in_two_fields if self._target is Dialect.IDS else in_one_field
-            return line._replace(fields=said._replace(times=change(said.times)).fields)
+            motion_fields = MotionFields.of(line.fields)
+            convert = in_two_fields if self._target is Dialect.IDS else in_one_field
+            return line._replace(fields=motion_fields._replace(times=convert(motion_fields.times)).fields)
         return line
 
-    def _line(self, line: Line) -> Part:
-        written = write_line(self.held(line))
+    def _line(self, line: Line) -> WrittenPart:
+        written = write_line(self.in_dialect(line))
         if any("\ud800" <= c <= "\udfff" for c in written):
             raise CannotHoldError(f"{written!r} contains half a character")
         back = read_line(written) if "\n" not in written and "\r" not in written else None
@@ -75,7 +75,7 @@ class TextWriter:
 
 
 def with_word(line: StateLine) -> StateLine:
-    """Return a container without a word as one that the object is in."""
+    """Return a container without a word with the word ``in``."""
     if isinstance(line.attribute, Relation) and not line.attribute.word:
         return line._replace(attribute=line.attribute._replace(word="in"))
     return line

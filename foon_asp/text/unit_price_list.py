@@ -15,7 +15,7 @@ _ARROWS = ("→", "->")
 
 
 class UnitPriceList(NamedTuple):
-    """The prices of a file, and where each of its single units was read."""
+    """The prices of a file by motion and by unit, with the sources of the units."""
 
     motions: dict[str, Fraction]
     units: dict[FunctionalUnit, Fraction]
@@ -28,13 +28,13 @@ def read_unit_prices(file: Path) -> UnitPriceList:
     Nodes are in one-line notation; ``->`` is an arrow, too. Raises :class:`InputError` for a line of another
     form, and for a motion or a unit with two different prices.
     """
-    found = UnitPriceList({}, {}, {})
+    price_list = UnitPriceList({}, {}, {})
     for name, price, source in UNIT_PRICES.rows(file):
         if isinstance(name, str):
-            found.motions[name] = price
+            price_list.motions[name] = price
         else:
-            found.units[name], found.sources[name] = price, source
-    return found
+            price_list.units[name], price_list.sources[name] = price, source
+    return price_list
 
 
 def _row(name: str, value: str, column: int) -> tuple[str | FunctionalUnit, Fraction]:
@@ -81,8 +81,8 @@ def _unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:
             try:
                 sides[-1].append(parse_node(field.strip()))
             except LineError as error:
-                before = len(field) - len(field.lstrip())
-                raise LineError(column + before + error.column - 1, error.found, error.expected) from None
+                blanks = len(field) - len(field.lstrip())
+                raise LineError(column + blanks + error.column - 1, error.found, error.expected) from None
         column += len(field) + 1
     if len(sides) == 1:
         raise LineError(column, "the price of a unit", ("an arrow (-> between two tabs) before it",))

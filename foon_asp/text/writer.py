@@ -14,9 +14,9 @@ from foon_asp.typed import typed
 
 
 def write_line(line: Line) -> str:
-    """Return the canonical text of a line: a line read without a remark comes out as it was.
+    """Return the canonical text of a line, which is unchanged for a line read without a remark.
 
-    Ids, fields and the order of ingredients are kept, and what a remark said was left out is not there.
+    Ids, fields and the order of ingredients are kept; parts that remarks say were left out are not.
     """
     if isinstance(line, ObjectLine):
         return "\t".join((f"O{line.id}", line.label, *line.fields))
@@ -44,14 +44,14 @@ def write_node(node: ObjectNode) -> str:
 
 
 def write_motion(motion: str) -> str:
-    """Return the line of a motion; raises :class:`UserError` for what means something else in FOON text."""
+    """Return the line of a motion; raises :class:`UserError` for a name that FOON text cannot hold."""
     written = _readable(MotionLine(motion))
     if written is None:
         raise UserError(f"the motion {motion!r} is a name that FOON text cannot hold; JSON can")
     return written
 
 
-@lru_cache(10_000, typed=True)  # the same few lines stand in many units
+@lru_cache(10_000, typed=True)  # many units have equal lines
 def _readable(line: Line) -> str | None:
     """Write a line; ``None`` for one that is not read back as it is."""
     written = write_line(line)
@@ -65,7 +65,8 @@ def _readable(line: Line) -> str | None:
 def write_unit(unit: FunctionalUnit) -> str:
     """Return the lines of a unit, the closing ``//`` included.
 
-    Raises :class:`UserError` for what nobody could read back: a unit without inputs, or with such names.
+    Raises :class:`UserError` for a unit that cannot be read back: without inputs, or with names that FOON
+    text cannot hold.
     """
     if not unit.inputs:
         raise UserError(f"the unit {unit.motion!r} has no inputs, which FOON text cannot hold; JSON can")

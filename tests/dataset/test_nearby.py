@@ -54,7 +54,7 @@ def stored(problem: Problem, folder: Path) -> Dataset:
 
 
 def near_of(problem: Problem) -> Nearby | None:
-    return problem.near() if isinstance(problem, NearbyProblem) else None
+    return problem.nearby() if isinstance(problem, NearbyProblem) else None
 
 
 def asked(problem: Problem) -> Nearby:
@@ -527,5 +527,5 @@ def test_a_problem_of_a_store_reads_no_more_than_is_looked_at(tmp_path: Path) ->
     varied = problem.vary(without="water")
     assert foon_asp.solve(varied).costs == solve(replace(problem, kitchen=varied.kitchen)).costs
     assert len(problem.network) == len(SHORT + LONG)
-    assert problem.near() is None
+    assert problem.nearby() is None
     assert problem == dataset.problem(goals, "strict")

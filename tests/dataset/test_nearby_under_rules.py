@@ -20,8 +20,8 @@ from foon_asp.deadline import Deadline, LimitError
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
 from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.rules.constraint import RuleText
-from foon_asp.store.elsewhere import Elsewhere
 from foon_asp.store.import_files import import_files
+from foon_asp.store.unit_distances import UnitDistances
 from foon_asp.text.data_folder import DataFiles
 from tests.dataset.test_nearby import LISTS, LONG, SHORT, asked, assert_same, stored
 from tests.oracle.constraints import random_rule, settings_of
@@ -256,7 +256,7 @@ def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
     more = *SLOW, ("wave", "boiled", "waved")
     with monkeypatch.context() as patched:
-        patched.setattr(Elsewhere, "mattering", stopped)
+        patched.setattr(UnitDistances, "relevant", stopped)
         found = answered_under(near_stew(tmp_path, *more), UNITS, WAVE)
         assert found.costs is not None
         assert (found.status, found.costs.units, found.outcome.bounds) == (
@@ -266,7 +266,7 @@ def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         )
         assert found.stopped
     with monkeypatch.context() as patched:  # where what is elsewhere cannot be told, the rest is read
-        patched.setattr(nearby_under_rules, "_MOST", -1)
+        patched.setattr(nearby_under_rules, "_MAX_UNITS", -1)
         again = answered_under(near_stew(tmp_path, *more), UNITS, WAVE)
         assert (again.status, again.costs) == (Status.OPTIMAL, found.costs)
         patched.setattr("foon_asp.questions.answer._answered_reading", stopped)
@@ -280,7 +280,7 @@ def test_ctrl_c_keeps_the_tree_and_the_bound(tmp_path: Path, monkeypatch: pytest
     def interrupted(*asked: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Elsewhere, "mattering", interrupted)
+    monkeypatch.setattr(UnitDistances, "relevant", interrupted)
     found = answered_under(near_stew(tmp_path, *SLOW, ("wave", "boiled", "waved")), UNITS, WAVE)
     assert found.costs is not None
     assert (found.status, found.costs.units, found.outcome.bounds) == (
@@ -344,7 +344,7 @@ def random_ways(rng: random.Random) -> list[tuple[str, str, str]]:
 def test_random_ways_to_what_rules_ask_for(
     part: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(nearby_under_rules, "_TRIED", ((1, 0),))
+    monkeypatch.setattr(nearby_under_rules, "_SEARCH_WIDTHS", ((1, 0),))
     proved = 0
     for seed in range(100 if part == 1 else 30):
         rng = random.Random(seed)
@@ -383,8 +383,10 @@ def test_random_problems_under_rules(part: int, tmp_path: Path, monkeypatch: pyt
         if not isinstance(posed, NearbyProblem):
             continue
         # a poor first tree, and little that may be read besides: without these, all is found near
-        monkeypatch.setattr(nearby_under_rules, "_TRIED", rng.choice((((1, 0),), ((100, 0), (100, 6)))))
-        monkeypatch.setattr(nearby_under_rules, "_MOST", rng.choice((0, 2, 30_000, 30_000)))
+        monkeypatch.setattr(
+            nearby_under_rules, "_SEARCH_WIDTHS", rng.choice((((1, 0),), ((100, 0), (100, 6))))
+        )
+        monkeypatch.setattr(nearby_under_rules, "_MAX_UNITS", rng.choice((0, 2, 30_000, 30_000)))
         near = solve_nearby_under(posed, objectives, how, Reporter())
         found: Answer = answered_under(posed, objectives, how)
         expected = solve(dataset.problem(problem.goals, rule.value, everything=True), objectives, how)

@@ -234,8 +234,8 @@ def test_copies_that_come_much_later(tmp_path: Path) -> None:
 def test_an_import_that_remembers_little(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     stores = [tmp_path / "one.foon", tmp_path / "other.foon"]
     import_files(find_data(KITCHEN), stores[0])
-    monkeypatch.setattr(builder, "_REMEMBERED", 3)
-    monkeypatch.setattr(builder, "_WAITING", 3)
+    monkeypatch.setattr(builder, "_MAX_CACHED_NODES", 3)
+    monkeypatch.setattr(builder, "_ROWS_PER_WRITE", 3)
     monkeypatch.setattr(foon_text, "_PIECE", 50)
     import_files(find_data(KITCHEN), stores[1])
     assert_holds(stores[1], read_data(find_data(KITCHEN)))

@@ -47,7 +47,7 @@ def test_names_are_labels_to_the_letter_and_the_cheapest_copy_counts(tmp_path: P
         assert network.motions == ("sift", "mix", "knead", "7")
         assert network.objects[0] == ObjectNode("flour; fine")
         assert network.objects[2] == ObjectNode("in [a\tb]") or network.objects[1] == ObjectNode("in [a\tb]")
-        assert prices.each(network) == tuple(map(Fraction, ("0.05", "2", "1", "2.5")))
+        assert prices.of_units(network) == tuple(map(Fraction, ("0.05", "2", "1", "2.5")))
         assert [source.line for source in network.sources[3]] == [5, 6, 7]
         assert network.inputs[0] == ()
 

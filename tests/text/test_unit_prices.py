@@ -209,7 +209,7 @@ def test_stores_of_networks_at_random_have_the_prices_of_the_text(tmp_path: Path
             with foon_asp.load(store, unit_prices=given) as stored:
                 assert text.unit_prices
                 assert stored.unit_prices
-                assert stored.unit_prices.each(stored.network) == text.unit_prices.each(text.network)
+                assert stored.unit_prices.of_units(stored.network) == text.unit_prices.of_units(text.network)
                 for goal in text.network.objects[::20]:
                     asked = [foon.problem(goal) for foon in (text, stored)]
                     by_unit = [{p.network.unit(u): price for u, price in enumerate(p.prices)} for p in asked]
