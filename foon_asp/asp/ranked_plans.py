@@ -26,11 +26,11 @@ class RankedPlans:
         self.known: list[tuple[Plan, Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[Plan, Costs]]:
-        """Return plan after plan, each proved the best of those that do not hold one before it."""
-        given: list[Mapping[int, int]] = []
+        """Iterate over plans, each proved best among the plans that contain no earlier one."""
+        yielded: list[Mapping[int, int]] = []
         while True:
-            settings = self._settings._replace(bounded=Bounded(beside=tuple(given)))
-            reporter = Reporter() if given else self._reporter
+            settings = self._settings._replace(bounded=Bounded(beside=tuple(yielded)))
+            reporter = Reporter() if yielded else self._reporter
             outcome = solve_used_up(self._problem, self._objectives, settings, reporter)
             plan, costs = outcome.units, outcome.costs
             if plan is None or costs is None or outcome.status is not Status.OPTIMAL:
@@ -38,7 +38,7 @@ class RankedPlans:
                 self.known = [] if plan is None or costs is None else [(plan, costs)]
                 return
             yield plan, costs
-            if not plan:  # every other plan holds it
+            if not plan:  # every other plan contains it
                 self.complete = True
                 return
-            given.append(Counter(plan))
+            yielded.append(Counter(plan))

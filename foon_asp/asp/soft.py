@@ -18,7 +18,7 @@ from foon_asp.rules.constraint import Constraint, find_constraint
 
 
 class Broken(NamedTuple):
-    """A soft constraint, its weight, and in how many ways the tree breaks it."""
+    """A soft constraint, its weight, and the number of its instances that the tree breaks."""
 
     constraint: IntegrityConstraint
     weight: int
@@ -64,10 +64,10 @@ def solve_soft(
     weights: Mapping[Constraint, int],
     reporter: Reporter | None = None,
 ) -> SoftOutcome:
-    """Find the tree with the least penalty, and among those the best by a lexicographic list of objectives.
+    """Find the tree with the least penalty, and among these the best by a lexicographic list of objectives.
 
-    ``weights`` are those of the constraints that are soft; the constraints of ``settings`` are hard. Each way
-    in which a rule is broken, by other values of the variables that it has as a whole, costs its weight.
+    ``weights`` are by soft constraint; the constraints of ``settings`` are hard. Each broken instance of a
+    rule, by the values of its global variables, costs its weight.
     Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     settings = settings._replace(deadline=settings.begun)
@@ -81,12 +81,12 @@ def solve_soft(
     proved = True
     ended = Run()
 
-    def ask(more: str) -> Run:
-        return first.run(more + write_least_penalty(1), predicates=[("_broken", 2)])
+    def ask(question_facts: str) -> Run:
+        return first.run(question_facts + write_least_penalty(1), predicates=[("_broken", 2)])
 
-    def told(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
-        found = tuple(Broken(c, by_number[c.number], ways.get(c.number, 0)) for c in constraints)
-        return SoftOutcome(outcome, sum(each.weight * each.ways for each in found), found)
+    def soft_outcome(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
+        broken = tuple(Broken(c, by_number[c.number], ways.get(c.number, 0)) for c in constraints)
+        return SoftOutcome(outcome, sum(rule.weight * rule.ways for rule in broken), broken)
 
     if first.tree is not None:
         ended = ask("")
@@ -103,23 +103,23 @@ def solve_soft(
         outcome = outcome._replace(status=Status.FEASIBLE, proof=None, bounds={})
     outcome.seconds.update(spent)
     if outcome.units is not None:
-        # helpers of the user's may be free to break more or less with one tree: what counts is the least
-        given = ask(write_tree(outcome.units))
-        if given.exhausted:
+        # auxiliary predicates may leave the broken instances of a tree open: the least penalty counts
+        checked = ask(write_tree(outcome.units))
+        if checked.exhausted:
             holds.require(
-                given.units == frozenset(outcome.units),
+                checked.units == frozenset(outcome.units),
                 lambda: f"the tree {outcome.units} does not hold when its soft constraints are checked",
             )
-            found = told(outcome, given.atoms["_broken"])
+            answer = soft_outcome(outcome, checked.atoms["_broken"])
             holds.require(
-                least is None or found.penalty in range(least if proved else 0, least + 1),
+                least is None or answer.penalty in range(least if proved else 0, least + 1),
                 lambda: (
-                    f"the penalty of {outcome.units} is {found.penalty}, but the least one was to be {least}"
+                    f"the penalty of {outcome.units} is {answer.penalty}, but the least one was to be {least}"
                 ),
             )
-            return found
-    if ended.units is not None:  # stopped: what is known of a tree by then
+            return answer
+    if ended.units is not None:  # stopped: the incumbent
         tree = holds.tree(ended.units)
-        known = outcome._replace(status=Status.FEASIBLE, units=tree, costs=problem.costs(tree), bounds={})
-        return told(known, ended.atoms["_broken"])
+        stopped = outcome._replace(status=Status.FEASIBLE, units=tree, costs=problem.costs(tree), bounds={})
+        return soft_outcome(stopped, ended.atoms["_broken"])
     return SoftOutcome(outcome, None, ())

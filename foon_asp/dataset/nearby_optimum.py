@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
-from foon_asp.asp.assembly import hold_for_parts, leave_a_rest, program_of
+from foon_asp.asp.assembly import hold_for_parts, leave_unsettled, program_of
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.deadline import Deadline
@@ -49,7 +49,7 @@ def solve_nearby(
     mattered = set[int]()  # units, by number, that say what keeps to the rules
     few: list[int] | None = None  # a tree that keeps to them, by number, once it was asked for
     without: Outcome | None = None
-    if leave_a_rest(how):  # the best tree without them is needed anyway, and quick to read
+    if leave_unsettled(how):  # the best tree without them is needed anyway, and quick to read
         without = solve_nearby(near, objectives, free, _OnlyWarnings(reporter))
         if without is None:
             return None
@@ -118,7 +118,7 @@ def _fewest(near: "Nearby", how: Settings, mattered: set[int]) -> list[int]:
     take is mostly near that. Gives it by number; nothing where there is none, or at a limit.
     """
     while True:
-        found = solve(near.relaxed, (Objective.UNITS,), how, known=mattered)
+        found = solve(near.relaxed, (Objective.UNITS,), how, mattered=mattered)
         if found.status is not Status.OPTIMAL or found.units is None:
             return []
         lacking = near.lacking(found.units)
