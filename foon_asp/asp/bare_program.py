@@ -69,12 +69,12 @@ def bare_program(
         return _written(
             program, facts + write_times({number(unit): bounds for unit, bounds in executions.items()})
         )
-    first = prepare(problem, objectives, settings, program._replace(understood=None))
-    if first.tree is None:  # with all units, bare clingo can prove that a goal cannot be made
+    prepared = prepare(problem, objectives, settings, program._replace(understood=None))
+    if prepared.tree is None:  # with all units, bare clingo can prove that a goal cannot be made
         everything = reach(problem)._replace(units=tuple(range(len(problem.network))))
         units = relevant(problem, everything) if program.own else everything.units
-        first = replace(first, units=units)
-    return _written(program, first.facts + write_objectives(first.levels) + penalty)
+        prepared = replace(prepared, units=units)
+    return _written(program, prepared.facts + write_objectives(prepared.levels) + penalty)
 
 
 def printed_program(

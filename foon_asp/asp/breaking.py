@@ -60,9 +60,9 @@ class Breaking:
         used = set(tree)
         units = sorted(used if self.local else used.union(reach(problem).units))
         by = levels((Objective.UNITS,))
-        first = Prepared(problem, by, self._settings, self._settings.begun, self._program, tuple(units))
+        prepared = Prepared(problem, by, self._settings, self._settings.begun, self._program, tuple(units))
         numbers = list(map(problem.network.unit_number, sorted(used)))
-        return first.run(write_tree(numbers) + write_least_penalty(1), predicates=[("_broken", 2)])
+        return prepared.run(write_tree(numbers) + write_least_penalty(1), predicates=[("_broken", 2)])
 
     def _plan(self, problem: Problem, plan: Collection[int]) -> Run:
         counts, program = Counter(plan), self._program

@@ -184,60 +184,62 @@ def prepare(
 
         require_one_rounded(problem, by)
     deadline = settings.begun
-    first = Prepared(problem, by, settings, deadline, program)
+    prepared = Prepared(problem, by, settings, deadline, program)
     try:
         if problem.measures:
             with deadline.watched("measuring units"):
                 problem.apply_measures(deadline)
         if program.added and settings.reductions and not for_sale:
             with deadline.watched("cutting the network"):
-                first = _applied(first, program.added)
-        if first.contradicted:
-            return first
-        program, kept = first.program, first.kept or problem
-        if listener is not None and (program.own or _limits_unsettled(first)):
+                prepared = _applied(prepared, program.added)
+        if prepared.contradicted:
+            return prepared
+        program, kept = prepared.program, prepared.kept or problem
+        if listener is not None and (program.own or _limits_unsettled(prepared)):
             reduced = reduce(
                 kept,
                 by,
                 NONE if program.bounded else settings.reductions,
                 lambda: deadline.passed,
-                Bounds(listener) if first.unsettled else listener,
+                Bounds(listener) if prepared.unsettled else listener,
                 lambda: deadline.watched("cutting the network", late=True),
-                first.redundant,
-                first.unsettled,
-                brief and first.unsettled,
+                prepared.redundant,
+                prepared.unsettled,
+                brief and prepared.unsettled,
             )
             if reduced.interrupted:
                 deadline.interrupt()
-            if not first.unsettled or reduced.wide is not None or reduced.tree is None:
-                return replace(first, units=reduced.units, tree=reduced.tree, reduced=reduced)
+            if not prepared.unsettled or reduced.wide is not None or reduced.tree is None:
+                return replace(prepared, units=reduced.units, tree=reduced.tree, reduced=reduced)
         with deadline.watched("cutting the network"):
             stocked = replace(kept, kitchen=problem.kitchen.union(for_sale)) if for_sale else kept
             reached = reach(stocked)
             tree = first_tree(stocked, reached)
             # backwards with the kitchen as it is: items for sale may also be made
-            cut = program.own or (first.unsettled and not first.redundant)
+            cut = program.own or (prepared.unsettled and not prepared.redundant)
             units = relevant(kept, reached) if cut else tuple(sorted(reached.units))
-        return replace(first, units=units, tree=None if tree is None else frozenset(tree))
+        return replace(prepared, units=units, tree=None if tree is None else frozenset(tree))
     except KeyboardInterrupt:
         deadline.interrupt()
-        return replace(first, stopped=True)
+        return replace(prepared, stopped=True)
 
 
-def _applied(first: Prepared, rules: "Rules | ReadyMade") -> Prepared:
+def _applied(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     """Apply the user rules that remove units or require sets of them."""
     if rules.unsettled and not rules.local:
-        return first
-    restriction = rules.applied(first.problem)
-    first = replace(first, full_program=first.program)
+        return prepared
+    restriction = rules.applied(prepared.problem)
+    prepared = replace(prepared, full_program=prepared.program)
     if not isinstance(restriction, Restriction):
-        return replace(first, contradicted=True)
-    kept = replace(first.problem, restriction=restriction)
+        return replace(prepared, contradicted=True)
+    kept = replace(prepared.problem, restriction=restriction)
     if not rules.unsettled:
-        return replace(first, kept=kept, program=first.program.settled)
-    return replace(first, kept=kept, unsettled=True, redundant=rules.redundant)
+        return replace(prepared, kept=kept, program=prepared.program.settled)
+    return replace(prepared, kept=kept, unsettled=True, redundant=rules.redundant)
 
 
-def _limits_unsettled(first: Prepared) -> bool:
+def _limits_unsettled(prepared: Prepared) -> bool:
     """Whether reductions by cost limits stay valid under the unsettled rules."""
-    return first.unsettled and not first.program.bounded and Reduction.DEAR in first.settings.reductions
+    return (
+        prepared.unsettled and not prepared.program.bounded and Reduction.DEAR in prepared.settings.reductions
+    )

@@ -29,7 +29,7 @@ class Ranked:
 
     Trees that contain an earlier one are excluded. Iterate to get each tree as unit ids in an executable
     order, with its costs. ``complete`` says afterwards that there are no others; it is false after a limit or
-    ctrl-C. Then ``known`` has, in order, further trees found, before which others may come.
+    ctrl-C. Then ``pending`` has, in order, further trees found, before which others may come.
     Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
 
@@ -41,12 +41,12 @@ class Ranked:
         reporter: Reporter | None = None,
     ) -> None:
         self._program = assemble(settings, (reporter or Reporter()).warning, problem=problem)
-        self._first = prepare(problem, objectives, settings, self._program)
-        self._holds = self._first.holds
+        self._prepared = prepare(problem, objectives, settings, self._program)
+        self._holds = self._prepared.holds
         self._last_key: tuple[int | Fraction, ...] = ()  # costs of the last tree yielded
-        self.problem, self.levels = problem, self._first.levels
-        self.complete = self._first.tree is None and not self._first.stopped
-        self.known: list[tuple[tuple[int, ...], Costs]] = []
+        self.problem, self.levels = problem, self._prepared.levels
+        self.complete = self._prepared.tree is None and not self._prepared.stopped
+        self.pending: list[tuple[tuple[int, ...], Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[tuple[int, ...], Costs]]:
         """Iterate over trees in order of exact costs.
@@ -55,14 +55,14 @@ class Ranked:
         with rounded costs, a later tree can if its weight is higher by less than the number of units that
         weigh less than they cost (docs/dev/exact-success.md).
         """
-        if self.complete or self._first.stopped:
+        if self.complete or self._prepared.stopped:
             return
         waiting: list[_Tree] = []
         found: list[_Tree] = []
         avoided = ""
         while True:
             text = write_objectives(self.levels) + avoided
-            ended = self._first.run(text, encodings=(question_encoding("other_trees.lp"),))
+            ended = self._prepared.run(text, encodings=(question_encoding("other_trees.lp"),))
             if ended.units is None:
                 break
             tree = self._tree(ended.units)
@@ -77,7 +77,7 @@ class Ranked:
             avoided += write_avoided(len(found), map(self.problem.network.unit_number, tree.units))
             found.append(tree)
         if not ended.exhausted:
-            self.known = [(tree.units, tree.costs) for tree in waiting]
+            self.pending = [(tree.units, tree.costs) for tree in waiting]
             return
         self.complete = True
         while waiting:
@@ -90,8 +90,8 @@ class Ranked:
         if len(ids) < len(units):
             raise UserError("a tree was found with units that are not in the network: check the encodings")
         order = self._holds.tree(ids)
-        self._first.require_kept(order)
-        costs, scales = self.problem.costs(order), self._first.scales
+        self._prepared.require_kept(order)
+        costs, scales = self.problem.costs(order), self._prepared.scales
         rounded = (
             int(costs.measure(objective)) if objective.row.whole else scales.weight(objective, order)
             for objective in self.levels
@@ -134,10 +134,10 @@ class Ranked:
 
     def _is_settled(self, tree: _Tree, last: Rounded) -> bool:
         """Whether no tree with rounded costs of at least ``last`` is better than a tree."""
-        by = self._first.scales.rounded
+        by = self._prepared.scales.rounded
         if by is None:
             return True
         position = self.levels.index(by)
         if last[:position] > tree.rounded:  # with equal prefixes, the prefix is less
             return True
-        return last[position] >= tree.rounded[position] + self._first.scales.doubt(tree.units)
+        return last[position] >= tree.rounded[position] + self._prepared.scales.doubt(tree.units)

@@ -37,14 +37,14 @@ class Bounded(NamedTuple):
     antimonotone: every subtree of a tree that meets them does, too, so that units that the goals do not need
     cannot matter. ``below`` are sets of costs, in each of which a tree has to be below one: those of
     objectives with fractions, written once their scale is known. Where items are used up there are no rules
-    and files, and each set has one cost; ``beside`` has executions by unit of known plans, none of which a
-    plan may contain.
+    and files, and each set has one cost; ``incomparable`` has executions by unit of known plans,
+    none of which a plan may contain.
     """
 
     rules: str = ""
     files: tuple[Path, ...] = ()
     below: tuple[Mapping[Objective, int | Fraction], ...] = ()
-    beside: tuple[Mapping[int, int], ...] = ()
+    incomparable: tuple[Mapping[int, int], ...] = ()
 
 
 class Settings(NamedTuple):

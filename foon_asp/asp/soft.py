@@ -74,28 +74,28 @@ def solve_soft(
     constraints, by_number, relaxed = soft_rules(settings, weights)
     settings = settings._replace(relaxed=relaxed)
     program = assemble(settings, (reporter or Reporter()).warning, problem=problem)
-    first = prepare(problem, objectives, settings, program)
-    holds = first.holds
+    prepared = prepare(problem, objectives, settings, program)
+    holds = prepared.holds
     spent: dict[str, float] = {}
     least: int | None = None
     proved = True
     ended = Run()
 
     def ask(question_facts: str) -> Run:
-        return first.run(question_facts + write_least_penalty(1), predicates=[("_broken", 2)])
+        return prepared.run(question_facts + write_least_penalty(1), predicates=[("_broken", 2)])
 
     def soft_outcome(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
         broken = tuple(Broken(c, by_number[c.number], ways.get(c.number, 0)) for c in constraints)
         return SoftOutcome(outcome, sum(rule.weight * rule.ways for rule in broken), broken)
 
-    if first.tree is not None:
+    if prepared.tree is not None:
         ended = ask("")
         proved = ended.exhausted
         spent["soft"] = ended.ground_seconds + ended.solve_seconds
         if ended.units is not None:
             least = sum(by_number[number] * ways for number, ways in ended.atoms["_broken"].items())
     bound = "" if least is None else write_greatest_penalty(least)
-    outcome = solve_prepared(first, objectives, bound)
+    outcome = solve_prepared(prepared, objectives, bound)
     holds.require(
         least is None or outcome.status is not Status.INFEASIBLE, lambda: "the least penalty was lost"
     )

@@ -25,9 +25,7 @@ if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
     from foon_asp.grounding.run import Run
 
 _MAX_CUT_OBJECTS = 200_000  # of the cuts stored for a certificate to try first; it finds others by itself
-_NEAREST_UNITS = (
-    200  # size of the first reduced-cost neighbourhood searched for a tree that keeps to all rules
-)
+_NEAREST_UNITS = 200  # size of the first reduced-cost neighbourhood
 _MAX_ROUNDS = 12  # searches for trees with open preconditions, with ever fewer of these
 NOT_ASKED = (
     "clingo has no statistics: the question was settled without its search; --reduce none leaves it to clingo"

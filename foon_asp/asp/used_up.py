@@ -239,7 +239,7 @@ class _Solver:
         self.limits: Sequence[Limit] = ()
         bounded = settings.bounded or Bounded()
         self.below = [(objective, cost) for costs in bounded.below for objective, cost in costs.items()]
-        self.incomparable = bounded.beside
+        self.incomparable = bounded.incomparable
         if not {objective for objective, _ in self.below} <= set(by_levels):
             raise BugError("a bound is on an objective that is not asked for")
         self.tree: frozenset[int] = frozenset()  # some tree that makes the goals if nothing is used up

@@ -456,9 +456,8 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
         if not equals:
             raise UserError(f"found the constant {setting!r}, expected NAME=VALUE")
         if name not in defaults:
-            uses = (each.rules for each in encodings if isinstance(each.rules, Stated))
-            for use in uses:
-                if name in dict(use.renamed).values():
+            for use in (encoding.rules for encoding in encodings):
+                if isinstance(use, Stated) and name in dict(use.renamed).values():
                     raise UserError(
                         f"found a value of the constant {name!r}, but {use.written} has values of its own: "
                         "set it there"
@@ -503,16 +502,16 @@ def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list
                 continue
             if isinstance(rules, Stated) and rules.file is not None:
                 shown_name = dict(rules.renamed)[name]
-                place = f"{rules.file} ({rules.written})"
+                origin = f"{rules.file} ({rules.written})"
                 advice, empty = re.subn(
                     rf"(?<=[:,]){shown_name}=(?=,|$)", f"{shown_name}=VALUE", rules.written
                 )
                 advice = advice if empty else f"{rules.written},{shown_name}=VALUE"
             else:
-                place = rules.place if isinstance(rules, Stated) else f"{rules}"
+                origin = rules.place if isinstance(rules, Stated) else f"{rules}"
                 shown_name, advice = name, f"-c {name}=VALUE"
             warnings.append(
-                f"{place}: warning: the constant {shown_name} is not set and the constraint has no effect; "
+                f"{origin}: warning: the constant {shown_name} is not set and the constraint has no effect; "
                 f"set it with {advice}"
             )
     return warnings

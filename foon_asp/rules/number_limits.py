@@ -275,9 +275,9 @@ def _solved_for(term: AST) -> Iterator[str]:
     if term.ast_type == ASTType.Variable:
         yield term.name
     elif term.ast_type == ASTType.BinaryOperation and term.operator_type in _LINEAR:
-        factors = (term.left, term.right)
-        if any(_number(factor) is not None for factor in factors):
-            yield from (name for factor in factors for name in _solved_for(factor))
+        operands = (term.left, term.right)
+        if any(_number(operand) is not None for operand in operands):
+            yield from (name for operand in operands for name in _solved_for(operand))
 
 
 def _calculates(node: AST) -> bool:

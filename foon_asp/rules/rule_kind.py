@@ -1,9 +1,9 @@
 """Kind and locality of the rules of one question, inferred from clingo's syntax tree.
 
-All rules of a question are looked at together, since a rule in another file may change what one does. Where
-anything is in doubt, a rule is ``OTHER``; docs/writing-constraints.md says what that means for the user.
-What is said here of a rule serves to cut the search: the search itself asks clingo for every rule that is not
-known to remove units or to ask for one of a set.
+All rules of a question are analysed together, since a rule in another file may change the effect of one. A
+rule whose effect is in doubt is ``OTHER``; docs/writing-constraints.md explains the consequences. The kinds
+serve to cut the search: clingo itself enforces every rule that is not known to remove units or to require one
+of a set.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -39,11 +39,11 @@ from foon_asp.rules.locality import Locality
 class Kind(StrEnum):
     """The effect of a rule on the set of trees.
 
-    ``FACT``: there is no decision in it: it holds for every tree, or for none. ``DELETING``: a tree keeps to
-    it as long as it has none of some units, which are known without clingo. ``SHRINKING``: if a tree keeps to
-    it, so does every tree whose units are a subset. ``REQUIRING``: if a tree keeps to it, so does every tree
-    whose units are a superset. ``OTHER``: none of these is known. ``HELPER``: it derives what other rules
-    look at, and rules nothing out by itself.
+    ``FACT``: it is independent of the tree, and allows every tree or none. ``DELETING``: it excludes the
+    trees with one of certain units, which are known without clingo. ``SHRINKING``: it is antimonotone: if it
+    allows a tree, it allows every subset. ``REQUIRING``: it is monotone: if it allows a tree, it allows every
+    superset. ``OTHER``: its kind is unknown. ``HELPER``: it derives an auxiliary predicate, and excludes
+    nothing by itself.
     """
 
     FACT = "fact"
@@ -73,12 +73,11 @@ _IMPLIED = "times(U,1) :- use(U)."
 class Rule(NamedTuple):
     """A rule of one question, with its kind and locality.
 
-    ``reason`` says why nothing more is known where its kind is ``OTHER``, and why it has no effect where it
-    has none; ``reason_source`` where that stands. ``further`` says what it sees beyond the tree, at
-    ``further_source``: if that is empty, the rule is local, and what it says of a tree stays the same when
-    facts of units outside the tree, and of object nodes that only those have, are left out. A ``HELPER`` is
-    always local: what it sees counts for the rules that use it. ``one_of`` says that a requiring rule asks
-    for one unit of a set, or of each of several sets, which are known without clingo.
+    ``reason`` says why its kind is ``OTHER``, or why it has no effect, at ``reason_source``; else empty.
+    ``further`` says what it reads beyond the tree, at ``further_source``. If it is empty, the rule is local:
+    its truth for a tree stays the same without the facts of units outside the tree and of object nodes that
+    only those have. A ``HELPER`` is always local: its facts count for the rules that use it. ``one_of`` says
+    that a requiring rule is an at-least-one constraint over one or several sets, known without clingo.
     """
 
     source: Source

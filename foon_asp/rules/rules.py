@@ -45,11 +45,11 @@ class ShownRule(NamedTuple):
 
 
 class Together(StrEnum):
-    """What stays of the reductions under some rules.
+    """The reductions that stay valid under rules.
 
-    ``REDUCED``: all of them, since the rules only remove units. ``REQUIRED``: all of them, with what is
-    required as more goals. ``CUT``: what cannot matter for the goals is left out, and what bounds exclude.
-    ``BOUNDED``: only the latter. ``PLAIN``: nothing is left out.
+    ``REDUCED``: all, since the rules only remove units. ``REQUIRED``: all, with the required sets as further
+    goals. ``CUT``: exclusion of units that cannot matter for the goals, or that bounds exclude. ``BOUNDED``:
+    only exclusion by bounds. ``PLAIN``: none.
     """
 
     REDUCED = "reduced"
@@ -62,9 +62,9 @@ class Together(StrEnum):
 class Rules:
     """All rules that are added to one question, taken together.
 
-    ``rules`` has each of them with its kind, in the order of the files. The kinds hold for questions whose
-    facts are what the network, the kitchen and the goals say; where a question derives or varies a predicate
-    of facts, :meth:`varying` gives the kinds for that.
+    ``rules`` has each of them with its kind, in the order of the files. The kinds hold for questions with
+    the facts of the network, the kitchen and the goals; where a question derives or varies a predicate of
+    facts, :meth:`varying` returns the rules with the kinds for that.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Rules:
     ) -> None:
         """Analyse encodings, under constants that are set as ``name=value`` for clingo."""
         self._encodings, self._constants = tuple(encodings), tuple(constants)
-        statements = [statement for each in encodings for statement in each.statements]
+        statements = [statement for encoding in encodings for statement in encoding.statements]
         self._analysis = Analysis(statements, self._constants, varied)
         self.rules: tuple[Rule, ...] = self._analysis.rules
 
@@ -217,8 +217,8 @@ class Rules:
         """Return the restriction of a problem by the rules that remove units or require one of a set.
 
         A tree keeps to these if and only if it has no removed unit, and a unit of each required set. Whether
-        a unit is removed is found when it is asked. Raises :class:`UserError` for prices that rules look at
-        and cannot be told.
+        a unit is removed is evaluated lazily. Raises :class:`UserError` for prices that rules read and that
+        are no whole numbers of hundredths.
         """
         if problem.restriction is not None:
             problem = replace(problem, restriction=None)

@@ -83,7 +83,7 @@ class _Search:
 
     def unmatched(self, program: Sequence[Clause]) -> Iterator[_Unmatched]:
         """Return the literals of the rules of one file that match no fact."""
-        literals: list[_Unmatched] = []
+        candidates: list[_Unmatched] = []
         matched: defaultdict[tuple[Signature | None, frozenset[Symbol]], set[int]] = defaultdict(set)
         for number, clause in enumerate(program):
             head = clause.head.signature if clause.head is not None else None
@@ -96,9 +96,13 @@ class _Search:
                 elif rows:
                     begin = literal.arguments[next(iter(rows[0]))].location.begin
                     source = Source(begin.filename, begin.line, begin.column)
-                    literals.append(_Unmatched(number, head, constants, self._message(literal, rows), source))
+                    candidates.append(
+                        _Unmatched(number, head, constants, self._message(literal, rows), source)
+                    )
         return (
-            literal for literal in literals if not matched[literal.head, literal.constants] - {literal.clause}
+            literal
+            for literal in candidates
+            if not matched[literal.head, literal.constants] - {literal.clause}
         )
 
     def _rows(self, literal: Literal, conjuncts: Iterable[Conjunct]) -> Sequence[Mapping[int, Symbol]]:
