@@ -60,9 +60,9 @@ def solve(
     program = program_of(problem, settings, reporter.warning)
     began = time.perf_counter()
     listener = _IncumbentListener(problem, objectives, reporter)
-    first = prepare(problem, objectives, settings, program, listener, brief=bool(mattered))
+    prepared = prepare(problem, objectives, settings, program, listener, brief=bool(mattered))
     seconds = {"cut": time.perf_counter() - began}
-    outcome = _Solver(first, objectives, listener, seconds, mattered=mattered).solve()
+    outcome = _Solver(prepared, objectives, listener, seconds, mattered=mattered).solve()
     if settings.asks_for_statistics and not listener.clingo_ran:
         reporter.statistics(NOT_ASKED)
     return outcome
@@ -167,7 +167,7 @@ class _Solver:
         if prepared.unsettled and prepared.reduced and prepared.reduced.wide:
             return self._solve_unsettled(prepared.reduced, prepared.reduced.wide, prepared.tree)
         incumbent = self._initial_incumbent
-        if incumbent is None:  # the user's rules or the bounds decide what a tree is: let them find the first
+        if incumbent is None:  # user rules or bounds may exclude the tree of the cut
             run = self._run(self.levels, opt_mode="ignore")
             if run.units is None:
                 return self._outcome(Status.INFEASIBLE if run.exhausted else Status.UNKNOWN, None, {})

@@ -58,12 +58,12 @@ class FlatAnswers:
 
     def any_holds(self, disjuncts: Iterable[Disjunct]) -> bool:
         """Whether some disjunct without a unit holds."""
-        return any(self._step(disjunct.items, (), _yes)(self._values) for disjunct in disjuncts)
+        return any(self._step(disjunct.items, (), _success)(self._values) for disjunct in disjuncts)
 
     def removed(self, disjuncts: Iterable[Disjunct]) -> Callable[[int], bool]:
         """Return a test of units: whether some disjunct holds of the unit."""
         tests = [
-            (disjunct.unit, self._step(disjunct.items, (disjunct.unit,), _yes))
+            (disjunct.unit, self._step(disjunct.items, (disjunct.unit,), _success))
             for disjunct in disjuncts
             if disjunct.unit is not None
         ]
@@ -82,7 +82,10 @@ class FlatAnswers:
         """Return the weight function of a linear bound: of a unit, for one execution."""
         values, contributions = self._values, set[_Answer]()
         steps = [
-            (disjunct.unit, self._step(disjunct.items, (disjunct.unit,), self._noting([term], contributions)))
+            (
+                disjunct.unit,
+                self._step(disjunct.items, (disjunct.unit,), self._collecting([term], contributions)),
+            )
             for disjunct, term in bound.terms
             if disjunct.unit is not None
         ]
@@ -105,15 +108,15 @@ class FlatAnswers:
         matches: list[_Values] = []
         bound = bound_by(at_least_one.when.items)
 
-        def note(values: _Values) -> bool:
+        def collect(values: _Values) -> bool:
             matches.append(list(values))
             return False
 
-        self._step(at_least_one.when.items, (), note)(values)
+        self._step(at_least_one.when.items, (), collect)(values)
         for match in matches:
             values[:] = match
             if any(
-                self._step(disjunct.items, bound, _yes)(values)
+                self._step(disjunct.items, bound, _success)(values)
                 for disjunct in at_least_one.helpers
                 if disjunct.unit is None
             ):
@@ -129,7 +132,7 @@ class FlatAnswers:
     def _units(self, disjunct: Disjunct, bound: Collection[Variable]) -> set[int]:
         """Return the units of which a disjunct holds."""
         assert disjunct.unit is not None
-        return self._true_of(disjunct.unit, self._candidates(disjunct, bound), disjunct.items, bound)
+        return self._satisfying(disjunct.unit, self._candidates(disjunct, bound), disjunct.items, bound)
 
     def _candidates(self, disjunct: Disjunct, bound: Collection[Variable]) -> Iterable[int]:
         """Return a superset of the units of which a disjunct holds, by an index where one fits."""
@@ -151,12 +154,12 @@ class FlatAnswers:
                 return [] if unit is None else [unit]
             if name == "motion" and (isinstance(term, Constant) or term in bound):
                 motion = self._read(term)(self._values)
-                return [unit for unit, candidate in enumerate(network.motions) if candidate == motion]
+                return [unit for unit, name in enumerate(network.motions) if name == motion]
             after = disjunct.items[position + 1 :]
             if not isinstance(term, Variable) or term in bound_so_far:
                 continue
             if name in objects_of and _is_apart(after, bound_so_far):
-                objects = self._true_of(term, self._likely(term, after), after)
+                objects = self._satisfying(term, self._indexed_nodes(term, after), after)
                 if name in {"output", "gives"}:
                     return sorted({unit for o in objects for unit in network.producers[o]})
                 return [
@@ -167,7 +170,7 @@ class FlatAnswers:
             bound_so_far |= bound_by([item])
         return range(len(network))
 
-    def _likely(self, variable: Variable, items: Sequence[Item]) -> Iterable[int]:
+    def _indexed_nodes(self, variable: Variable, items: Sequence[Item]) -> Iterable[int]:
         """Return a superset of the object nodes of which items hold, by the label or ingredient they name."""
         network = self._problem.network
         for item in items:
@@ -179,11 +182,11 @@ class FlatAnswers:
                         return network.by_ingredient.get(name, ())
         return range(len(network.objects))
 
-    def _true_of(
+    def _satisfying(
         self, variable: Variable, among: Iterable[int], items: Sequence[Item], bound: Iterable[Variable] = ()
     ) -> set[int]:
         """Return the candidates of which items hold."""
-        values, test = self._values, self._step(items, (*bound, variable), _yes)
+        values, test = self._values, self._step(items, (*bound, variable), _success)
         members = set()
         for candidate in among:
             values[variable] = candidate
@@ -194,7 +197,7 @@ class FlatAnswers:
     def _table(self, table: Table) -> set[_Answer]:
         rows: set[_Answer] = set()
         for disjunct, head in table.rows:
-            self._step(disjunct.items, (), self._noting(head, rows))(self._values)
+            self._step(disjunct.items, (), self._collecting(head, rows))(self._values)
         return rows
 
     def _step(self, items: Sequence[Item], bound: Iterable[Variable], then: _Step) -> _Step:
@@ -204,7 +207,7 @@ class FlatAnswers:
         for item in items:
             before.append(frozenset(bound_so_far))
             bound_so_far.update(bound_by([item]))
-        pure = then is _yes
+        pure = then is _success
         for position, so_far in reversed(list(enumerate(before))):
             item = items[position]
             leads_to = item.terms[-1] if isinstance(item, Fact) and len(item.terms) > 1 else None
@@ -215,12 +218,12 @@ class FlatAnswers:
                 and _is_apart(items[position + 1 :], so_far)
             ):
                 then = _remembered(leads_to, then)
-            then = self._one(item, so_far, then)
+            then = self._item_step(item, so_far, then)
         return then
 
-    def _one(self, item: Item, bound: frozenset[Variable], then: _Step) -> _Step:
+    def _item_step(self, item: Item, bound: frozenset[Variable], then: _Step) -> _Step:
         if isinstance(item, Never):
-            inner = [self._step(disjunct.items, item.bound, _yes) for disjunct in item.disjuncts]
+            inner = [self._step(disjunct.items, item.bound, _success) for disjunct in item.disjuncts]
             return lambda values: not any(step(values) for step in inner) and then(values)
         if isinstance(item, Counted):
             return self._counted(item, then)
@@ -233,7 +236,8 @@ class FlatAnswers:
     def _counted(self, item: Counted, then: _Step) -> _Step:
         seen: set[_Answer] = set()
         steps = [
-            self._step(disjunct.items, item.bound, self._noting(terms, seen)) for disjunct, terms in item.rows
+            self._step(disjunct.items, item.bound, self._collecting(terms, seen))
+            for disjunct, terms in item.rows
         ]
         guards = [(operator, self._read(term)) for operator, term in item.guards]
         fixed = all(isinstance(term, Constant) for _, term in item.guards)
@@ -253,15 +257,15 @@ class FlatAnswers:
 
         return step
 
-    def _noting(self, terms: Sequence[Term], rows: set[_Answer]) -> _Step:
+    def _collecting(self, terms: Sequence[Term], rows: set[_Answer]) -> _Step:
         """Return a step that adds the values of terms to ``rows`` and fails, so that the search goes on."""
         reads = list(map(self._read, terms))
 
-        def note(values: _Values) -> bool:
+        def collect(values: _Values) -> bool:
             rows.add(tuple(read(values) for read in reads))
             return False
 
-        return note
+        return collect
 
     def _compare(self, item: Compare, bound: frozenset[Variable], then: _Step) -> _Step:
         for one, other in ((item.first, item.second), (item.second, item.first)):
@@ -427,7 +431,7 @@ def _remembered(variable: Variable, then: _Step) -> _Step:
     return step
 
 
-def _yes(_: _Values) -> bool:
+def _success(_: _Values) -> bool:
     return True
 
 

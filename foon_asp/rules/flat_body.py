@@ -183,7 +183,7 @@ class FlatBodies:
             if clause.head is not None:
                 self._rules.setdefault(clause.head.signature, []).append(clause)
         self.tables: dict[Signature, Table] = {}
-        self._open: list[Signature] = []  # predicates that are being unfolded, to find recursion
+        self._unfolding: list[Signature] = []  # predicates that are being unfolded, to find recursion
         self.size = 0
 
     def disjuncts(self, clause: Clause) -> tuple[Disjunct, ...]:
@@ -215,20 +215,18 @@ class FlatBodies:
     def linear_bound(self, clause: Clause) -> LinearBound:
         """Return the linear bound of a rule such as ``:- #sum { N,U : times(U,N) } > 9``."""
         scope = _Scope(self, clause)
-        counts = [conjunct for conjunct in clause.body if isinstance(conjunct, Aggregate)]
-        if not counts:
+        aggregates = [conjunct for conjunct in clause.body if isinstance(conjunct, Aggregate)]
+        if not aggregates:
             return self._unit_bound(scope, clause.body)
-        if len(clause.body) > 1 or counts[0].negations or len(counts[0].guards) != 1:
+        if len(clause.body) > 1 or aggregates[0].negations or len(aggregates[0].guards) != 1:
             raise NotFlatError
-        at_least, bound = self._allowed(counts[0].guards[0].comparison, counts[0].guards[0].term)
+        at_least, bound = self._allowed(aggregates[0].guards[0].comparison, aggregates[0].guards[0].term)
         terms = tuple(
-            term
-            for aggregate_element in counts[0].elements
-            for term in self._terms(scope, counts[0], aggregate_element)
+            term for element in aggregates[0].elements for term in self._terms(scope, aggregates[0], element)
         )
         deciding = {
             literal.signature
-            for element in counts[0].elements
+            for element in aggregates[0].elements
             for literal in element.condition
             if isinstance(literal, Literal) and literal.signature in _ONE_EXECUTION
         }
@@ -258,10 +256,10 @@ class FlatBodies:
 
     def _allowed(self, comparison: int, term: AST) -> tuple[bool, int]:
         """Return the bound that forbids a comparison: whether it is a lower one, and its number."""
-        number, sides = value(term, self.constants), _ALLOWED.get(ComparisonOperator(comparison))
-        if number is None or number.type is not SymbolType.Number or sides is None:
+        number, allowed = value(term, self.constants), _ALLOWED.get(ComparisonOperator(comparison))
+        if number is None or number.type is not SymbolType.Number or allowed is None:
             raise NotFlatError
-        return sides[0], number.number + sides[1]
+        return allowed[0], number.number + allowed[1]
 
     def _terms(
         self, scope: "_Scope", counts: Aggregate | None, element: Element
@@ -301,9 +299,9 @@ class FlatBodies:
             if signature[0] not in _READ:
                 raise NotFlatError
             return [Disjunct((Fact(signature, terms),))]
-        if signature in self._open:
+        if signature in self._unfolding:
             raise NotFlatError
-        self._open.append(signature)
+        self._unfolding.append(signature)
         try:
             if self._is_table(signature):
                 return [Disjunct((Listed(signature, terms),))]
@@ -311,14 +309,14 @@ class FlatBodies:
             for clause in self._rules.get(signature, ()):
                 scope = _Scope(self, clause)
                 assert clause.head is not None
-                equal = scope.called(terms, clause.head.arguments)
+                equations = scope.unified(terms, clause.head.arguments)
                 disjuncts += [
-                    disjunct._replace(items=(*equal, *disjunct.items))
+                    disjunct._replace(items=(*equations, *disjunct.items))
                     for disjunct in scope.disjuncts(clause.body)
                 ]
             return disjuncts
         finally:
-            self._open.pop()
+            self._unfolding.pop()
 
     def _is_table(self, signature: Signature) -> bool:
         """Whether a predicate is a table; adds it to ``tables`` at its first use."""
@@ -467,15 +465,15 @@ class _Scope:
             for names, condition in inner
         )
 
-    def called(self, terms: Sequence[Term], head: Sequence[AST]) -> list[Item]:
+    def unified(self, terms: Sequence[Term], head: Sequence[AST]) -> list[Item]:
         """Unify the head of a rule with the terms of an atom; return the equations that remain."""
-        equal: list[Item] = []
+        equations: list[Item] = []
         for term, argument in zip(terms, head, strict=True):
             if argument.ast_type == ASTType.Variable and argument.name not in self._named:
                 self._named[argument.name] = term
             else:
-                equal.append(Compare(ComparisonOperator.Equal, self.term(argument), term))
-        return equal
+                equations.append(Compare(ComparisonOperator.Equal, self.term(argument), term))
+        return equations
 
     def term(self, node: AST) -> Term:
         """Return a term of clingo as a variable or a constant."""
