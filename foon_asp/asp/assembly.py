@@ -88,7 +88,7 @@ def assemble(
     extra, theirs, constants = list["Encoding"](), list["Encoding"](), list[str]()
     encodings = folder if settings.encodings is None and replaced else settings.encodings
     if added or encodings or settings.constants:
-        # parsing takes some milliseconds, so it is skipped for unchanged built-in files alone
+        # parsing takes some milliseconds, so it is skipped where all files are built-in ones
         from foon_asp.encoding import encoding  # noqa: PLC0415
         from foon_asp.rules import stating  # noqa: PLC0415
 

@@ -309,9 +309,7 @@ class _Solver:
 
     def _search(self, units: list[int]) -> Outcome:
         counting = _Counting(self, units)
-        if (
-            not units
-        ):  # every goal is available: the empty plan is the only one, or the one that keeps to most rules
+        if not units:  # every goal is available: only the empty plan is irredundant
             if not self.program.own and counting.order({}) is None:
                 return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
             return self._outcome(Status.OPTIMAL if self._take(()) else Status.INFEASIBLE, Proof.CUTS)
@@ -437,17 +435,17 @@ class _Counting:
         positions = {unit: a for a, unit in enumerate(units)}
         self.bound = CountBound(
             flows_of(problem, units),
-            [[a for a, unit in enumerate(units) if unit in group] for group in solver.required],
+            [[a for a, unit in enumerate(units) if unit in required_set] for required_set in solver.required],
             [
-                Limit({a: group.weights[u] for a, u in enumerate(units) if group.weights.get(u)}, *group[1:])
-                for group in solver.limits
+                Limit({a: limit.weights[u] for a, u in enumerate(units) if limit.weights.get(u)}, *limit[1:])
+                for limit in solver.limits
             ],
             [a for a, unit in enumerate(units) if unit in solver.tree],
             [self._below(objective, cost) for objective, cost in solver.below],
             [
-                {positions[u]: n for u, n in group.items()}
-                for group in solver.incomparable
-                if positions.keys() >= group.keys()
+                {positions[u]: n for u, n in plan.items()}
+                for plan in solver.incomparable
+                if positions.keys() >= plan.keys()
             ],
             expired=lambda: solver.deadline.passed,
         )
@@ -641,9 +639,7 @@ class _Counting:
         units = [self.units[a] for a in times]
         number = problem.network.unit_number
         # with fixed counts only the copies taken of a stock are free
-        wanted = (
-            solver.levels if best else [bounds for bounds in solver.levels if bounds is Objective.KITCHEN]
-        )
+        wanted = solver.levels if best else [level for level in solver.levels if level is Objective.KITCHEN]
         looked_at = None if solver.program.own else solver.program.looked_at
         scales = Scales(problem, units, wanted) if best or looked_at is not None else None
         text = facts.write_facts(problem, units, scales, looked_at)
@@ -654,7 +650,7 @@ class _Counting:
             # bounds by fractions are enforced by counts alone
             text += facts.write_below([{o: cost} for o, cost in solver.below if o.row.whole], scales)
             text += facts.write_beside(
-                [{number(u): n for u, n in bounds.items()} for bounds in solver.incomparable]
+                [{number(u): n for u, n in plan.items()} for plan in solver.incomparable]
             )
             files = (*files, question_encoding("bounded_plans.lp"))
         ended = search.run(

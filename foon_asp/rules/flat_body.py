@@ -458,10 +458,10 @@ class _Scope:
         return bound >= self._whole and all(
             self._whole.union(
                 name
-                for literal in condition
-                if isinstance(literal, Literal) and literal.positive
-                for name in global_variables(literal)
-            ).issuperset((*names, *(name for literal in condition for name in global_variables(literal))))
+                for conjunct in condition
+                if isinstance(conjunct, Literal) and conjunct.positive
+                for name in global_variables(conjunct)
+            ).issuperset((*names, *(name for conjunct in condition for name in global_variables(conjunct))))
             for names, condition in inner
         )
 

@@ -226,7 +226,7 @@ class _Evaluation:
             for _, name, subject, value in self._derived([unit], alone):
                 if name == (self._measure.name,):
                     stated.setdefault((subject, value), rule.source)
-        large = {statement: source for statement, source in stated.items() if _text(statement[1]) == BEYOND}
+        large = {cost: source for cost, source in stated.items() if _text(cost[1]) == BEYOND}
         errors = []
         for (subject, value), source in (large or stated).items():
             if large:

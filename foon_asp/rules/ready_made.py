@@ -94,27 +94,27 @@ class ReadyMade:
 
     def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
         """Return linear bounds: of each, the whole weight of a unit, and the greatest sum over a tree."""
-        for constraint in self._meanings(problem)[0]:
-            if constraint.most is not None and all(len(units) == 1 for units, _ in constraint.things):
-                amounts = {unit: int(amount) for units, amount in constraint.things for unit in units}
-                yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(constraint.most)  # type: ignore[misc]
+        for rule_meaning in self._meanings(problem)[0]:
+            if rule_meaning.most is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
+                amounts = {unit: int(amount) for units, amount in rule_meaning.things for unit in units}
+                yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(rule_meaning.most)  # type: ignore[misc]
 
     def conflict(self, problem: Problem, units: Units) -> Sequence[Units] | None:
-        """Return sets that the tree hits and no tree hits that keeps to the unsettled constraints.
+        """Return sets that a tree hits, but no tree hits all of that keeps to unsettled constraints.
 
-        ``None`` where the tree keeps to them; it keeps to all others.
+        ``None`` where the tree keeps to these; it keeps to all others.
         """
-        for rule, constraint in zip(self.rules, self._meanings(problem)[0], strict=True):
-            if constraint.most is not None:
-                used = [thing for thing in constraint.things if not units.isdisjoint(thing[0])]
+        for rule, rule_meaning in zip(self.rules, self._meanings(problem)[0], strict=True):
+            if rule_meaning.most is not None:
+                used = [thing for thing in rule_meaning.things if not units.isdisjoint(thing[0])]
                 used.sort(key=lambda thing: -thing[1])
                 sums = accumulate((amount for _, amount in used), initial=Fraction())
                 over = next(
-                    (position for position, total in enumerate(sums) if total > constraint.most), None
+                    (position for position, total in enumerate(sums) if total > rule_meaning.most), None
                 )
                 if over is not None:
                     return [members for members, _ in used[:over]]
-            if constraint.barred is not None and (early := _too_early(problem, rule, units)):
+            if rule_meaning.barred is not None and (early := _too_early(problem, rule, units)):
                 return [Units({unit}) for unit in sorted(early)]
         return None
 
@@ -122,7 +122,7 @@ class ReadyMade:
         """Return units that are in no tree that keeps to all constraints and has no unit of ``without``."""
         meanings, _ = self._meanings(problem)
         return Units().union(
-            *(constraint.barred(Units(), without) for constraint in meanings if constraint.barred)
+            *(rule_meaning.barred(Units(), without) for rule_meaning in meanings if rule_meaning.barred)
         )
 
     def keeps(self, problem: Problem, units: Collection[int]) -> bool:

@@ -125,10 +125,10 @@ class Analysis:
             for number, statement in enumerate(self.statements)
         ]
         self.of_rule = [
-            [clause for clause in statement if self._why_never(clause.body) is None]
-            for statement in clauses_by_rule
+            [clause for clause in rule_clauses if self._why_never(clause.body) is None]
+            for rule_clauses in clauses_by_rule
         ]
-        self.live = [clause for statement in (*self.of_rule, _implied()) for clause in statement]
+        self.live = [clause for rule_clauses in (*self.of_rule, _implied()) for clause in rule_clauses]
         self.dependence = Dependence(self.live, self.constants, varied)
         self._locality = Locality(self.live, self.dependence)
         self.bodies = FlatBodies(self.live, self.constants, self.dependence, self._locality)
@@ -181,9 +181,9 @@ class Analysis:
                     for position, argument in enumerate(conjunct.arguments)
                 }
                 values = {
-                    position: plain_value(argument)
-                    for position, argument in symbols.items()
-                    if argument is not None
+                    position: plain_value(symbol)
+                    for position, symbol in symbols.items()
+                    if symbol is not None
                 }
                 misfit = misplaced(COLUMNS[conjunct.signature], values)
                 if misfit is not None:

@@ -177,7 +177,7 @@ class Rules:
     @property
     def only_limits(self) -> bool:
         """Whether no rule reads the number of executions except to bound it from above."""
-        at_most = {number for number, row in self._analysis.linear_bounds.items() if not row.at_least}
+        at_most = {number for number, bound in self._analysis.linear_bounds.items() if not bound.at_least}
         others = (
             clause
             for number, rule_clauses in enumerate(self._analysis.of_rule)
@@ -223,15 +223,13 @@ class Rules:
         if problem.restriction is not None:
             problem = replace(problem, restriction=None)
         answers = self._answers(problem)
-        disjuncts = [
-            disjunct for at_least_ones in self._analysis.removals.values() for disjunct in at_least_ones
-        ]
+        disjuncts = [disjunct for removals in self._analysis.removals.values() for disjunct in removals]
         if answers.any_holds(disjunct for disjunct in disjuncts if disjunct.unit is None):
             return Contradiction()
         required = [
             units
-            for at_least_ones in self._at_least_ones
-            for units in answers.required_sets(at_least_ones)
+            for at_least_one in self._at_least_ones
+            for units in answers.required_sets(at_least_one)
             if units is not None
         ]
         if not all(required):
