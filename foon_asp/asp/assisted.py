@@ -1,4 +1,4 @@
-"""Units done by a person: a bound on their number, and constraints that look at them."""
+"""Units done by a person: a bound on their number, and constraints that read them."""
 
 from collections.abc import Mapping, Sequence
 

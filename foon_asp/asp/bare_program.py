@@ -45,7 +45,7 @@ def bare_program(
     """Return a question for bare clingo, which finds the same optimum.
 
     ``soft`` are the weights of constraints that may be broken; the least sum of weights then comes
-    first. Under ``success`` clingo goes by rounded weights alone. Raises :class:`UserError` like
+    first. Under ``success`` clingo compares rounded weights alone. Raises :class:`UserError` like
     :func:`foon_asp.asp.solve`.
     """
     penalty = ""

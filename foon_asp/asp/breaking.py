@@ -26,7 +26,7 @@ class Breaking:
     def __init__(self, settings: Settings, used_up: bool = False) -> None:
         """Read the constraints of settings.
 
-        Raises :class:`UserError` for what is wrong with them.
+        Raises :class:`UserError` for faults in them.
         """
         program = assemble(settings, lambda _: None, used_up)
         if used_up:

@@ -65,7 +65,7 @@ class Prepared:
 
     @cached_property
     def facts(self) -> str:
-        """The facts of the problem, as text, without those of the question.
+        """The facts of the problem, as text, without the facts of the objectives.
 
         Raises ``KeyboardInterrupt`` at a limit.
         """
@@ -91,7 +91,7 @@ class Prepared:
     def keeps(self, units: Collection[int]) -> bool | None:
         """Whether a tree keeps to all user rules, which are local.
 
-        ``None`` where a limit came first. Raises :class:`UserError` for what is wrong with a rule.
+        ``None`` where a limit came first. Raises :class:`UserError` for a fault in a rule.
         """
         program = self.full_program or self.program
         if program.ready_made is not None:

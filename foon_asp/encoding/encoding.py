@@ -75,9 +75,8 @@ class Encoding:
     minus. ``names`` are those of constants and functions in terms. ``constants`` maps the names of ``#const``
     statements to their values as written, ``constant_sources`` to their places. ``special`` are statements
     and atoms other than plain rules, by type. ``assigns`` says that a variable may get its value
-    from an aggregate (``N = #count {...}``). ``text`` is every statement as clingo understands it, and
-    ``statements`` are these, in order. Places in ``rules`` that are in no file have their name in that of the
-    file.
+    from an aggregate (``N = #count {...}``). ``text`` is every statement as clingo prints it, and
+    ``statements`` are these, in order. Places in rules without a file have the name of the rules as file.
     """
 
     rules: Loaded

@@ -416,7 +416,7 @@ def write_required(sets: Sequence[Iterable[int]]) -> str:
 
 
 def write_known(numbers: Iterable[int]) -> str:
-    """Return facts of the units, by number, that need their preconditions; others may lack them."""
+    """Return facts of the units, by number, whose achievers are all present; others may lack inputs."""
     return "".join(f"_known({_check(number)}).\n" for number in numbers)
 
 

@@ -78,8 +78,7 @@ def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint
     """Return a constraint of a Python argument, which may be one already.
 
     A text that has ``:-``, or ends in a full stop, is a rule, unless it is an existing path or the name of a
-    ready-made constraint; a path is always a path. Raises :class:`UserError` for an
-    empty text.
+    ready-made constraint; a path is always a path. Raises :class:`UserError` for an empty text.
     """
     if isinstance(constraint, RuleText | LibraryUse):
         return constraint

@@ -1,10 +1,10 @@
-"""Locality of rules: which ones read facts about the tree alone, its units, their object nodes, the goals.
+"""Locality of rules: whether they read facts about the tree alone, its units, object nodes and goals.
 
-A rule is local if its truth for a tree stays the same when facts of units outside the tree, and of object
-nodes that only those have, are left out. So every fact that it looks at has to be about something that is
-known to be the tree's: ``use(U)`` leads to a unit of it, ``input(U,O)`` from there to an object node,
-``label(O,L)`` to a label, and ``goal(O)`` to a goal, which is always there. An auxiliary predicate may be
-about its arguments: ``tainted(O) :- label(O,"nut").`` reads facts about O alone.
+A rule is local if its truth for a tree stays the same without the facts of units outside the tree and of
+object nodes that only such units have. So every fact that it reads has to be about a subject that is known to
+be in the tree: ``use(U)`` leads to a unit of it, ``input(U,O)`` from there to an object node, ``label(O,L)``
+to a label, and ``goal(O)`` to a goal, which is always there. An auxiliary predicate may be about its
+arguments: ``tainted(O) :- label(O,"nut").`` reads facts about O alone.
 """
 
 from collections import defaultdict
@@ -83,7 +83,7 @@ class Locality:
         return leads
 
     def _find_abouts(self, program: Sequence[Clause]) -> None:
-        """Find what arguments of auxiliary predicates have to be for their rules to be local."""
+        """Find the subjects that arguments of auxiliary predicates need for their rules to be local."""
         changed = True
         while changed:
             changed = False

@@ -157,7 +157,7 @@ class _Evaluation:
         return list(zip(*columns, strict=True)) if columns else [()] * len(network)
 
     def cost_by_number(self, units: Iterable[int]) -> dict[int, Cost]:
-        """Return the costs of units by public number, of those that rules give a cost."""
+        """Return costs by public number, for the units with a cost by the rules."""
         by_number = {self._number(unit): unit for unit in units}
         values: dict[int, Cost] = {}
         for world, name, number, value in self._derived(by_number.values(), self._rules.statements):

@@ -73,10 +73,10 @@ class Statement(NamedTuple):
 class MeasureRules(NamedTuple):
     """Rules of measures, translated for clingo.
 
-    ``names`` are those of the measures, with the place where each is met first; ``reads`` the predicates of
-    facts that they read. ``nameless`` says that the numbers of units and object nodes do not matter: units
-    with the same facts but for these cost the same. ``plain`` says that nothing in the rules can make their
-    grounding large: no intervals, no two tables joined, and few atoms in a rule.
+    ``names`` are the names of the measures, each with the place of its first occurrence; ``reads`` the
+    predicates of facts that they read. ``nameless`` says that the numbers of units and object nodes do not
+    matter: units with facts equal up to numbers cost the same. ``plain`` says that the grounding cannot be
+    large: no intervals, no two tables joined, and few atoms in a rule.
     """
 
     names: dict[str, Source]
@@ -88,7 +88,7 @@ class MeasureRules(NamedTuple):
 
 @lru_cache(maxsize=64)
 def read_rules(text: str, origin: str) -> MeasureRules:
-    """Read the rules of measures; raises :class:`InputError` for what is no rule over facts about a unit."""
+    """Read the rules of measures; raises :class:`InputError` unless they are over facts about one unit."""
     check_text(text, origin)
     stated = Stated(origin, text)
     statements: list[AST] = []

@@ -60,14 +60,14 @@ class ReadyMade:
 
     @property
     def looked_at(self) -> frozenset[tuple[str, int]]:
-        """The facts that they look at, beside what ours always do."""
+        """The predicates that they read, in addition to those of the built-in encodings."""
         return READ | {_PRICE} if "max_price" in self.constants else READ
 
     def fit(self, problem: Problem) -> bool:
-        """Whether they say of a problem what they say to clingo.
+        """Whether their meaning here is that under clingo for a problem.
 
-        Unknown for unsettled constraints that do not see all available object nodes, and for prices that
-        clingo refuses.
+        It may differ for unsettled constraints that do not see all available object nodes, and for prices
+        that clingo refuses.
         """
         if self.unsettled and problem.kitchen_seen != problem.kitchen:
             return False
@@ -142,8 +142,8 @@ class ReadyMade:
 def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> ReadyMade | None:
     """Return constraints that are all ready-made, unchanged, and used once, with all constants set.
 
-    ``settings`` set constants as ``NAME=VALUE`` for those that have none of their own. ``None`` for any other
-    constraints, and for values that need a closer look.
+    ``settings`` set constants as ``NAME=VALUE`` of constraints without constants of their own. ``None`` for
+    any other constraints, and for values that are no plain texts or numbers.
     """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     files: list[Path] = []

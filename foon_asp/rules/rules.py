@@ -120,9 +120,9 @@ class Rules:
 
     @property
     def local(self) -> bool:
-        """Whether no rule sees beyond the tree.
+        """Whether every rule is local.
 
-        Only then may rules be asked about a part of the units.
+        Only then are rules valid for a part of the units.
         """
         return all(rule.local for rule in self.rules)
 

@@ -49,8 +49,8 @@ def unmatched(
 ) -> Iterator[Diagnostic]:
     """Return a warning for each literal over a fact that its constants keep from matching anything.
 
-    ``theirs`` are the user's files, ``ours`` ready-made constraints beside them, and ``settings`` the
-    constants that are set. A literal is passed over where another rule with the same head has its constants
+    ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the constants
+    that are set. A literal is skipped where another rule with the same head has its constants
     in a literal that matches: a name may be a label or an ingredient.
     """
     encodings = (*theirs, *ours)
