@@ -72,9 +72,7 @@ class Prepared:
         from foon_asp.encoding import facts as writing  # noqa: PLC0415
 
         with self.deadline.watched("writing facts"):
-            if (
-                self.full_program is not None
-            ):  # the predicates that rules read are known, and these facts are not shown
+            if self.full_program is not None:  # the predicates that rules read are known
                 read = writing.READ_BY_OURS | self.program.looked_at
                 facts = writing.write_facts_read(self.problem, self.units, read, self.scales)
             else:

@@ -542,8 +542,8 @@ class _Solver:
     def _settle(self, best: Units, fewest: int = 0) -> tuple[Units, bool]:
         """Examine every total that rounding may have hidden; see docs/dev/exact-success.md.
 
-        No tree has fewer units than ``fewest``. Returns the exact optimum, and whether the search was
-        exhausted.
+        No tree has fewer units than ``fewest``. Returns the best tree by exact costs, and whether that is
+        proved.
         """
         scales = self._scaled()
         if scales.rounded not in self.levels:  # a kept program has other levels, too
@@ -553,9 +553,8 @@ class _Solver:
         totals: list[dict[int, int]] = []
         fixed = [scales.weight(objective, best) for objective in before]
         chosen, rival, wanted = best, best, [0]  # indices of the totals as good as that of the chosen tree
-        at_once = (
-            self._open_preconditions and after == _UNITS_ONLY
-        )  # a second search with open preconditions is slow
+        # a second search with open preconditions is slow
+        at_once = self._open_preconditions and after == _UNITS_ONLY
         while True:
             # A total that is better or as good has a weight of at most W + n - 1, where n units of the tree
             # weigh less than they cost, and of at most W where none does.
