@@ -1,6 +1,6 @@
 """The search for the best tree with clingo: programs, searches and their outcome.
 
-A name is imported when it is first asked for: who only reports or sets limits needs no search.
+Names are imported at their first use, since reports and settings need no search.
 """
 
 import importlib

@@ -1,4 +1,4 @@
-"""Assembling a program: the built-in encodings or a replacement, and what the user adds."""
+"""Assembly of a program: the built-in encodings or a replacement, and user rules."""
 
 import hashlib
 from collections.abc import Callable, Sequence
@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
 SHRINKING = "--opt-usc-shrink=min"
 CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", SHRINKING)
 
-_SMALL = 10_000  # units, to look through which takes less time than to import clingo
+_MAX_UNITS_WITHOUT_CLINGO = 10_000  # a network of that size is searched faster than clingo is imported
 
 GREATEST_WEIGHT = 1_000_000  # of a constraint that may be broken or dropped
 
@@ -47,7 +47,7 @@ _RESERVED = (
     "--warn",  # what clingo leaves out, it says so in a warning
 )
 
-# Facts that are there where rates are known, and of costs by what is asked.
+# Facts that exist only where rates are known, or for the objectives of the question.
 _OF_SOME_QUESTIONS = {("rate", 2), ("risk", 2), ("cost", 3)}
 
 
@@ -57,10 +57,10 @@ def assemble(
     used_up: bool = False,
     problem: Problem | None = None,
 ) -> Program:
-    """Find and check the encodings that the settings ask for.
+    """Find and check the encodings of settings.
 
-    ``used_up`` asks for those of plans in which items are used up. ``problem`` is the question, whose network
-    has the names that rules look for: what nothing in it matches is warned of.
+    With ``used_up``, they are those of plans in which items are used up. ``problem`` is the question: names
+    in rules that do not occur in its network are warned of.
     Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that
     no encoding has and for clingo options that would change what an answer means.
     """
@@ -72,7 +72,7 @@ def assemble(
     kept, rules = added, ""
     questions: tuple[Path, ...] = ()
     if relaxed is not None:
-        kept = tuple(each for each in added if each not in relaxed.constraints)
+        kept = tuple(constraint for constraint in added if constraint not in relaxed.constraints)
         added = tuple(dict.fromkeys((*added, *relaxed.constraints)))
         questions = (relaxed.encoding,)
         rules = relaxed.rules
@@ -88,7 +88,7 @@ def assemble(
     extra, theirs, constants = list["Encoding"](), list["Encoding"](), list[str]()
     encodings = folder if settings.encodings is None and replaced else settings.encodings
     if added or encodings or settings.constants:
-        # parsing takes some milliseconds, so it is left out for what every file of ours agrees with
+        # parsing takes some milliseconds, so it is skipped where all files are built-in ones
         from foon_asp.encoding import encoding  # noqa: PLC0415
         from foon_asp.rules import stating  # noqa: PLC0415
 
@@ -98,29 +98,29 @@ def assemble(
             prepare()  # while files are parsed
 
         parsed = [encoding.read_encoding(file) for file in base if endless]
-        asked = [encoding.read_encoding(file) for file in questions]
+        question_encodings = [encoding.read_encoding(file) for file in questions]
         files = stating.loaded(added)
-        extra = [encoding.read_encoding(files[each]) for each in added]
-        faults = map(str, encoding.check_encodings(extra, parsed, asked))
+        extra = [encoding.read_encoding(files[constraint]) for constraint in added]
+        faults = map(str, encoding.check_encodings(extra, parsed, question_encodings))
         for message in (*faults, *encoding.unset_constants(extra, settings.constants)):
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
-        theirs = [*extra, *(each for file, each in zip(base, parsed, strict=False) if not is_own(file))]
-        looked_at = frozenset(signature for each in theirs for signature in each.used)
-        named = frozenset(name for each in (*parsed, *extra) for name in each.constants)
-        text = "\n".join(each.text for each in (*parsed, *asked, *extra))
+        theirs = [*extra, *(read for file, read in zip(base, parsed, strict=False) if not is_own(file))]
+        looked_at = frozenset(signature for read in theirs for signature in read.used)
+        named = frozenset(name for read in (*parsed, *extra) for name in read.constants)
+        text = "\n".join(read.text for read in (*parsed, *question_encodings, *extra))
         if extra and not encodings and relaxed is None:
             from foon_asp.rules import rules as user_rules  # noqa: PLC0415
 
             understood = user_rules.Rules(extra, constants[1::2])
     _warn_of_names(problem, settings, extra, constants[1::2], warn)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
-    if settings.clingo_options:  # looked at now, since clingo may have nothing to do
+    if settings.clingo_options:  # checked now, since clingo may not run
         from foon_asp.encoding.search import check  # noqa: PLC0415
 
         check(arguments)
     return Program(
-        (*base, *(files[each] for each in kept), *questions, *_checks(theirs)),
+        (*base, *(files[constraint] for constraint in kept), *questions, *_checks(theirs)),
         exact_success(),
         arguments,
         replaced=replaced,
@@ -135,12 +135,12 @@ def assemble(
         ours=(*base, *questions),
         understood=understood,
         named=named,
-        reads=_reads([each for each in theirs if each.rules not in base]),
+        reads=_reads([read for read in theirs if read.rules not in base]),
     )
 
 
 def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program:
-    """Assemble the encodings of a question as :func:`assemble` does, without clingo where that can be."""
+    """Assemble the encodings of a question as :func:`assemble` does, without clingo where possible."""
     return ready_made(problem, settings, warn) or assemble(settings, warn, problem=problem)
 
 
@@ -149,14 +149,14 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
 
     ``None`` for other questions.
     """
-    rules = _known(settings)
+    rules = _ready_made_rules(settings)
     if rules is None or problem.items is not None:
         return None
     from foon_asp.rules.fact_values import FactValues  # noqa: PLC0415 (only of use with constraints)
     from foon_asp.rules.parameter_names import unknown_parameters  # noqa: PLC0415
 
-    network = problem.network  # to read a part of a store takes longer than to look through it
-    if (len(network) > _SMALL and not network.object_numbers) or not rules.fit(problem):
+    network = problem.network  # reading a part of a store takes longer than searching it
+    if (len(network) > _MAX_UNITS_WITHOUT_CLINGO and not network.object_numbers) or not rules.fit(problem):
         return None
     for message in unknown_parameters(settings.constraints, settings.constants, FactValues(problem)):
         warn(message)
@@ -178,7 +178,7 @@ def _warn_of_names(
     constants: Sequence[str],
     warn: Callable[[str], None],
 ) -> None:
-    """Warn of names in rules, measures and parameters that nothing in the network of a problem has."""
+    """Warn of names in rules, measures and parameters that do not occur in the network of a problem."""
     if problem is None or not (added or problem.measures):
         return
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (which takes clingo along)
@@ -186,8 +186,8 @@ def _warn_of_names(
     from foon_asp.rules.unmatched import unmatched  # noqa: PLC0415
 
     values = FactValues(problem)
-    theirs = [each for each in added if not _is_ours(each)]
-    ours = [each for each in added if _is_ours(each)]
+    theirs = [encoding for encoding in added if not _is_ours(encoding)]
+    ours = [encoding for encoding in added if _is_ours(encoding)]
     if ours:
         from foon_asp.rules.parameter_names import unknown_parameters  # noqa: PLC0415
 
@@ -196,8 +196,8 @@ def _warn_of_names(
             warn(message)
     for diagnostic in unmatched(theirs, ours, constants, values):
         warn(str(diagnostic))
-    for place, text in {(each.place, each.text): None for each in problem.measures.values()}:
-        for diagnostic in unmatched([read_encoding(Stated(place, text))], [], (), values):
+    for origin, text in {(measure.place, measure.text): None for measure in problem.measures.values()}:
+        for diagnostic in unmatched([read_encoding(Stated(origin, text))], [], (), values):
             warn(str(diagnostic))
 
 
@@ -207,8 +207,8 @@ def _is_ours(encoding: "Encoding") -> bool:
     return file is not None and is_own(file)
 
 
-def _known(settings: Settings) -> "ReadyMade | None":
-    """Return the rules that are added where all are ready-made constraints; ``None`` for others."""
+def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
+    """Return the added rules where all are ready-made constraints, else ``None``."""
     if not settings.constraints or not settings.reductions or settings.replaced is not None:
         return None
     if settings.relaxed is not None or settings.bounded is not None:
@@ -219,34 +219,34 @@ def _known(settings: Settings) -> "ReadyMade | None":
 
 
 def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
-    """Give what rules of the user's own read and not every question has facts of, with the first argument."""
-    found: set[tuple[str, str]] = set()
+    """Return predicates read by user rules that lack facts in some questions, with their first argument."""
+    predicates: set[tuple[str, str]] = set()
     for encoding in encodings:
         if not _is_ours(encoding) and not _OF_SOME_QUESTIONS.isdisjoint(encoding.used):
-            found.update(encoding.first_names(_OF_SOME_QUESTIONS))
-    return frozenset(found)
+            predicates.update(encoding.first_names(_OF_SOME_QUESTIONS))
+    return frozenset(predicates)
 
 
 def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:
-    """Return what finds numbers beyond clingo's in encodings of the user."""
+    """Return the overflow checks of user encodings."""
     if not encodings:
         return []
-    from foon_asp.grounding.number_checks import PLACE  # noqa: PLC0415
+    from foon_asp.grounding.number_checks import CHECKS_FILE  # noqa: PLC0415
     from foon_asp.rules.number_limits import number_checks  # noqa: PLC0415
 
-    found = number_checks(statement for each in encodings for statement in each.statements)
-    return [Stated(PLACE, found)] if found else []
+    checks = number_checks(statement for encoding in encodings for statement in encoding.statements)
+    return [Stated(CHECKS_FILE, checks)] if checks else []
 
 
 def _understood(settings: Settings) -> "Rules | None":
-    """Return the rules that are added, as far as they are understood; raises as :func:`assemble` does."""
+    """Return the added rules as analysed, ``None`` without any; raises as :func:`assemble` does."""
     return assemble(settings, lambda _: None).understood
 
 
 class ReachOfRules(Enum):
-    """Which units rules are about, beside those of a tree: ``NEEDED`` ones, which lead to a goal.
+    """The units that rules may be about: ``NEEDED`` for a goal, of the ``TREE``, or ``ALL``.
 
-    Under ``TREE`` they look at no others than those of the tree, and may ask for units that no goal needs.
+    Under ``TREE`` rules read facts about the tree alone, and may require units that no goal needs.
     """
 
     NEEDED = auto()
@@ -255,63 +255,63 @@ class ReachOfRules(Enum):
 
 
 def reach_of_rules(settings: Settings) -> ReachOfRules:
-    """Return which units the rules that are added are about; raises as :func:`assemble` does."""
-    rules = _known(settings) or _understood(settings)
+    """Return the units that the added rules are about; raises as :func:`assemble` does."""
+    rules = _ready_made_rules(settings) or _understood(settings)
     if rules is None or not rules.local:
         return ReachOfRules.ALL
     return ReachOfRules.NEEDED if rules.shrinking else ReachOfRules.TREE
 
 
 def hold_for_parts(settings: Settings) -> bool:
-    """Whether any part of a tree that keeps to the rules that are added keeps to them, too.
+    """Whether every part of a tree that keeps to the added rules keeps to them, too.
 
-    Also where there are no units but those of a part of the network, and where more is available, which they
-    do not see in the kitchen. Raises as :func:`assemble` does.
+    Also within a part of the network, and where more object nodes are available than the kitchen of the rules
+    has. Raises as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False
-    rules = _known(settings) or varying_available(settings)
+    rules = _ready_made_rules(settings) or varying_available(settings)
     if rules is None:
         return not settings.constraints
     return rules.local and rules.shrinking
 
 
-def leave_a_rest(settings: Settings) -> bool:
-    """Whether rules that are added say more than which units there are; raises as :func:`assemble` does."""
-    rules = _known(settings) or _understood(settings)
-    return rules is not None and bool(rules.rest)
+def leave_unsettled(settings: Settings) -> bool:
+    """Whether added rules do more than remove and require units; raises as :func:`assemble` does."""
+    rules = _ready_made_rules(settings) or _understood(settings)
+    return rules is not None and bool(rules.unsettled)
 
 
 def varying_available(settings: Settings) -> "Rules | None":
-    """Return the rules that are added, for questions where more is available; raises as above."""
+    """Return the added rules for questions where more is available; raises as :func:`assemble` does."""
     rules = _understood(settings)
     return None if rules is None else rules.varying({("available", 1)})
 
 
-def asks_of_all(problem: Problem, settings: Settings) -> bool:
-    """Whether rules that are added may be about units beyond what the goals can need.
+def need_whole_network(problem: Problem, settings: Settings) -> bool:
+    """Whether added rules may be about units beyond those that the goals can need.
 
-    Of a store, the part that the goals can need is enough where no rule looks beyond the tree or asks for
-    units that no goal needs.
+    Of a store, the part that the goals can need is enough where every rule is local and none requires units
+    that no goal needs.
     """
     if not settings.constraints and settings.replaced is None:
         return False
-    part = problem.network.object_numbers and problem.items is None and settings.replaced is None
-    return not part or reach_of_rules(settings) is not ReachOfRules.NEEDED
+    is_partial = problem.network.object_numbers and problem.items is None and settings.replaced is None
+    return not is_partial or reach_of_rules(settings) is not ReachOfRules.NEEDED
 
 
 def rules_digest(
     settings: Settings, warn: Callable[[str], None] = lambda _: None, problem: Problem | None = None
 ) -> dict[str, str]:
-    """Return a digest of the rules that are added, if there are any, under ``rules``.
+    """Return a digest of the added rules under the key ``rules``; empty without rules.
 
-    Rows of results have it in common. Warns and raises as :func:`assemble` does.
+    All rows of results have it. Warns and raises as :func:`assemble` does.
     """
     if not (settings.constraints or settings.constants or settings.encodings):
         return {}
     program = assemble(settings, warn, problem=problem)
-    said = json_line([program.text, program.constants])
-    return {"rules": hashlib.sha256(said.encode()).hexdigest()[:16]}
+    content = json_line([program.text, program.constants])
+    return {"rules": hashlib.sha256(content.encode()).hexdigest()[:16]}
 
 
 def _find_encodings(path: Path | None, ours: Path) -> Path:
@@ -326,13 +326,13 @@ def _find_encodings(path: Path | None, ours: Path) -> Path:
 
 
 def _is_own(constraint: Constraint) -> bool:
-    """Whether a constraint says what a ready-made one does, under whichever constants."""
+    """Whether a constraint is an unchanged ready-made one, under any constants."""
     file = constraint.file if isinstance(constraint, LibraryUse) else constraint
     return isinstance(file, Path) and is_own(file)
 
 
 def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
-    """Check the user's options, which replace ours of the same name."""
+    """Return the options of clingo: the user's, and the default ones of other names."""
     names = [option.partition("=")[0] for option in options]
     for option, name in zip(options, names, strict=True):
         if not (name.startswith("--") and len(name) > 2) and not name.startswith("-t"):

@@ -1,4 +1,4 @@
-"""Units done by a person: a bound on their number, and constraints that look at them."""
+"""Units done by a person: a bound on their number, and constraints that read them."""
 
 from collections.abc import Mapping, Sequence
 
@@ -10,24 +10,24 @@ from foon_asp.errors import UserError
 from foon_asp.grounding.stated import Stated
 from foon_asp.rules.constraint import Constraint, find_constraint
 
-# What rules may look at in this question is as near to a unit as its motion.
+# The predicates that rules may read in this question are local as motion/2 is.
 _AS_FACTS = "_by_person(U) :- motion(U,_). _takes_over(P,U) :- motion(P,M), motion(U,M), P < U."
 _OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 
 
-def assisted(twins: Mapping[int, int], most: int) -> Bounded:
-    """Ask for trees in which a person does at most ``most`` units, and no unit is done twice.
+def assisted(twins: Mapping[int, int], max_assisted: int) -> Bounded:
+    """Return bounds on trees: a person does at most ``max_assisted`` units, and no unit is done twice.
 
-    ``twins`` gives for each unit that is a person's the same unit as the robot does it, both by their ids in
-    the whole network. For :class:`foon_asp.asp.Settings`.
+    ``twins`` has for each unit of the person the same unit done by the robot, by ids in the whole network.
+    For :class:`foon_asp.asp.Settings`.
     """
-    return Bounded(write_assisted(twins, most), (question_encoding("assist.lp"),))
+    return Bounded(write_assisted(twins, max_assisted), (question_encoding("assist.lp"),))
 
 
 def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
-    """Whether constraints look at who does a unit: at success rates, or at units done by a person.
+    """Whether constraints read who does a unit: success rates, or units done by a person.
 
-    Raises what :func:`foon_asp.encoding.encoding.read_encoding` does.
+    Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
     if not constraints:
         return False
@@ -38,10 +38,10 @@ def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
     return any(_OF_DOERS & read_encoding(rules).used.keys() for rules in files)
 
 
-def require_near(settings: Settings) -> None:
-    """Require that constraints look at nothing beyond the tree, where units are there twice.
+def require_local(settings: Settings) -> None:
+    """Require that constraints are local, since every unit is in the network twice.
 
-    Raises :class:`UserError` with the place of a rule that does.
+    Raises :class:`UserError` with the place of a rule that is not.
     """
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
     from foon_asp.rules.rules import Rules  # noqa: PLC0415
@@ -50,10 +50,11 @@ def require_near(settings: Settings) -> None:
     program = assemble(settings, lambda _: None)
     files = loaded([*map(find_constraint, settings.constraints)]).values()
     encodings = [read_encoding(rules) for rules in (*files, Stated("a person", _AS_FACTS))]
-    for told in Rules(encodings, program.constants[1::2]).told:
-        if not told.rule.local:
+    for shown in Rules(encodings, program.constants[1::2]).shown:
+        if not shown.rule.local:
             raise UserError(
-                f"{told.source}: this rule looks at units that the tree need not have ({told.rule.further}). "
+                f"{shown.source}: this rule looks at units that the tree need not have "
+                f"({shown.rule.further}). "
                 "Beside a rule about who does a unit it would see those twice that a person does better: ask "
                 "it about units that are used, or leave one of the two out"
             )

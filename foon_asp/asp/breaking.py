@@ -1,4 +1,4 @@
-"""Which rules of the user's a tree or a plan breaks, whoever made it."""
+"""The user rules that a given tree or plan breaks."""
 
 from collections import Counter
 from collections.abc import Collection
@@ -18,15 +18,15 @@ from foon_asp.problem import Objective, Problem, levels, reach
 
 
 class Breaking:
-    """Constraints, read once, to be held against trees that execute; or plans, where items are used up.
+    """Constraints, read once, to check executable trees with; or plans, where items are used up.
 
-    ``local`` says that whether a tree keeps to them does not depend on units outside it.
+    ``local`` says that their truth for a tree does not depend on units outside it.
     """
 
     def __init__(self, settings: Settings, used_up: bool = False) -> None:
         """Read the constraints of settings.
 
-        Raises :class:`UserError` for what is wrong with them.
+        Raises :class:`UserError` for faults in them.
         """
         program = assemble(settings, lambda _: None, used_up)
         if used_up:
@@ -39,7 +39,7 @@ class Breaking:
         self._program = assemble(self._settings, lambda _: None, used_up)
 
     def broken(self, problem: Problem, tree: Collection[int]) -> tuple[IntegrityConstraint, ...]:
-        """Return the rules that a tree breaks, by the ids of its units; of a plan, each as often as executed.
+        """Return the rules that a tree breaks, given by unit ids; a plan with repeats, once per execution.
 
         Raises ``KeyboardInterrupt`` at a limit, and :class:`UserError` for a rule without a value.
         """
@@ -59,10 +59,10 @@ class Breaking:
     def _tree(self, problem: Problem, tree: Collection[int]) -> Run:
         used = set(tree)
         units = sorted(used if self.local else used.union(reach(problem).units))
-        asked = levels((Objective.UNITS,))
-        first = Prepared(problem, asked, self._settings, self._settings.begun, self._program, tuple(units))
+        by = levels((Objective.UNITS,))
+        prepared = Prepared(problem, by, self._settings, self._settings.begun, self._program, tuple(units))
         numbers = list(map(problem.network.unit_number, sorted(used)))
-        return first.run(write_tree(numbers) + write_least_penalty(1), predicates=[("_broken", 2)])
+        return prepared.run(write_tree(numbers) + write_least_penalty(1), predicates=[("_broken", 2)])
 
     def _plan(self, problem: Problem, plan: Collection[int]) -> Run:
         counts, program = Counter(plan), self._program

@@ -1,4 +1,4 @@
-"""Integrity constraints of the user's, one by one, and the same relaxed."""
+"""Integrity constraints of the user, one by one, and their relaxation."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -16,17 +16,17 @@ from foon_asp.grounding.parsing import nodes, parse
 from foon_asp.grounding.stated import Loaded
 from foon_asp.network import Source
 from foon_asp.results.values import ListedConstraint
-from foon_asp.rules.clause import place, variables, written
+from foon_asp.rules.clause import source_of, variables, written
 from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.rules.stating import loaded
 from foon_asp.text.diagnostics import Diagnostic, InputError
 
-_TEXT = "<block>"  # what clingo calls text that is in no file
+_TEXT = "<block>"  # the file name that clingo uses for text without a file
 _PASSED_OVER = {ASTType.Program, ASTType.Comment}
 
 
 class IntegrityConstraint(NamedTuple):
-    """One rule without a head: its number, the constraint it belongs to, where it stands, and its text there.
+    """One rule without a head: its number, the constraint it belongs to, its place and text.
 
     ``constants`` are the constants in it that were set, as ``NAME=VALUE``.
     """
@@ -53,41 +53,46 @@ def relax(
     deadline: Deadline | None = None,
     before: Iterable[Constraint] = (),
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
-    """Number the integrity constraints of some constraints, from 1, and rewrite these accordingly.
+    """Number the integrity constraints of constraint files from 1, and relax them.
 
     Without ``soft``, integrity constraint number C holds unless ``_dropped(C)`` does
     (``questions/clash.lp``). With it, it is a rule for ``_broken(C,Way)``, where ``Way`` has the values of
     its variables (``questions/soft.lp``).
-    Other rules stay as they are. ``before`` are constraints that messages count first. Raises what
-    :func:`foon_asp.encoding.encoding.read_encoding` does.
+    Other rules stay as they are. ``before`` are constraints whose texts are numbered first in messages.
+    Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
-    found: list[IntegrityConstraint] = []
+    numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}
-    asked = tuple(dict.fromkeys(map(find_constraint, constraints)))
-    files = loaded((*map(find_constraint, before), *asked))
-    for each in asked:
-        _look_over(files[each], deadline or Deadline())
-        given, asked_for = constants, files[each]
-        if isinstance(each, LibraryUse):
-            given, asked_for = [f"{name}={value}" for name, value in each.constants.items()], each.file
-        for statement, original in zip(_statements(files[each]), _statements(asked_for), strict=True):
+    checked = tuple(dict.fromkeys(map(find_constraint, constraints)))
+    files = loaded((*map(find_constraint, before), *checked))
+    for constraint in checked:
+        _look_over(files[constraint], deadline or Deadline())
+        settings, original_rules = constants, files[constraint]
+        if isinstance(constraint, LibraryUse):
+            settings, original_rules = (
+                [f"{name}={value}" for name, value in constraint.constants.items()],
+                constraint.file,
+            )
+        for statement, original in zip(
+            _statements(files[constraint]), _statements(original_rules), strict=True
+        ):
             if not _is_constraint(statement):
-                rules.setdefault(str(statement), place(statement))
+                rules.setdefault(str(statement), source_of(statement))
                 continue
-            number = len(found) + 1
+            number = len(numbered) + 1
             names = set(_names(original))
-            set_here = tuple(setting for setting in given if setting.partition("=")[0] in names)
-            text = written(original, asked_for)
-            found.append(IntegrityConstraint(number, each, place(original), text, set_here))
+            set_here = tuple(setting for setting in settings if setting.partition("=")[0] in names)
+            text = written(original, original_rules)
+            numbered.append(IntegrityConstraint(number, constraint, source_of(original), text, set_here))
             rule = _broken(statement, number) if soft else _unless_dropped(statement, number)
-            rules[rule] = place(statement)
+            rules[rule] = source_of(statement)
     encoding = question_encoding("soft.lp" if soft else "clash.lp")
     text = "".join(f"{rule}\n" for rule in rules)
-    return tuple(found), Relaxed(asked, text, encoding, rules, tuple(files.values()))
+    return tuple(numbered), Relaxed(checked, text, encoding, rules, tuple(files.values()))
 
 
 def _statements(rules: Loaded) -> list[AST]:
-    """Return the statements that say something."""
+    """Return the statements without comments and ``#program``."""
     statements: list[AST] = []
     parse(rules, statements.append, lambda *_: None)
     return [statement for statement in statements if statement.ast_type not in _PASSED_OVER]
@@ -100,24 +105,24 @@ def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
         yield
     except InputError as error:
         lines = text.split("\n")
-        found: list[Diagnostic] = []
+        diagnostics: list[Diagnostic] = []
         for diagnostic in error.diagnostics:
             file, line, *_ = diagnostic.source
-            stands = relaxed.places.get(lines[line - 1]) if file == _TEXT and line <= len(lines) else None
-            found.append(
+            source = relaxed.places.get(lines[line - 1]) if file == _TEXT and line <= len(lines) else None
+            diagnostics.append(
                 diagnostic
-                if stands is None
-                else located(diagnostic.severity, diagnostic.code, diagnostic.message, stands, relaxed.files)
+                if source is None
+                else located(diagnostic.severity, diagnostic.code, diagnostic.message, source, relaxed.files)
             )
-        raise InputError(found) from None
+        raise InputError(diagnostics) from None
 
 
 def _look_over(rules: Loaded, deadline: Deadline) -> None:
-    """Raise the errors of a constraint while places are known: once rewritten it is only text."""
+    """Raise the errors of a constraint while places are known, before it is rewritten as text."""
     read_encoding(rules)
     try:  # without facts, for unsafe variables alone
         ground((rules,), "", (), deadline, endless=True).close()
-    except KeyboardInterrupt:  # a limit: then nobody comes to look at what was not seen
+    except KeyboardInterrupt:  # at a limit, nothing is searched under unchecked rules
         deadline.interrupt()
 
 
@@ -145,7 +150,7 @@ def _parsed(text: str) -> AST:
 
 
 def _global_variables(body: Sequence[AST]) -> Iterator[str]:
-    """Return the variables that a whole rule has in common: not those within an aggregate or a condition."""
+    """Return the global variables of a body: those outside the elements of aggregates and conditions."""
     for literal in body:
         if literal.ast_type == ASTType.ConditionalLiteral:
             continue
@@ -159,7 +164,7 @@ def _global_variables(body: Sequence[AST]) -> Iterator[str]:
 
 
 def _names(statement: AST) -> Iterator[str]:
-    """Return the names of what may be a constant in the terms of a statement."""
-    for part in nodes(statement):
-        if part.ast_type == ASTType.SymbolicTerm and part.symbol.type is SymbolType.Function:
-            yield part.symbol.name
+    """Return the names in the terms of a statement that may be constants."""
+    for node in nodes(statement):
+        if node.ast_type == ASTType.SymbolicTerm and node.symbol.type is SymbolType.Function:
+            yield node.symbol.name

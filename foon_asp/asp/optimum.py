@@ -14,7 +14,7 @@ def solve(
     objectives: Sequence[Objective] = (Objective.UNITS,),
     settings: Settings | None = None,
     reporter: Reporter | None = None,
-    known: set[int] | None = None,
+    mattered: set[int] | None = None,
 ) -> Outcome:
     """Find the best tree or plan under a lexicographic list of objectives, and prove it.
 
@@ -22,7 +22,7 @@ def solve(
     :func:`foon_asp.asp.solver.solve` and :func:`foon_asp.asp.used_up.solve_used_up` do.
     """
     if problem.items is None:
-        return solver.solve(problem, objectives, settings, reporter, known)
+        return solver.solve(problem, objectives, settings, reporter, mattered)
     from foon_asp.asp.used_up import solve_used_up  # noqa: PLC0415 (numpy and HiGHS)
 
     return solve_used_up(problem, objectives, settings, reporter)

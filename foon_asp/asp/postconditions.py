@@ -1,4 +1,4 @@
-"""Checks of every answer before it is given, however it was found: by solver, by cuts, or in a list."""
+"""Postconditions of every answer, independent of how it was found."""
 
 import shlex
 from collections.abc import Callable, Collection, Sequence
@@ -19,8 +19,8 @@ from foon_asp.rules.constraint import RuleText
 class Postconditions:
     """Checks of the answers to one question.
 
-    ``levels`` are the objectives as optimized. ``own`` says that all rules are ours: then a tree that does
-    not execute is our fault. Whatever does not hold raises :class:`BugError` with what the question was.
+    ``levels`` are the objectives as optimized. ``own`` says that all rules are built-in: then a tree
+    that does not execute is a bug. A violated check raises :class:`BugError` with the question.
     """
 
     def __init__(
@@ -30,15 +30,15 @@ class Postconditions:
         self._settings, self._own = settings, own
 
     def require(self, holds: bool, otherwise: Callable[[], str]) -> None:
-        """Raise :class:`BugError` with a message and the question unless something holds."""
+        """Raise :class:`BugError` with a message and the question unless ``holds``."""
         if not holds:
             raise BugError(f"{otherwise()}\n{self._question()}")
 
     def tree(self, units: Collection[int]) -> tuple[int, ...]:
-        """Require that units execute and make the goals; returns them in such an order.
+        """Require that units execute and make the goals; return them in an executable order.
 
-        It is one in which each item can be used up, where there is one. Raises :class:`UserError` where they
-        do not execute by rules of the user's.
+        Where possible, each item can be used up in that order. Raises :class:`UserError` where user rules
+        made a tree that does not execute.
         """
         problem = self.problem
         order = executable_order(problem, units)
@@ -58,18 +58,18 @@ class Postconditions:
         return listed if run.order is None else tuple(listed[position] for position in run.order)
 
     def no_tree(self) -> None:
-        """Require that nothing makes all goals, going through all that could lead to them.
+        """Require that no tree makes all goals, by forward reachability over their relevant units.
 
-        Sets of which a restriction requires one are goals as well.
+        The required sets of a restriction are goals as well.
         """
-        needs, gives, makers = self.problem.needs, self.problem.gives, self.problem.makers
+        needs, gives, producers = self.problem.needs, self.problem.gives, self.problem.makers
         kitchen = self.problem.kitchen
         wanted = {goal for goal in self.problem.targets if goal not in kitchen}
         stack, missing = list(wanted), dict[int, int]()
-        takers: dict[int, list[int]] = {}
+        consumers: dict[int, list[int]] = {}
         ready: list[int] = []
         while stack:
-            for unit in makers[stack.pop()]:
+            for unit in producers[stack.pop()]:
                 if unit in missing:
                     continue
                 lacking = {o for o in needs[unit] if o not in kitchen}
@@ -77,7 +77,7 @@ class Postconditions:
                 if not lacking:
                     ready.append(unit)
                 for o in lacking:
-                    takers.setdefault(o, []).append(unit)
+                    consumers.setdefault(o, []).append(unit)
                     if o not in wanted:
                         wanted.add(o)
                         stack.append(o)
@@ -89,13 +89,13 @@ class Postconditions:
             for o in gives[unit]:
                 if o not in made:
                     made.add(o)
-                    for unit in takers.get(o, ()):
+                    for unit in consumers.get(o, ()):
                         missing[unit] -= 1
                         if not missing[unit]:
                             ready.append(unit)
         self.require(
             any(
-                goal not in kitchen and not any(ran[unit] for unit in makers[goal])
+                goal not in kitchen and not any(ran[unit] for unit in producers[goal])
                 for goal in self.problem.targets
             ),
             lambda: "the answer is that there is no tree, but the goals can be made",
@@ -104,8 +104,8 @@ class Postconditions:
     def outcome(self, outcome: Outcome, best: Costs | None = None, reduced: Reduced | None = None) -> None:
         """Require that the claims of an outcome with a tree are true.
 
-        ``best`` is the best tree reported during the search, and ``reduced`` what the reductions made of the
-        question, where they were asked.
+        ``best`` has the costs of the incumbent of the search, ``reduced`` is the result of the reductions;
+        both are ``None`` where there is none.
         """
         assert outcome.units is not None
         assert outcome.costs is not None
@@ -114,11 +114,11 @@ class Postconditions:
         anew = self.problem.costs(units)
         self.require(
             costs == anew,
-            lambda: f"the answer says {_said(costs)}, but the tree {list(units)} costs {_said(anew)}",
+            lambda: f"the answer says {_shown(costs)}, but the tree {list(units)} costs {_shown(anew)}",
         )
         self.require(
             best is None or costs.key(self.levels) <= best.key(self.levels),
-            lambda: f"the tree {list(units)} costs {_said(costs)}, but one was found for {_said(best)}",
+            lambda: f"the tree {list(units)} costs {_shown(costs)}, but one was found for {_shown(best)}",
         )
         self._bounds(outcome, costs)
         if reduced is not None and reduced.costs is not None:
@@ -131,7 +131,7 @@ class Postconditions:
             ours.key(by) == theirs.key(by),
             lambda: (
                 f"the tree {sorted(tree)} is to be as good as {sorted(chosen)} by {', '.join(by)}, "
-                f"but costs {_said(ours)} and not {_said(theirs)}"
+                f"but costs {_shown(ours)} and not {_shown(theirs)}"
             ),
         )
 
@@ -143,8 +143,8 @@ class Postconditions:
         self.require(
             theirs is not None and harder.costs.key(self.levels) >= theirs.key(self.levels),
             lambda: (
-                f"the best tree {by} costs {_said(theirs)}, but a question with fewer trees has one for "
-                f"{_said(harder.costs)}"
+                f"the best tree {by} costs {_shown(theirs)}, but a question with fewer trees has one for "
+                f"{_shown(harder.costs)}"
             ),
         )
 
@@ -154,14 +154,14 @@ class Postconditions:
         self.require(
             outcome.status is not Status.OPTIMAL or outcome.bounds == exact,
             lambda: (
-                f"the tree is called optimal and costs {_said(costs)}, "
+                f"the tree is called optimal and costs {_shown(costs)}, "
                 f"but the bounds are {list(map(_text, outcome.bounds.values()))}"
             ),
         )
         for objective, have in exact.items():
             bound = outcome.bounds.get(objective)
             if bound is None or (bound > have if multiplies(objective) else bound < have):
-                return  # what comes after counts among better trees only
+                return  # later objectives count among better trees only
             self.require(
                 bound == have,
                 partial(
@@ -192,7 +192,7 @@ class Postconditions:
                 else exact.total(objective, total) == costs.measure(objective)
                 for objective, total in totals.items()
             ),
-            lambda: f"the tree {actions} costs {_said(costs)}, but the reductions make it {totals}",
+            lambda: f"the tree {actions} costs {_shown(costs)}, but the reductions make it {totals}",
         )
         total = sum(map(exact, actions))
         self.require(
@@ -209,27 +209,27 @@ class Postconditions:
         )
 
     def _question(self) -> str:
-        """Describe the question, so that it can be asked again."""
-        problem, how = self.problem, self._settings
+        """Return the question as a command and its settings, to reproduce it."""
+        problem, settings = self.problem, self._settings
         words = ["foon-asp", "facts"]
         for goal in problem.goals:
             words += ["--goal", str(problem.network.objects[goal])]
         words += ["--objective", ",".join(self.levels), "--containers", str(problem.containers)]
         words += ["--level", str(problem.network.level)]
-        relaxed = how.relaxed.constraints if how.relaxed else ()
-        for each in dict.fromkeys((*how.constraints, *relaxed)):
-            words += ["--rule" if isinstance(each, RuleText) else "--constraint", str(each)]
-        if how.replaced is not None:
-            words += ["--encodings", str(how.replaced)]
+        relaxed = settings.relaxed.constraints if settings.relaxed else ()
+        for constraint in dict.fromkeys((*settings.constraints, *relaxed)):
+            words += ["--rule" if isinstance(constraint, RuleText) else "--constraint", str(constraint)]
+        if settings.replaced is not None:
+            words += ["--encodings", str(settings.replaced)]
         others = {
-            "constants": ", ".join(how.constants),
-            "reductions": ", ".join(sorted(how.reductions)) or "none",
-            "options of clingo": " ".join(how.clingo_options),
+            "constants": ", ".join(settings.constants),
+            "reductions": ", ".join(sorted(settings.reductions)) or "none",
+            "options of clingo": " ".join(settings.clingo_options),
             "soft constraints or dropped ones": ", ".join(map(str, relaxed)),
-            "bounds": f"{how.bounded.rules} {how.bounded.below or ''}".replace("\n", " ").strip()
-            if how.bounded
+            "bounds": f"{settings.bounded.rules} {settings.bounded.below or ''}".replace("\n", " ").strip()
+            if settings.bounded
             else "",
-            "time limit": "" if how.begun.seconds is None else f"{how.begun.seconds} s",
+            "time limit": "" if settings.begun.seconds is None else f"{settings.begun.seconds} s",
         }
         return "\n".join(
             [
@@ -240,7 +240,7 @@ class Postconditions:
         )
 
 
-def _said(costs: Costs | None) -> str:
+def _shown(costs: Costs | None) -> str:
     if costs is None:
         return "nothing"
     return ", ".join(f"{name} {_text(figure)}" for name, figure in costs.measures.items())

@@ -1,4 +1,4 @@
-"""The first half of every question: the network left after the cut, its measures, and its program."""
+"""Preparation of every question: the units that the cut keeps, their scales, and the program."""
 
 from collections.abc import Collection, Sequence
 from contextlib import ExitStack
@@ -16,7 +16,7 @@ from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, Restriction, first_tree, levels, reach, relevant
 from foon_asp.reduce import NONE, Bounds, Listener, Reduced, Reduction, reduce
 
-if TYPE_CHECKING:  # often there is nothing left to ask clingo
+if TYPE_CHECKING:  # often clingo need not run
     from foon_asp.encoding.scales import Scales
     from foon_asp.grounding.run import Run
     from foon_asp.rules.ready_made import ReadyMade
@@ -27,14 +27,13 @@ if TYPE_CHECKING:  # often there is nothing left to ask clingo
 class Prepared:
     """A question, prepared for the search.
 
-    ``levels`` are the objectives as optimized and ``units`` what is left of the network after the cut, where
-    ``tree`` is some tree: ``None`` where nothing makes the goals. ``reduced`` is what the reductions made of
-    the question, where they were asked. ``stopped`` says that a limit or ctrl-C came in the middle of the
-    cut, and that nothing is known. ``kept`` is the problem as rules of the user leave it, where these are
-    applied before the search, ``contradicted`` says that they leave nothing at all, and ``asked`` is the
-    program with all of them. ``rest`` says that some of them are still to be kept to: ``tree`` and
-    ``reduced`` do not know of these. ``spare`` says that trees that keep to these may need units that lead to
-    no goal.
+    ``levels`` are the objectives as optimized, ``units`` the units of the network that the cut keeps, and
+    ``tree`` some tree of them, ``None`` where nothing makes the goals. ``reduced`` is the result of the
+    reductions, ``None`` where none ran. ``stopped`` says that a limit or ctrl-C interrupted the cut, so that
+    nothing is known. ``kept`` is the problem restricted by user rules, where these are applied before the
+    search, ``contradicted`` says that they allow no tree, ``full_program`` is the program with all of them.
+    ``unsettled`` says that clingo has to enforce some of them, which ``tree`` and ``reduced`` ignore.
+    ``redundant`` says that trees that keep to these may need redundant units, which lead to no goal.
     """
 
     problem: Problem
@@ -48,32 +47,32 @@ class Prepared:
     stopped: bool = False
     kept: Problem | None = None
     contradicted: bool = False
-    rest: bool = False
-    spare: bool = False
-    asked: Program | None = None
+    unsettled: bool = False
+    redundant: bool = False
+    full_program: Program | None = None
 
     @cached_property
     def holds(self) -> Postconditions:
-        """What the answers are checked with."""
+        """The checks of the answers."""
         return Postconditions(self.kept or self.problem, self.levels, self.settings, self.program.own)
 
     @cached_property
     def scales(self) -> "Scales":
-        """How the units that are left are measured in clingo; raises like :class:`Scales`."""
+        """The scales of the remaining units in clingo; raises like :class:`Scales`."""
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
         return Scales(self.problem, self.units, self.levels)
 
     @cached_property
     def facts(self) -> str:
-        """The facts of the problem, as text, without those of the question.
+        """The facts of the problem, as text, without the facts of the objectives.
 
         Raises ``KeyboardInterrupt`` at a limit.
         """
         from foon_asp.encoding import facts as writing  # noqa: PLC0415
 
         with self.deadline.watched("writing facts"):
-            if self.asked is not None:  # it is known what the rules look at, and nobody sees these facts
+            if self.full_program is not None:  # the predicates that rules read are known
                 read = writing.READ_BY_OURS | self.program.looked_at
                 facts = writing.write_facts_read(self.problem, self.units, read, self.scales)
             else:
@@ -81,18 +80,18 @@ class Prepared:
                 facts = writing.write_facts(self.problem, self.units, self.scales, looked_at)
             bounded = self.settings.bounded
             facts += writing.write_below(bounded.below, self.scales) if bounded else ""
-            if self.kept is None or self.kept.restriction is None or self.rest:
+            if self.kept is None or self.kept.restriction is None or self.unsettled:
                 return facts
-            number, left = self.problem.network.unit_number, frozenset(self.units)
+            number, remaining = self.problem.network.unit_number, frozenset(self.units)
             sets = self.kept.restriction.required
-            return facts + writing.write_required([map(number, sorted(left & units)) for units in sets])
+            return facts + writing.write_required([map(number, sorted(remaining & units)) for units in sets])
 
     def keeps(self, units: Collection[int]) -> bool | None:
-        """Whether a tree keeps to all rules of the user's, which see no further than the tree.
+        """Whether a tree keeps to all user rules, which are local.
 
-        ``None`` where that is not known at a limit. Raises :class:`UserError` for what is wrong with a rule.
+        ``None`` where a limit came first. Raises :class:`UserError` for a fault in a rule.
         """
-        program = self.asked or self.program
+        program = self.full_program or self.program
         if program.ready_made is not None:
             return program.ready_made.keeps(self.problem, units)
         from foon_asp.encoding.facts import write_given  # noqa: PLC0415
@@ -103,9 +102,9 @@ class Prepared:
         return True if ended.units is not None else (False if ended.exhausted else None)
 
     def require_kept(self, units: Collection[int]) -> None:
-        """Require that a tree keeps to rules that were applied beforehand, as far as they can be asked."""
-        rules = self.asked.added if self.asked else None
-        if rules is not None and rules.local and not self.rest:
+        """Require that a tree keeps to the rules applied before the search, where they are local."""
+        rules = self.full_program.added if self.full_program else None
+        if rules is not None and rules.local and not self.unsettled:
             kept = self.keeps(units)
             self.holds.require(
                 kept is not False,
@@ -114,21 +113,21 @@ class Prepared:
 
     def run(
         self,
-        more: str,
+        question_facts: str,
         opt_mode: str = "opt",
         encodings: Sequence[Path] = (),
         predicates: Sequence[tuple[str, int]] = (),
     ) -> "Run":
-        """Ask clingo with additional facts and encodings.
+        """Run clingo with additional facts and encodings, as :func:`foon_asp.encoding.search.run` does.
 
-        As :func:`foon_asp.encoding.search.run` does; nothing is known where a limit comes before.
+        Returns an empty run where a limit comes first.
         """
         from foon_asp.encoding.search import run  # noqa: PLC0415 (both take clingo along)
         from foon_asp.grounding.run import Run  # noqa: PLC0415
 
         program, relaxed = self.program, self.settings.relaxed
         try:
-            text = self.facts + program.rules + more
+            text = self.facts + program.rules + question_facts
         except KeyboardInterrupt:
             self.deadline.interrupt()
             return Run()
@@ -157,86 +156,88 @@ def prepare(
     for_sale: Collection[int] = (),
     brief: bool = False,
 ) -> Prepared:
-    """Cut a network down to what can matter.
+    """Prepare a question: cut the network down to the units that can matter.
 
-    Where all rules are ours, that is what the goals can need; with others it is all that can be made, since a
-    constraint may ask for units that no goal does. Rules that are understood are applied first, unless no
-    reductions are asked for; those that are settled so need not be asked again. With a ``listener``, who
-    hears of trees and bounds, it is less what the reductions leave out: what only trees have that are no
-    better than another, which may be the only one within bounds, so then they leave out nothing.
-    ``for_sale`` are object nodes that may come to those in the kitchen. ``brief`` says that the
-    best tree without the rest of the rules is not asked for. Raises :class:`UserError` where an objective
+    Without user rules, these are the units that the goals can need; with user rules, all units that can
+    execute, since a constraint may require units that no goal needs. Rules that are understood are applied
+    first, unless there are no reductions; settled rules need not be enforced again. With a ``listener``,
+    which receives trees and bounds, the reductions exclude units of trees that are no better than another
+    one, except with bounds, within which only the excluded tree may be.
+    ``for_sale`` are object nodes that may be added to the kitchen. ``brief`` says that the best tree without
+    the unsettled rules is not needed. Raises :class:`UserError` where an objective
     needs rates that are not known.
     """
     if problem.items is not None:
         raise UserError("this question is not built for items that are used up")
-    asked = levels(tuple(objectives))
-    problem.require_known_for(asked)
-    program.require_facts(problem, asked)
-    for objective in program.named.intersection(asked):
+    by = levels(tuple(objectives))
+    problem.require_known_for(by)
+    program.require_facts(problem, by)
+    for objective in program.named.intersection(by):
         raise UserError(
             f"found #const {objective} in a constraint or an encoding, but that is the name of a measure: "
             "give one of them another name"
         )
-    if sum(not each.row.whole for each in asked) > 1:
+    if sum(not objective.row.whole for objective in by) > 1:
         from foon_asp.encoding.scales import require_one_rounded  # noqa: PLC0415 (few questions have two)
 
-        require_one_rounded(problem, asked)
+        require_one_rounded(problem, by)
     deadline = settings.begun
-    first = Prepared(problem, asked, settings, deadline, program)
+    prepared = Prepared(problem, by, settings, deadline, program)
     try:
         if problem.measures:
             with deadline.watched("measuring units"):
                 problem.apply_measures(deadline)
         if program.added and settings.reductions and not for_sale:
             with deadline.watched("cutting the network"):
-                first = _applied(first, program.added)
-        if first.contradicted:
-            return first
-        program, kept = first.program, first.kept or problem
-        if listener is not None and (program.own or _limits_rest(first)):
+                prepared = _applied(prepared, program.added)
+        if prepared.contradicted:
+            return prepared
+        program, kept = prepared.program, prepared.kept or problem
+        if listener is not None and (program.own or _limits_unsettled(prepared)):
             reduced = reduce(
                 kept,
-                asked,
+                by,
                 NONE if program.bounded else settings.reductions,
                 lambda: deadline.passed,
-                Bounds(listener) if first.rest else listener,
+                Bounds(listener) if prepared.unsettled else listener,
                 lambda: deadline.watched("cutting the network", late=True),
-                first.spare,
-                first.rest,
-                brief and first.rest,
+                prepared.redundant,
+                prepared.unsettled,
+                brief and prepared.unsettled,
             )
             if reduced.interrupted:
                 deadline.interrupt()
-            if not first.rest or reduced.wide is not None or reduced.tree is None:
-                return replace(first, units=reduced.units, tree=reduced.tree, reduced=reduced)
+            if not prepared.unsettled or reduced.wide is not None or reduced.tree is None:
+                return replace(prepared, units=reduced.units, tree=reduced.tree, reduced=reduced)
         with deadline.watched("cutting the network"):
             stocked = replace(kept, kitchen=problem.kitchen.union(for_sale)) if for_sale else kept
             reached = reach(stocked)
             tree = first_tree(stocked, reached)
-            # backwards with the kitchen as it is: what is for sale may also be made
-            cut = program.own or (first.rest and not first.spare)
+            # backwards with the kitchen as it is: items for sale may also be made
+            cut = program.own or (prepared.unsettled and not prepared.redundant)
             units = relevant(kept, reached) if cut else tuple(sorted(reached.units))
-        return replace(first, units=units, tree=None if tree is None else frozenset(tree))
+        return replace(prepared, units=units, tree=None if tree is None else frozenset(tree))
     except KeyboardInterrupt:
         deadline.interrupt()
-        return replace(first, stopped=True)
+        return replace(prepared, stopped=True)
 
 
-def _applied(first: Prepared, rules: "Rules | ReadyMade") -> Prepared:
-    """Apply the user's rules as far as they say which units there are, or which sets are needed."""
-    if rules.rest and not rules.local:
-        return first
-    found = rules.applied(first.problem)
-    first = replace(first, asked=first.program)
-    if not isinstance(found, Restriction):
-        return replace(first, contradicted=True)
-    kept = replace(first.problem, restriction=found)
-    if not rules.rest:
-        return replace(first, kept=kept, program=first.program.settled)
-    return replace(first, kept=kept, rest=True, spare=rules.spare)
+def _applied(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
+    """Apply the user rules that remove units or require sets of them."""
+    if rules.unsettled and not rules.local:
+        return prepared
+    restriction = rules.applied(prepared.problem)
+    prepared = replace(prepared, full_program=prepared.program)
+    if not isinstance(restriction, Restriction):
+        return replace(prepared, contradicted=True)
+    kept = replace(prepared.problem, restriction=restriction)
+    if not rules.unsettled:
+        return replace(prepared, kept=kept, program=prepared.program.settled)
+    return replace(prepared, kept=kept, unsettled=True, redundant=rules.redundant)
 
 
-def _limits_rest(first: Prepared) -> bool:
-    """Whether the rest of the user's rules is kept to by limits on costs."""
-    return first.rest and not first.program.bounded and Reduction.DEAR in first.settings.reductions
+def _limits_unsettled(prepared: Prepared) -> bool:
+    """Whether reductions by cost limits stay valid under the unsettled rules."""
+    return (
+        prepared.unsettled and not prepared.program.bounded and Reduction.DEAR in prepared.settings.reductions
+    )

@@ -18,18 +18,17 @@ class Program(NamedTuple):
     """Encodings in the order of loading, and clingo's arguments.
 
     ``constants`` are those of the ``arguments`` that set constants. ``rules`` are added to them as text.
-    ``exact_success`` is loaded beside ``files`` when products of rates are compared exactly. ``replaced``
-    says that not all of the first three files say what ours say. ``own`` says that every rule is ours, so
-    that what the goals do not need cannot matter. ``bounded`` says that a tree of the unbounded question need
-    not be one. ``looked_at`` are the predicates, by name and arity, that rules of the user's look at.
-    ``text`` is all that the files said when they were looked over. ``endless`` says that nobody knows whether
-    its grounding comes to an end. ``encodings`` is the folder whose encodings are used in place of ours.
-    ``ours`` are the files but for those that the user added. ``understood`` are the rules that are added,
-    looked into: ``None`` where there are none, where encodings are replaced, and where some of the rules may
-    be broken or dropped. ``named`` are the names of constants that files define. Where all rules are
-    ``ready_made`` constraints, clingo is asked the ``whole`` program. ``reads`` are
-    predicates that rules of the user's own read and not every question has facts of, with their first
-    argument where it is a name.
+    ``exact_success`` is loaded with ``files`` when products of rates are compared exactly. ``replaced`` says
+    that some of the first three files differ from the built-in ones. ``own`` says that every rule is built
+    in, so that units that the goals do not need cannot matter. ``bounded`` says that a tree of the unbounded
+    question may be excluded. ``looked_at`` are the predicates, by name and arity, that user rules read.
+    ``text`` is the content of the files when they were checked. ``endless`` says that grounding may not
+    terminate. ``encodings`` is the folder that replaces the built-in encodings, ``None`` without one.
+    ``ours`` are the files without those that the user added. ``understood`` are the added rules, analysed:
+    ``None`` where there are none, where encodings are replaced, and where some of the rules may be broken or
+    dropped. ``named`` are the names of constants that files define. Where all rules are ``ready_made``
+    constraints, clingo runs the ``whole`` program. ``reads`` are the predicates without facts in some
+    questions that user rules read, with their first argument where it is a name.
     """
 
     files: tuple[Loaded, ...]
@@ -53,14 +52,14 @@ class Program(NamedTuple):
 
     @property
     def added(self) -> "Rules | ReadyMade | None":
-        """What is known of the rules that are added."""
+        """The added rules as analysed, ``None`` without any."""
         return self.ready_made or self.understood
 
     def require_facts(self, problem: Problem, objectives: Collection[Objective]) -> None:
-        """Raise :class:`UserError` for facts that rules read and that are not there."""
-        known = {objective.row.term for objective in objectives if objective.row.is_fact}
+        """Raise :class:`UserError` for facts that rules read and that the question lacks."""
+        terms = {objective.row.term for objective in objectives if objective.row.is_fact}
         for name, first in sorted(self.reads):
-            if name == "cost" and (first not in known if first else not known):
+            if name == "cost" and (first not in terms if first else not terms):
                 raise UserError(
                     f"a rule looks at cost({first or 'Objective'},U,N), which only a question by such an "
                     "objective has: name it with --objective, or look at price/2 or facts of the network"
@@ -73,7 +72,7 @@ class Program(NamedTuple):
 
     @property
     def settled(self) -> "Program":
-        """The same without the user's rules, where they are applied to the problem before."""
+        """The program without user rules, for a problem that they were applied to."""
         return self._replace(
             files=(*self.ours, question_encoding("required.lp")),
             arguments=self.arguments[len(self.constants) :],

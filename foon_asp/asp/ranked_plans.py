@@ -13,8 +13,8 @@ from foon_asp.problem import Costs, Objective, Problem
 class RankedPlans:
     """The plans of a question, the best first, under a lexicographic list of objectives.
 
-    A plan that executes all that one before it does, as often, is not among them. ``complete`` and ``known``
-    are as those of :class:`foon_asp.asp.ranking.Ranked`, which gives trees.
+    Plans with at least the executions of an earlier one are excluded. ``complete`` and ``pending`` are as in
+    :class:`foon_asp.asp.ranking.Ranked`, which ranks trees.
     """
 
     def __init__(
@@ -23,22 +23,22 @@ class RankedPlans:
         self._problem, self._objectives = problem, tuple(objectives)
         self._settings, self._reporter = settings._replace(deadline=settings.begun), reporter
         self.complete = False
-        self.known: list[tuple[Plan, Costs]] = []
+        self.pending: list[tuple[Plan, Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[Plan, Costs]]:
-        """Return plan after plan, each proved the best of those that do not hold one before it."""
-        given: list[Mapping[int, int]] = []
+        """Iterate over plans, each proved best among the plans that contain no earlier one."""
+        yielded: list[Mapping[int, int]] = []
         while True:
-            settings = self._settings._replace(bounded=Bounded(beside=tuple(given)))
-            reporter = Reporter() if given else self._reporter
+            settings = self._settings._replace(bounded=Bounded(incomparable=tuple(yielded)))
+            reporter = Reporter() if yielded else self._reporter
             outcome = solve_used_up(self._problem, self._objectives, settings, reporter)
             plan, costs = outcome.units, outcome.costs
             if plan is None or costs is None or outcome.status is not Status.OPTIMAL:
                 self.complete = outcome.status is Status.INFEASIBLE
-                self.known = [] if plan is None or costs is None else [(plan, costs)]
+                self.pending = [] if plan is None or costs is None else [(plan, costs)]
                 return
             yield plan, costs
-            if not plan:  # every other plan holds it
+            if not plan:  # every other plan contains it
                 self.complete = True
                 return
-            given.append(Counter(plan))
+            yielded.append(Counter(plan))

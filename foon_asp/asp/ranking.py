@@ -15,7 +15,7 @@ from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem
 
-Rounded = tuple[int, ...]  # costs as clingo adds them up
+Rounded = tuple[int, ...]  # by level: costs rounded as in clingo
 
 
 class _Tree(NamedTuple):
@@ -27,11 +27,10 @@ class _Tree(NamedTuple):
 class Ranked:
     """The trees of a question, the best first, under a lexicographic list of objectives.
 
-    A tree that holds all the units of one before it, and others to spare, is not among them. Iterate to get
-    each tree as unit ids in an executable order, with its costs. ``complete`` says afterwards that there are
-    no others; it is false where a limit came first, or ctrl-C. Then ``known`` has, in order, the trees that
-    were found beyond those given, and before which others may come. Raises :class:`UserError` like
-    :func:`foon_asp.asp.solve`.
+    Trees that contain an earlier one are excluded. Iterate to get each tree as unit ids in an executable
+    order, with its costs. ``complete`` says afterwards that there are no others; it is false after a limit or
+    ctrl-C. Then ``pending`` has, in order, further trees found, before which others may come.
+    Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
 
     def __init__(
@@ -42,43 +41,43 @@ class Ranked:
         reporter: Reporter | None = None,
     ) -> None:
         self._program = assemble(settings, (reporter or Reporter()).warning, problem=problem)
-        self._first = prepare(problem, objectives, settings, self._program)
-        self._holds = self._first.holds
-        self._given: tuple[int | Fraction, ...] = ()  # what the tree given last costs
-        self.problem, self.levels = problem, self._first.levels
-        self.complete = self._first.tree is None and not self._first.stopped
-        self.known: list[tuple[tuple[int, ...], Costs]] = []
+        self._prepared = prepare(problem, objectives, settings, self._program)
+        self._holds = self._prepared.holds
+        self._last_key: tuple[int | Fraction, ...] = ()  # costs of the last tree yielded
+        self.problem, self.levels = problem, self._prepared.levels
+        self.complete = self._prepared.tree is None and not self._prepared.stopped
+        self.pending: list[tuple[tuple[int, ...], Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[tuple[int, ...], Costs]]:
-        """Return tree after tree.
+        """Iterate over trees in order of exact costs.
 
-        clingo gives them in the order of rounded costs. A tree is given out when no tree that clingo may
-        still find can come before it: where costs are rounded, one may whose weight is higher by less than
-        there are units that weigh less than they cost (docs/dev/exact-success.md).
+        clingo finds them in order of rounded costs. A tree is yielded once no later tree can come before it:
+        with rounded costs, a later tree can if its weight is higher by less than the number of units that
+        weigh less than they cost (docs/dev/exact-success.md).
         """
-        if self.complete or self._first.stopped:
+        if self.complete or self._prepared.stopped:
             return
         waiting: list[_Tree] = []
-        known: list[_Tree] = []
+        found: list[_Tree] = []
         avoided = ""
         while True:
-            more = write_objectives(self.levels) + avoided
-            ended = self._first.run(more, encodings=(question_encoding("other_trees.lp"),))
+            text = write_objectives(self.levels) + avoided
+            ended = self._prepared.run(text, encodings=(question_encoding("other_trees.lp"),))
             if ended.units is None:
                 break
             tree = self._tree(ended.units)
-            insort(waiting, tree, key=lambda each: (each.costs.key(self.levels), sorted(each.units)))
+            insort(waiting, tree, key=lambda entry: (entry.costs.key(self.levels), sorted(entry.units)))
             if not ended.exhausted:
                 break
-            self._check(ended, tree, known)
+            self._check(ended, tree, found)
             while waiting and self._is_settled(waiting[0], tree.rounded):
                 yield self._next_in_order(waiting)
-            if not tree.units:  # every other tree holds it
+            if not tree.units:  # every other tree contains it
                 break
-            avoided += write_avoided(len(known), map(self.problem.network.unit_number, tree.units))
-            known.append(tree)
+            avoided += write_avoided(len(found), map(self.problem.network.unit_number, tree.units))
+            found.append(tree)
         if not ended.exhausted:
-            self.known = [(tree.units, tree.costs) for tree in waiting]
+            self.pending = [(tree.units, tree.costs) for tree in waiting]
             return
         self.complete = True
         while waiting:
@@ -87,26 +86,26 @@ class Ranked:
     def _tree(self, numbers: frozenset[int]) -> _Tree:
         network = self.problem.network
         units = [network.unit_of_number(number) for number in sorted(numbers)]
-        known = [unit for unit in units if unit is not None]
-        if len(known) < len(units):
+        ids = [unit for unit in units if unit is not None]
+        if len(ids) < len(units):
             raise UserError("a tree was found with units that are not in the network: check the encodings")
-        order = self._holds.tree(known)
-        self._first.require_kept(order)
-        costs, scales = self.problem.costs(order), self._first.scales
+        order = self._holds.tree(ids)
+        self._prepared.require_kept(order)
+        costs, scales = self.problem.costs(order), self._prepared.scales
         rounded = (
             int(costs.measure(objective)) if objective.row.whole else scales.weight(objective, order)
             for objective in self.levels
         )
         return _Tree(order, costs, tuple(rounded))
 
-    def _check(self, ended: Run, tree: _Tree, known: Sequence[_Tree]) -> None:
-        """Require that clingo measures a tree as we do, after the one before it, and that it holds none.
+    def _check(self, ended: Run, tree: _Tree, earlier: Sequence[_Tree]) -> None:
+        """Require the right rounded costs of a tree, their order, and that it contains no earlier tree.
 
-        Raises :class:`UserError` where other encodings measure something else: then its order is not ours.
+        Raises :class:`UserError` where replaced encodings measure something else.
         """
         units, _, rounded = tree
         agree = [cost % 2**32 for cost in rounded] == [cost % 2**32 for cost in ended.cost]
-        last = known[-1].rounded if known else ()
+        last = earlier[-1].rounded if earlier else ()
         if not (agree and last <= rounded) and self._program.replaced:
             raise UserError(
                 f"{self._program.files[1]} does not measure what the objectives {', '.join(self.levels)} "
@@ -119,26 +118,26 @@ class Ranked:
             last <= rounded, lambda: f"the tree {units} costs {rounded}, but comes after one for {last}"
         )
         self._holds.require(
-            not any(set(units).issuperset(before.units) for before in known),
+            not any(set(units).issuperset(before.units) for before in earlier),
             lambda: f"the tree {units} holds one that was found before",
         )
 
     def _next_in_order(self, waiting: list[_Tree]) -> tuple[tuple[int, ...], Costs]:
-        """Take the first of the trees found, which is no better than those given before."""
+        """Pop the best waiting tree, and require that it is no better than those yielded before."""
         units, costs, _ = waiting.pop(0)
         key = costs.key(self.levels)
         self._holds.require(
-            self._given <= key, lambda: f"the tree {units} is better than one that was given before it"
+            self._last_key <= key, lambda: f"the tree {units} is better than one that was given before it"
         )
-        self._given = key
+        self._last_key = key
         return units, costs
 
     def _is_settled(self, tree: _Tree, last: Rounded) -> bool:
-        """Whether all trees from these rounded costs on come after a tree, or are as good as it."""
-        by = self._first.scales.rounded
+        """Whether no tree with rounded costs of at least ``last`` is better than a tree."""
+        by = self._prepared.scales.rounded
         if by is None:
             return True
-        place = self.levels.index(by)
-        if last[:place] > tree.rounded:  # where they begin alike it is less
+        position = self.levels.index(by)
+        if last[:position] > tree.rounded:  # with equal prefixes, the prefix is less
             return True
-        return last[place] >= tree.rounded[place] + self._first.scales.doubt(tree.units)
+        return last[position] >= tree.rounded[position] + self._prepared.scales.doubt(tree.units)

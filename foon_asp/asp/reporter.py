@@ -1,4 +1,4 @@
-"""Who hears of a search: of warnings, trees, bounds and steps."""
+"""Receiver of the progress of a search: warnings, trees, bounds and steps."""
 
 from fractions import Fraction
 

@@ -19,8 +19,8 @@ from foon_asp.rules.constraint import Constraint
 class Relaxed(NamedTuple):
     """Constraints that are loaded rewritten.
 
-    They are looked over like others, but ``rules`` stand in for what they say, together with ``encoding``,
-    one of ours (``encodings/questions``). ``places`` says where each rule comes from, in ``files``.
+    They are checked like others, but replaced by ``rules`` and the built-in ``encoding``
+    (``encodings/questions``). ``places`` has the place of each rule in ``files``.
     """
 
     constraints: tuple[Constraint, ...]
@@ -31,29 +31,29 @@ class Relaxed(NamedTuple):
 
 
 class Bounded(NamedTuple):
-    """Upper bounds on the costs of a tree, as encodings of ours.
+    """Upper bounds on the costs of a tree, as built-in encodings.
 
-    ``files`` are encodings of ours (``encodings/questions``) and ``rules`` the facts that they read. A tree
-    that meets them has to meet them still when units are left out of it: then what the goals do not need
-    cannot matter, bounded or not. ``below`` are sets of costs, in each of which a tree has
-    to be below one: those of objectives that are fractions, written down when it is known to which scale.
-    Where items are used up there are no rules and files, and each of these sets has one cost; plans are
-    ``beside`` others, by how often these execute which units: none does all of that as often.
+    ``files`` are encodings of ``encodings/questions`` and ``rules`` the facts that they read. The bounds are
+    antimonotone: every subtree of a tree that meets them does, too, so that units that the goals do not need
+    cannot matter. ``below`` are sets of costs, in each of which a tree has to be below one: those of
+    objectives with fractions, written once their scale is known. Where items are used up there are no rules
+    and files, and each set has one cost; ``incomparable`` has executions by unit of known plans,
+    none of which a plan may contain.
     """
 
     rules: str = ""
     files: tuple[Path, ...] = ()
     below: tuple[Mapping[Objective, int | Fraction], ...] = ()
-    beside: tuple[Mapping[int, int], ...] = ()
+    incomparable: tuple[Mapping[int, int], ...] = ()
 
 
 class Settings(NamedTuple):
-    """How to solve, and under which constraints.
+    """Settings of the search: constraints, encodings, reductions and limits.
 
-    ``constraints`` are added to the encodings; ``encodings`` is a folder whose files replace ours;
-    ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
+    ``constraints`` are added to the encodings; ``encodings`` is a folder whose files replace the built-in
+    ones; ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo unchanged.
     ``reductions`` come before the search as far as constraints allow, and not with bounds or other encodings.
-    ``relaxed`` are constraints in other words. Trees keep to what is ``bounded``. ``deadline`` is for
+    ``relaxed`` are rewritten constraints, ``bounded`` are upper bounds on costs. ``deadline`` is for
     everything from the cut to the last proof, and has begun.
     """
 
@@ -68,7 +68,7 @@ class Settings(NamedTuple):
 
     @property
     def replaced(self) -> Path | None:
-        """The folder of encodings that replace ours: our own folder where a file was changed in place."""
+        """The folder of encodings that replace the built-in ones, ``None`` where these are unchanged."""
         if self.encodings is None:
             ours = encodings_folder()
             return None if all(is_own(ours / name) for name in ENCODING_FILES) else ours
@@ -76,7 +76,7 @@ class Settings(NamedTuple):
 
     @property
     def asks_for_statistics(self) -> bool:
-        """Whether clingo's statistics are asked for."""
+        """Whether the options request clingo's statistics."""
         return asks_for_statistics(self.clingo_options)
 
     @property

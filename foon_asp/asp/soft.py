@@ -18,7 +18,7 @@ from foon_asp.rules.constraint import Constraint, find_constraint
 
 
 class Broken(NamedTuple):
-    """A soft constraint, its weight, and in how many ways the tree breaks it."""
+    """A soft constraint, its weight, and the number of its instances that the tree breaks."""
 
     constraint: IntegrityConstraint
     weight: int
@@ -64,38 +64,38 @@ def solve_soft(
     weights: Mapping[Constraint, int],
     reporter: Reporter | None = None,
 ) -> SoftOutcome:
-    """Find the tree with the least penalty, and among those the best by a lexicographic list of objectives.
+    """Find the tree with the least penalty, and among these the best by a lexicographic list of objectives.
 
-    ``weights`` are those of the constraints that are soft; the constraints of ``settings`` are hard. Each way
-    in which a rule is broken, by other values of the variables that it has as a whole, costs its weight.
+    ``weights`` are by soft constraint; the constraints of ``settings`` are hard. Each broken instance of a
+    rule, by the values of its global variables, costs its weight.
     Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     settings = settings._replace(deadline=settings.begun)
     constraints, by_number, relaxed = soft_rules(settings, weights)
     settings = settings._replace(relaxed=relaxed)
     program = assemble(settings, (reporter or Reporter()).warning, problem=problem)
-    first = prepare(problem, objectives, settings, program)
-    holds = first.holds
+    prepared = prepare(problem, objectives, settings, program)
+    holds = prepared.holds
     spent: dict[str, float] = {}
     least: int | None = None
     proved = True
     ended = Run()
 
-    def ask(more: str) -> Run:
-        return first.run(more + write_least_penalty(1), predicates=[("_broken", 2)])
+    def ask(question_facts: str) -> Run:
+        return prepared.run(question_facts + write_least_penalty(1), predicates=[("_broken", 2)])
 
-    def told(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
-        found = tuple(Broken(c, by_number[c.number], ways.get(c.number, 0)) for c in constraints)
-        return SoftOutcome(outcome, sum(each.weight * each.ways for each in found), found)
+    def soft_outcome(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
+        broken = tuple(Broken(c, by_number[c.number], ways.get(c.number, 0)) for c in constraints)
+        return SoftOutcome(outcome, sum(rule.weight * rule.ways for rule in broken), broken)
 
-    if first.tree is not None:
+    if prepared.tree is not None:
         ended = ask("")
         proved = ended.exhausted
         spent["soft"] = ended.ground_seconds + ended.solve_seconds
         if ended.units is not None:
             least = sum(by_number[number] * ways for number, ways in ended.atoms["_broken"].items())
     bound = "" if least is None else write_greatest_penalty(least)
-    outcome = solve_prepared(first, objectives, bound)
+    outcome = solve_prepared(prepared, objectives, bound)
     holds.require(
         least is None or outcome.status is not Status.INFEASIBLE, lambda: "the least penalty was lost"
     )
@@ -103,23 +103,23 @@ def solve_soft(
         outcome = outcome._replace(status=Status.FEASIBLE, proof=None, bounds={})
     outcome.seconds.update(spent)
     if outcome.units is not None:
-        # helpers of the user's may be free to break more or less with one tree: what counts is the least
-        given = ask(write_tree(outcome.units))
-        if given.exhausted:
+        # auxiliary predicates may leave the broken instances of a tree open: the least penalty counts
+        checked = ask(write_tree(outcome.units))
+        if checked.exhausted:
             holds.require(
-                given.units == frozenset(outcome.units),
+                checked.units == frozenset(outcome.units),
                 lambda: f"the tree {outcome.units} does not hold when its soft constraints are checked",
             )
-            found = told(outcome, given.atoms["_broken"])
+            answer = soft_outcome(outcome, checked.atoms["_broken"])
             holds.require(
-                least is None or found.penalty in range(least if proved else 0, least + 1),
+                least is None or answer.penalty in range(least if proved else 0, least + 1),
                 lambda: (
-                    f"the penalty of {outcome.units} is {found.penalty}, but the least one was to be {least}"
+                    f"the penalty of {outcome.units} is {answer.penalty}, but the least one was to be {least}"
                 ),
             )
-            return found
-    if ended.units is not None:  # stopped: what is known of a tree by then
+            return answer
+    if ended.units is not None:  # stopped: the incumbent
         tree = holds.tree(ended.units)
-        known = outcome._replace(status=Status.FEASIBLE, units=tree, costs=problem.costs(tree), bounds={})
-        return told(known, ended.atoms["_broken"])
+        stopped = outcome._replace(status=Status.FEASIBLE, units=tree, costs=problem.costs(tree), bounds={})
+        return soft_outcome(stopped, ended.atoms["_broken"])
     return SoftOutcome(outcome, None, ())

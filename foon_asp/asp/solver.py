@@ -24,17 +24,20 @@ if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
     from foon_asp.grounding.grounded import Grounded
     from foon_asp.grounding.run import Run
 
-_MOST_CUT_OBJECTS = 200_000  # of the cuts that a certificate tries first; it finds others by itself
-_NEAR = 200  # units nearest to the goals, among which a tree that keeps to all rules is looked for first
-_LOOSE = 12  # times that trees with loose ends are looked for, with ever fewer of these
+_MAX_CUT_OBJECTS = 200_000  # of the cuts stored for a certificate to try first; it finds others by itself
+_NEAREST_UNITS = 200  # size of the first reduced-cost neighbourhood
+_MAX_ROUNDS = 12  # searches for trees with open preconditions, with ever fewer of these
 NOT_ASKED = (
     "clingo has no statistics: the question was settled without its search; --reduce none leaves it to clingo"
 )
-_FEWEST: tuple[Objective, ...] = (Objective.UNITS,)
-_GROWN = 1.5  # times as many of them are known each time, if that is what leads to what they need
-_MANY = 5000  # units that are known then, at most about, beside those that were before
-_QUICK = "--configuration=frumpy", "--opt-strategy=usc,pmres,4"  # what clingo has done by itself takes longer
-_MORE = 4  # times as many, where there is none
+_UNITS_ONLY: tuple[Objective, ...] = (Objective.UNITS,)
+_GROWTH = 1.5  # factor by which the explored units grow in each round
+_MAX_KNOWN_UNITS = 5000  # limit of explored units, without those that mattered before
+_QUICK_OPTIONS = (
+    "--configuration=frumpy",
+    "--opt-strategy=usc,pmres,4",
+)  # faster here than the defaults of clingo
+_NEAREST_GROWTH = 4  # factor by which the neighbourhood grows where it has no tree
 
 Units = frozenset[int]
 
@@ -44,362 +47,383 @@ def solve(
     objectives: Sequence[Objective] = (Objective.UNITS,),
     settings: Settings | None = None,
     reporter: Reporter | None = None,
-    known: set[int] | None = None,
+    mattered: set[int] | None = None,
 ) -> Outcome:
     """Find the best task tree under a lexicographic list of objectives, and prove it.
 
-    ``units`` decides last, so that no tree carries a unit it does not need. Stops at the time limit or at
-    ctrl-C with the best tree so far. ``known`` are numbers of units that mattered in a question like this
-    one, and of those that matter in this one afterwards. Raises :class:`UserError` for faults in constraints,
+    ``units`` decides last, so that the tree is irredundant. Stops at the time limit or at ctrl-C with the
+    incumbent. ``mattered`` are public numbers of units that mattered in a similar question; the units that
+    matter in this one are added. Raises :class:`UserError` for faults in constraints,
     encodings and options, and where ``success`` is asked for and no rates are known.
     """
     settings, reporter = settings or Settings(), reporter or Reporter()
     program = program_of(problem, settings, reporter.warning)
     began = time.perf_counter()
-    heard = _Heard(problem, objectives, reporter)
-    first = prepare(problem, objectives, settings, program, heard, brief=bool(known))
+    listener = _IncumbentListener(problem, objectives, reporter)
+    prepared = prepare(problem, objectives, settings, program, listener, brief=bool(mattered))
     seconds = {"cut": time.perf_counter() - began}
-    outcome = _Solver(first, objectives, heard, seconds, known=known).solve()
-    if settings.asks_for_statistics and not heard.asked:
+    outcome = _Solver(prepared, objectives, listener, seconds, mattered=mattered).solve()
+    if settings.asks_for_statistics and not listener.clingo_ran:
         reporter.statistics(NOT_ASKED)
     return outcome
 
 
-def solve_prepared(first: Prepared, objectives: Sequence[Objective], rules: str = "") -> Outcome:
-    """Find the best task tree of a prepared question, with additional rules, and prove it."""
-    return _Solver(first, objectives, _Heard(first.problem, objectives, Reporter()), {}, rules).solve()
+def solve_prepared(prepared: Prepared, objectives: Sequence[Objective], rules: str = "") -> Outcome:
+    """Find the best task tree of a prepared question under additional rules, and prove it."""
+    return _Solver(
+        prepared, objectives, _IncumbentListener(prepared.problem, objectives, Reporter()), {}, rules
+    ).solve()
 
 
-class _Heard(Listener):
-    """Receives trees and bounds, keeps the best tree and passes on improvements."""
+class _IncumbentListener(Listener):
+    """Listener that keeps the incumbent and reports improvements and bounds."""
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], reporter: Reporter) -> None:
         self.problem, self.levels, self.reporter = problem, levels(tuple(objectives)), reporter
-        self.best: tuple[Units, Costs] | None = None
-        self.asked = False  # clingo, so that there are statistics
-        self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
+        self.incumbent: tuple[Units, Costs] | None = None
+        self.clingo_ran = False  # whether clingo ran, so that there are statistics
+        self._last_costed: tuple[Units, Costs] | None = None  # cache of one tree
 
     def tree(self, units: Units) -> None:
         costs = self.costs(units)
-        if self.best is None or costs.key(self.levels) < self.best[1].key(self.levels):
-            self.best = units, costs
+        if self.incumbent is None or costs.key(self.levels) < self.incumbent[1].key(self.levels):
+            self.incumbent = units, costs
             self.reporter.tree(costs)
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
         self.reporter.bound(self.levels[0], costs.first(bound))
 
     def ended(self, run: "Run") -> None:
-        """Pass on the statistics of a run of clingo."""
+        """Report the statistics of a run of clingo."""
         if run.statistics:
-            self.asked = True
+            self.clingo_ran = True
             self.reporter.statistics(run.statistics)
 
     def costs(self, units: Units) -> Costs:
-        """Return what units cost, worked out once for a tree in hand."""
-        if self._costed is None or self._costed[0] != units:
-            self._costed = units, self.problem.costs(units)
-        return self._costed[1]
+        """Return the costs of units, cached for the last tree."""
+        if self._last_costed is None or self._last_costed[0] != units:
+            self._last_costed = units, self.problem.costs(units)
+        return self._last_costed[1]
 
 
 class _Solver:
-    """A prepared question that is being solved."""
+    """Branch-and-bound search of one prepared question with clingo."""
 
     def __init__(
         self,
-        first: Prepared,
+        prepared: Prepared,
         objectives: Sequence[Objective],
-        heard: _Heard,
+        listener: _IncumbentListener,
         seconds: dict[str, float],
         rules: str = "",
-        known: set[int] | None = None,
+        mattered: set[int] | None = None,
     ) -> None:
-        self.first, self.objectives, self.heard, self.seconds = first, tuple(objectives), heard, seconds
-        self.rules = first.program.rules + rules
-        self.problem, self.levels, self.deadline = first.problem, first.levels, first.deadline
-        self.program, self.holds = first.program, first.holds
-        self._scales: Scales | None = None  # before clingo is asked anything
-        self._ground: tuple[object, Grounded] | None = None  # what was asked last
-        self._loose = False  # whether what is found may have loose ends
-        self._known = set() if known is None else known  # units, by number, with which loose ends begin
+        self.prepared, self.objectives, self.listener, self.seconds = (
+            prepared,
+            tuple(objectives),
+            listener,
+            seconds,
+        )
+        self.rules = prepared.program.rules + rules
+        self.problem, self.levels, self.deadline = prepared.problem, prepared.levels, prepared.deadline
+        self.program, self.holds = prepared.program, prepared.holds
+        self._scales: Scales | None = None  # None before the first run of clingo
+        self._ground: tuple[object, Grounded] | None = None  # the last question grounded, and its program
+        self._open_preconditions = False  # whether trees found may have open preconditions
+        self._mattered = set() if mattered is None else mattered  # public numbers of the units explored first
 
     def solve(self) -> Outcome:
-        """Solve it; where that is stopped anywhere, state what is known by then."""
+        """Return the outcome; at a limit or ctrl-C, the outcome with the incumbent."""
         deadline = self.deadline
         try:
             with deadline.watched(deadline.doing, late=True, grace=True):
                 return self._solve()
         except KeyboardInterrupt:
             deadline.interrupt()
-            if self.heard.best is None and self._at_hand is not None:
-                self.heard.tree(self._at_hand)
-            best = self.heard.best
+            if self.listener.incumbent is None and self._initial_incumbent is not None:
+                self.listener.tree(self._initial_incumbent)
+            best = self.listener.incumbent
             return self._outcome(Status.UNKNOWN, None, {}) if best is None else self._limited(best[0], ())
         finally:
             if self._ground:
                 self._ground[1].close()
 
     @property
-    def _at_hand(self) -> Units | None:
-        """The tree that the cut gave, if all there is to keep to is known to it."""
+    def _initial_incumbent(self) -> Units | None:
+        """The tree of the cut, ``None`` where user rules or bounds may exclude it."""
         decided = self.program.own and not self.program.bounded
-        return self.first.tree if decided else None
+        return self.prepared.tree if decided else None
 
     def _solve(self) -> Outcome:
-        first = self.first
-        if first.stopped:
+        prepared = self.prepared
+        if prepared.stopped:
             return self._outcome(Status.UNKNOWN, None, {})
-        if first.tree is None:
-            if first.asked is not None:
-                first.keeps(Units())  # to say what is wrong with a rule, though no tree depends on it
-            if not first.contradicted:
+        if prepared.tree is None:
+            if prepared.full_program is not None:
+                prepared.keeps(Units())  # to say what is wrong with a rule, though no tree depends on it
+            if not prepared.contradicted:
                 self.holds.no_tree()
             return self._outcome(Status.INFEASIBLE, None, {})
-        if first.rest and first.reduced and first.reduced.wide:
-            return self._under_rest(first.reduced, first.reduced.wide, first.tree)
-        incumbent = self._at_hand
-        if incumbent is None:  # the user's rules or the bounds decide what a tree is: let them find the first
-            some = self._run(self.levels, opt_mode="ignore")
-            if some.units is None:
-                return self._outcome(Status.INFEASIBLE if some.exhausted else Status.UNKNOWN, None, {})
-            incumbent = some.units
-        self.heard.tree(incumbent)
-        if first.reduced and first.reduced.settled:
+        if prepared.unsettled and prepared.reduced and prepared.reduced.wide:
+            return self._solve_unsettled(prepared.reduced, prepared.reduced.wide, prepared.tree)
+        incumbent = self._initial_incumbent
+        if incumbent is None:  # user rules or bounds may exclude the tree of the cut
+            run = self._run(self.levels, opt_mode="ignore")
+            if run.units is None:
+                return self._outcome(Status.INFEASIBLE if run.exhausted else Status.UNKNOWN, None, {})
+            incumbent = run.units
+        self.listener.tree(incumbent)
+        if prepared.reduced and prepared.reduced.settled:
             return self._optimal(incumbent)
         # at a limit, not even what clingo would be given is written
         return self._limited(incumbent, ()) if self.deadline.passed else self._search(incumbent)
 
-    def _under_rest(self, reduced: Reduced, wide: Wide, tree: Units) -> Outcome:
-        """Find the best tree that keeps to rules that the reductions did not know of.
+    def _solve_unsettled(self, reduced: Reduced, subproblem: Wide, tree: Units) -> Outcome:
+        """Find the best tree under rules that the reductions ignored.
 
-        If the best tree without them keeps to them, it is the one.
+        If the best tree without these rules keeps to them, it is optimal.
         """
-        if self._known:  # it does not, and nothing else told before
-            return self._beside(wide, tree)
-        keeps = self.first.keeps(tree)
+        if self._mattered:  # the tree breaks rules, as in the similar question
+            return self._solve_violated(subproblem, tree)
+        keeps = self.prepared.keeps(tree)
         if keeps:
-            self.heard.tree(tree)
+            self.listener.tree(tree)
             if reduced.settled:
                 return self._optimal(tree)
-        self.first = replace(self.first, reduced=reduced._replace(settled=False))
-        found = self._by_cases(reduced, wide)
-        if found is None and keeps:
-            found = self._up_to(wide, tree, None)
-        return found or self._beside(wide, tree)
+        self.prepared = replace(self.prepared, reduced=reduced._replace(settled=False))
+        outcome = self._case_split(reduced, subproblem)
+        if outcome is None and keeps:
+            outcome = self._gap_bounded(subproblem, tree, None)
+        return outcome or self._solve_violated(subproblem, tree)
 
-    def _beside(self, wide: Wide, tree: Units) -> Outcome:
-        """Find the best tree that keeps to rules which this one breaks.
+    def _solve_violated(self, subproblem: Wide, tree: Units) -> Outcome:
+        """Find the best tree under rules that the given tree breaks.
 
-        One is looked for that has units without what they need, and then one near the goals.
+        Searches trees with open preconditions first, and then ever larger neighbourhoods of the goals.
         """
-        if not wide.spare and not self._known and (found := self._within_limits(wide, tree)) is not None:
-            return found
-        ended = None if wide.spare else self._with_loose_ends(wide, tree)
-        is_best = ended is not None
-        if ended is None:
-            ended = self._near(wide, tree)
-        if ended.units is None:
-            return self._outcome(Status.INFEASIBLE if ended.exhausted else Status.UNKNOWN, None, {})
-        self.heard.tree(ended.units)
+        if (
+            not subproblem.spare
+            and not self._mattered
+            and (outcome := self._with_priced_limit(subproblem, tree)) is not None
+        ):
+            return outcome
+        run = None if subproblem.spare else self._with_open_preconditions(subproblem, tree)
+        is_best = run is not None
+        if run is None:
+            run = self._near_goals(subproblem, tree)
+        if run.units is None:
+            return self._outcome(Status.INFEASIBLE if run.exhausted else Status.UNKNOWN, None, {})
+        self.listener.tree(run.units)
         if is_best:
-            return self._optimal(self._in_hand(ended.units))
-        if not ended.exhausted:
-            return self._limited(ended.units, ())
-        return self._up_to(wide, self._in_hand(ended.units), ended)
+            return self._optimal(self._best_reported(run.units))
+        if not run.exhausted:
+            return self._limited(run.units, ())
+        return self._gap_bounded(subproblem, self._best_reported(run.units), run)
 
-    def _by_cases(self, reduced: Reduced, wide: Wide) -> Outcome | None:
-        """Find the best tree that keeps to ready-made constraints, where few cases tell; else ``None``."""
-        rules, settings = self.program.ready_made, self.first.settings
+    def _case_split(self, reduced: Reduced, subproblem: Wide) -> Outcome | None:
+        """Find the best tree under ready-made constraints by case split; ``None`` if undecided."""
+        rules, settings = self.program.ready_made, self.prepared.settings
         if rules is None or Reduction.BOUNDS not in settings.reductions:
             return None
         from foon_asp.reduce.cases import best_kept  # noqa: PLC0415 (of use with few rules)
 
         try:
             with self.deadline.watched("cutting the network", late=True):
-                found = best_kept(
-                    self.problem, self.levels, wide, reduced, rules, lambda: self.deadline.passed
+                result = best_kept(
+                    self.problem, self.levels, subproblem, reduced, rules, lambda: self.deadline.passed
                 )
         except KeyboardInterrupt:
             self.deadline.interrupt()
-            if self.heard.best is None:
+            if self.listener.incumbent is None:
                 return self._outcome(Status.UNKNOWN, None, {})
-            return self._limited(self.heard.best[0], ())
-        if found is None:
+            return self._limited(self.listener.incumbent[0], ())
+        if result is None:
             return None
-        if found.tree is None:
+        if result.tree is None:
             return self._outcome(Status.INFEASIBLE, None, {})
-        self.heard.tree(found.tree)
-        return self._optimal(self._in_hand(found.tree))
+        self.listener.tree(result.tree)
+        return self._optimal(self._best_reported(result.tree))
 
-    def _within_limits(self, wide: Wide, tree: Units) -> Outcome | None:
-        """Find the best tree by a price on what a rule limits; ``None`` where no price tells."""
+    def _with_priced_limit(self, subproblem: Wide, tree: Units) -> Outcome | None:
+        """Find the best tree by a Lagrangian price on a limited sum; ``None`` where no price decides."""
         from foon_asp.reduce.within_limit import limited  # noqa: PLC0415 (of use with few rules)
 
-        asked = self.first.asked
-        assert asked is not None
-        assert asked.added is not None
-        for counts, most in asked.added.counted(self.problem):
-            if sum(map(counts, tree)) <= most:
+        program = self.prepared.full_program
+        assert program is not None
+        assert program.added is not None
+        for counts, bound in program.added.counted(self.problem):
+            if sum(map(counts, tree)) <= bound:
                 continue
             try:
                 with self.deadline.watched("cutting the network", late=True):
-                    found = limited(wide, self.levels, tree, counts, most, lambda: self.deadline.passed)
+                    result = limited(
+                        subproblem, self.levels, tree, counts, bound, lambda: self.deadline.passed
+                    )
             except KeyboardInterrupt:
                 self.deadline.interrupt()
                 return self._outcome(Status.UNKNOWN, None, {})
-            if found is None:
+            if result is None:
                 continue
-            if found.tree is None:
+            if result.tree is None:
                 return self._outcome(Status.INFEASIBLE, None, {})
-            if self.first.keeps(found.tree):
-                self.heard.tree(found.tree)
-                if found.units is not None:
-                    self._look_at(found.units | found.tree)
-                    return self._search(found.tree)
-                return self._up_to(wide, found.tree, None)
+            if self.prepared.keeps(result.tree):
+                self.listener.tree(result.tree)
+                if result.units is not None:
+                    self._restrict_to(result.units | result.tree)
+                    return self._search(result.tree)
+                return self._gap_bounded(subproblem, result.tree, None)
         return None
 
-    def _near(self, wide: Wide, tree: Units) -> "Run":
-        """Look for the best tree that keeps to all rules near the goals, then ever farther from them."""
-        known, most = wide.everything(), _NEAR
+    def _near_goals(self, subproblem: Wide, tree: Units) -> "Run":
+        """Search ever larger neighbourhoods of the goals for the best tree; return the last run."""
+        everything, size = subproblem.everything(), _NEAREST_UNITS
         while True:
-            among = known if most >= len(known) else wide.nearest(most) | tree
-            most *= _MORE
-            self._look_at(among)
-            ended = self._run(self.levels)
-            if ended.units is not None or not ended.exhausted or among >= known:
-                return ended
+            among = everything if size >= len(everything) else subproblem.nearest(size) | tree
+            size *= _NEAREST_GROWTH
+            self._restrict_to(among)
+            run = self._run(self.levels)
+            if run.units is not None or not run.exhausted or among >= everything:
+                return run
 
-    def _up_to(self, wide: Wide, tree: Units, ended: "Run | None") -> Outcome:
-        """Look for what is better than a tree, among all units that trees up to its cost can have.
+    def _gap_bounded(self, subproblem: Wide, tree: Units, run: "Run | None") -> Outcome:
+        """Search the gap-bounded subproblem: all units that trees up to the cost of a tree can have.
 
-        ``ended`` is the search that found the tree, if one did.
+        ``run`` is the search that found the tree, ``None`` where none did.
         """
         try:
             with self.deadline.watched("cutting the network", late=True):
-                within = wide.within(wide.total(tree), lambda: self.deadline.passed)
+                candidates = subproblem.within(subproblem.total(tree), lambda: self.deadline.passed)
         except KeyboardInterrupt:
             return self._limited(tree, ())
-        if ended is not None and ended.units is not None and within <= set(self.first.units):
-            return self._ended(ended, ended.units)
-        self._look_at(within)
+        if run is not None and run.units is not None and candidates <= set(self.prepared.units):
+            return self._conclude(run, run.units)
+        self._restrict_to(candidates)
         return self._search(tree)
 
-    def _with_loose_ends(self, wide: Wide, tree: Units) -> "Run | None":
-        """Look for the best tree that keeps to rules, some units of which run without what they need.
+    def _with_open_preconditions(self, subproblem: Wide, tree: Units) -> "Run | None":
+        """Search the relaxation in which units outside ``explored`` have open preconditions.
 
-        Of any tree some units are one with loose ends, and keep to the rules where it does. So there is none
-        where there is none with loose ends, and the best of these is the best of all if it has none. Every
-        tree has a unit of each landmark, too. ``None`` where nothing is settled so after some times.
+        Every tree that keeps to the rules has a part that is feasible there. So an infeasible relaxation
+        proves that there is no tree, and a best tree without open preconditions is optimal. Every tree has a
+        unit of each landmark, too. ``None`` where the relaxation decides nothing within ``_MAX_ROUNDS``.
         """
         from foon_asp.encoding.facts import write_known, write_objectives, write_required  # noqa: PLC0415
 
-        self._ask_clingo()
+        self._take_whole_program()
         program, number = self.program, self.problem.network.unit_number
         files = (question_encoding("loose_ends.lp"), *program.files[1:], question_encoding("required.lp"))
-        # to make cores small takes longer than it saves here
-        others, quick = ((SHRINKING,), ()) if self.first.settings.clingo_options else (CLINGO_OPTIONS, _QUICK)
-        arguments = (*(each for each in program.arguments if each not in others), *quick)
+        # shrinking cores takes longer than it saves here
+        others, quick = (
+            ((SHRINKING,), ()) if self.prepared.settings.clingo_options else (CLINGO_OPTIONS, _QUICK_OPTIONS)
+        )
+        arguments = (*(argument for argument in program.arguments if argument not in others), *quick)
         program = program._replace(files=files, arguments=arguments)
-        sets = wide.landmarks()
-        required = write_required([map(number, sorted(each)) for each in sets])
-        before = wide.left_of(self._known)
-        most = _MANY + len(before)
-        known = wide.with_only_makers(before.union(tree, *(e for e in sets if len(e) <= _NEAR)), most)
-        by, fewest = _FEWEST, 0  # quick to ask, and enough to see that there is none
-        for _ in range(_LOOSE):
-            self._known.update(map(number, known))
-            self._look_at(known.union(wide.makers(known), *sets))
-            asked = replace(self.first, program=program)
-            text = required + write_known(map(number, sorted(known)))
-            ended = asked.run(text + write_objectives(by))
-            self.heard.ended(ended)
-            if by != self.levels and ended.exhausted and ended.units is not None:
-                tree = self._ids(ended.units)
-                if tree <= known:  # one that keeps to all rules: what is best is no worse
+        landmarks = subproblem.landmarks()
+        required = write_required([map(number, sorted(landmark)) for landmark in landmarks])
+        before = subproblem.left_of(self._mattered)
+        max_units = _MAX_KNOWN_UNITS + len(before)
+        explored = subproblem.with_only_makers(
+            before.union(tree, *(e for e in landmarks if len(e) <= _NEAREST_UNITS)), max_units
+        )
+        by, fewest = _UNITS_ONLY, 0  # fast, and enough to prove that there is no tree
+        for _ in range(_MAX_ROUNDS):
+            self._mattered.update(map(number, explored))
+            self._restrict_to(explored.union(subproblem.makers(explored), *landmarks))
+            prepared = replace(self.prepared, program=program)
+            text = required + write_known(map(number, sorted(explored)))
+            run = prepared.run(text + write_objectives(by))
+            self.listener.ended(run)
+            if by != self.levels and run.exhausted and run.units is not None:
+                tree = self._ids(run.units)
+                if tree <= explored:  # it keeps to all rules: its cost bounds the optimum
                     by, fewest = self.levels, len(tree)
                     worst = self._scaled().weight(by[0], tree)
-                    ended = asked.run(text + write_objectives(by), f"opt,{worst}")
-                    self.heard.ended(ended)
-            if not ended.exhausted or ended.units is None:
-                return ended if ended.exhausted else None
-            ended.units = self._ids(ended.units)
-            if ended.units <= known:
-                return self._settled_with_loose_ends(ended, program, text, known, fewest)
-            if len(known) > most:
+                    run = prepared.run(text + write_objectives(by), f"opt,{worst}")
+                    self.listener.ended(run)
+            if not run.exhausted or run.units is None:
+                return run if run.exhausted else None
+            run.units = self._ids(run.units)
+            if run.units <= explored:
+                return self._settle_open_preconditions(run, program, text, explored, fewest)
+            if len(explored) > max_units:
                 return None
-            fresh = wide.beside(ended.units - known)
-            enough = min(most, len(known) * _GROWN)
-            while fresh and len(known) < enough:
-                fresh = wide.with_only_makers(fresh | wide.makers(fresh), most) - known
-                known |= fresh
+            fresh = subproblem.beside(run.units - explored)
+            enough = min(max_units, len(explored) * _GROWTH)
+            while fresh and len(explored) < enough:
+                fresh = subproblem.with_only_makers(fresh | subproblem.makers(fresh), max_units) - explored
+                explored |= fresh
         return None
 
-    def _settled_with_loose_ends(
-        self, ended: "Run", program: Program, text: str, known: Collection[int], fewest: int
+    def _settle_open_preconditions(
+        self, run: "Run", program: Program, text: str, explored: Collection[int], fewest: int
     ) -> "Run | None":
-        """Examine what rounding may have hidden among trees with loose ends, too.
+        """Examine totals that rounding may have hidden among trees with open preconditions.
 
-        None of them has fewer units than ``fewest``. ``None`` where the best has loose ends.
+        No tree has fewer units than ``fewest``. ``None`` where the best tree has open preconditions.
         """
-        assert ended.units is not None
-        self._measures_agree(ended.units, ended.cost, self.levels)
+        assert run.units is not None
+        self._measures_agree(run.units, run.cost, self.levels)
         if self._scaled().rounded is None:
-            return ended
+            return run
         before, rules = self.program, self.rules
-        self.program, self.rules, self._loose = program, rules + text, True
+        self.program, self.rules, self._open_preconditions = program, rules + text, True
         try:
-            best, proved = self._settle(ended.units, fewest)
+            best, proved = self._settle(run.units, fewest)
         finally:
-            self.program, self.rules, self._loose = before, rules, False
-        ended.units = best
-        return ended if proved and best <= set(known) else None
+            self.program, self.rules, self._open_preconditions = before, rules, False
+        run.units = best
+        return run if proved and best <= set(explored) else None
 
-    def _ask_clingo(self) -> None:
-        """Have the program as a whole from now on."""
+    def _take_whole_program(self) -> None:
+        """Switch to the whole program, in which clingo enforces ready-made constraints."""
         if self.program.whole is not None:
             self.program = self.program.whole
-            self.first = replace(self.first, program=self.program)
+            self.prepared = replace(self.prepared, program=self.program)
 
-    def _look_at(self, units: Collection[int]) -> None:
-        """Search among these units from now on."""
-        self.first = replace(self.first, units=tuple(sorted(units)))
+    def _restrict_to(self, units: Collection[int]) -> None:
+        """Restrict all later searches to these units."""
+        self.prepared = replace(self.prepared, units=tuple(sorted(units)))
         self._scales = None
         if self._ground:
             self._ground[1].close()
             self._ground = None
 
     def _search(self, incumbent: Units) -> Outcome:
-        """Ask clingo for what is better than the tree in hand."""
-        wanted, strict = self._wanted(incumbent)
-        ended = self._run(self.levels, opt_mode=wanted, bounds=True)
-        if ended.units is None:
-            if not ended.exhausted:
-                return self._limited(incumbent, ended.lower)
+        """Search for a tree better than the incumbent, and return the outcome."""
+        wanted, strict = self._opt_mode(incumbent)
+        run = self._run(self.levels, opt_mode=wanted, bounds=True)
+        if run.units is None:
+            if not run.exhausted:
+                return self._limited(incumbent, run.lower)
             self.holds.require(strict, lambda: "a tree is at hand, but the encodings say that there is none")
             return self._optimal(incumbent)
-        return self._ended(ended, ended.units)
+        return self._conclude(run, run.units)
 
-    def _ended(self, ended: "Run", units: Units) -> Outcome:
-        """Settle what a search ended with."""
-        best, proved = self._in_hand(units), ended.exhausted
-        if self._measures_agree(units, ended.cost, self.levels) and proved:
+    def _conclude(self, run: "Run", units: Units) -> Outcome:
+        """Return the outcome of a search that ended with a tree."""
+        best, proved = self._best_reported(units), run.exhausted
+        if self._measures_agree(units, run.cost, self.levels) and proved:
             best, proved = self._settle(best)
-        return self._optimal(best) if proved else self._limited(best, ended.lower)
+        return self._optimal(best) if proved else self._limited(best, run.lower)
 
-    def _in_hand(self, units: Units) -> Units:
-        """Return the best tree reported; with replaced encodings that is not known, and these units count."""
-        assert self.heard.best is not None
-        return units if self.program.replaced else self.heard.best[0]
+    def _best_reported(self, units: Units) -> Units:
+        """Return the incumbent; with replaced encodings these units, since another order may count."""
+        assert self.listener.incumbent is not None
+        return units if self.program.replaced else self.listener.incumbent[0]
 
-    def _wanted(self, incumbent: Units) -> tuple[str, bool]:
-        """Return clasp's mode of search, and whether it leaves out trees that are only as good as this one.
+    def _opt_mode(self, incumbent: Units) -> tuple[str, bool]:
+        """Return clasp's ``--opt-mode`` bounded by the incumbent, and whether the bound is strict.
 
-        After the reductions, trees that are only as good need not be among the units left. Where rates
-        multiply, rounded weights cannot tell what is better: then what weighs the same is left in. No bound
-        is below 0, which not every strategy of clasp takes for what it says.
+        After the reductions, trees as good as the incumbent need not be among the remaining units. Where
+        rates multiply, rounded weights do not decide, so the bound is not strict. No bound is below 0, which
+        some strategies of clasp do not support.
         """
-        first = self.first
-        if not first.reduced or self.program.bounded or Reduction.BOUNDS not in first.settings.reductions:
+        prepared = self.prepared
+        if (
+            not prepared.reduced
+            or self.program.bounded
+            or Reduction.BOUNDS not in prepared.settings.reductions
+        ):
             return "opt", False
         scales = self._scaled()
         level = len(self.levels) if scales.rounded is None else self.levels.index(scales.rounded)
@@ -414,13 +438,13 @@ class _Solver:
         return ",".join(["opt", *map(str, figures)]), True
 
     def _optimal(self, units: Units) -> Outcome:
-        costs = self.heard.costs(units)
+        costs = self.listener.costs(units)
         return self._outcome(Status.OPTIMAL, units, {o: costs.measure(o) for o in self.levels})
 
     def _limited(self, units: Units, lower: Sequence[int]) -> Outcome:
-        """State what is known at a limit; what the bounds of replaced encodings mean is not known."""
+        """Return the outcome at a limit, without bounds where encodings are replaced."""
         bounds = {} if self.program.replaced else self._bounds(lower)
-        return self._outcome(Status.FEASIBLE, self._in_hand(units), bounds)
+        return self._outcome(Status.FEASIBLE, self._best_reported(units), bounds)
 
     def _run(
         self,
@@ -431,33 +455,33 @@ class _Solver:
         bounds: bool = False,
         fewer: Mapping[int, int] | None = None,
     ) -> "Run":
-        """Ask clingo for the best tree by some of the levels.
+        """Run clingo for the best tree by some of the levels.
 
-        ``products`` of rates, by exponents, are ruled out, but for trees of fewer units than ``fewer`` says
-        of their number; with ``wanted`` the one of that number is asked for instead. The reporter hears of
-        trees, and of ``bounds`` where they are those of the question.
+        ``products`` of rates, by exponents, are excluded, except for trees of fewer units than ``fewer`` has
+        for the index of the product; with ``wanted`` the product of that index is required instead. Reports
+        trees, and ``bounds`` where they are those of the question.
         """
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 
         def on_tree(units: Units) -> None:
-            if not self._loose:
-                self.heard.tree(self._ids(units))
+            if not self._open_preconditions:
+                self.listener.tree(self._ids(units))
 
-        self._ask_clingo()
+        self._take_whole_program()
         try:
-            ended = self._grounded(objectives, products, wanted, fewer or {}).search(
+            run = self._grounded(objectives, products, wanted, fewer or {}).search(
                 self.deadline, opt_mode, on_tree, on_bound
             )
-        except KeyboardInterrupt:  # before it came to a search
+        except KeyboardInterrupt:  # before the search began
             self.deadline.interrupt()
             from foon_asp.grounding.run import Run  # noqa: PLC0415
 
-            ended = Run()
-        self.seconds["solve"] = self.seconds.get("solve", 0.0) + ended.solve_seconds
-        self.heard.ended(ended)
-        if ended.units is not None:
-            ended.units = self._ids(ended.units)
-        return ended
+            run = Run()
+        self.seconds["solve"] = self.seconds.get("solve", 0.0) + run.solve_seconds
+        self.listener.ended(run)
+        if run.units is not None:
+            run.units = self._ids(run.units)
+        return run
 
     def _grounded(
         self,
@@ -466,17 +490,17 @@ class _Solver:
         wanted: int | None,
         fewer: Mapping[int, int],
     ) -> "Grounded":
-        """Ground what is asked, unless it was the last thing asked."""
-        asked = objectives, len(products), wanted, fewer
+        """Return the ground program of a question, cached for the last question."""
+        question = objectives, len(products), wanted, fewer
         if self._ground:
             before, program = self._ground
-            if before == asked:
+            if before == question:
                 return program
             program.close()
         from foon_asp.encoding import facts  # noqa: PLC0415 (often there is nothing left to ask)
 
         began = time.perf_counter()
-        text = self.first.facts + self.rules + facts.write_objectives(objectives)
+        text = self.prepared.facts + self.rules + facts.write_objectives(objectives)
         self._spent("facts", began)
         files = self.program.files
         if products:
@@ -494,17 +518,17 @@ class _Solver:
             )
         finally:
             self._spent("ground", began)
-        self._ground = asked, program
+        self._ground = question, program
         return program
 
     def _scaled(self) -> "Scales":
-        """Return how what is left of the network is measured in clingo."""
+        """Return the scales of the remaining units in clingo."""
         if self._scales is None:
-            self._scales = self.first.scales
+            self._scales = self.prepared.scales
         return self._scales
 
     def _ids(self, numbers: Units) -> Units:
-        """Give the ids of units in an answer, whose numbers come from encodings, which may be the user's."""
+        """Return the ids of units by public number; raises :class:`UserError` for numbers of no unit."""
         units: set[int] = set()
         for number in sorted(numbers):
             unit = self.problem.network.unit_of_number(number)
@@ -518,18 +542,19 @@ class _Solver:
     def _settle(self, best: Units, fewest: int = 0) -> tuple[Units, bool]:
         """Examine every total that rounding may have hidden; see docs/dev/exact-success.md.
 
-        No tree has fewer units than ``fewest``. Returns the tree that is best exactly, and whether the search
-        came to its end.
+        No tree has fewer units than ``fewest``. Returns the best tree by exact costs, and whether that is
+        proved.
         """
         scales = self._scaled()
-        if scales.rounded not in self.levels:  # a program that is kept knows others, too
+        if scales.rounded not in self.levels:  # a kept program has other levels, too
             return best, True
-        place = self.levels.index(scales.rounded)
-        before, by, after = self.levels[:place], self.levels[: place + 1], self.levels[place + 1 :]
+        position = self.levels.index(scales.rounded)
+        before, by, after = self.levels[:position], self.levels[: position + 1], self.levels[position + 1 :]
         totals: list[dict[int, int]] = []
         fixed = [scales.weight(objective, best) for objective in before]
-        chosen, rival, wanted = best, best, [0]  # the totals that are as good as that of the tree chosen
-        at_once = self._loose and after == _FEWEST  # the second search of these takes long
+        chosen, rival, wanted = best, best, [0]  # indices of the totals as good as that of the chosen tree
+        # a second search with open preconditions is slow
+        at_once = self._open_preconditions and after == _UNITS_ONLY
         while True:
             # A total that is better or as good has a weight of at most W + n - 1, where n units of the tree
             # weigh less than they cost, and of at most W where none does.
@@ -540,44 +565,44 @@ class _Solver:
             band = scales.weight(scales.rounded, chosen) + max(0, doubt - 1)
             mode = ",".join(["opt", *map(str, fixed), str(band)])
             fewer = wanted if at_once and len(chosen) > fewest else ()
-            ended = self._run(by, totals, opt_mode=mode, fewer=dict.fromkeys(fewer, len(chosen)))
-            if not ended.exhausted or (at_once and ended.units is None):
-                return chosen, ended.exhausted
-            if ended.units is None:
+            run = self._run(by, totals, opt_mode=mode, fewer=dict.fromkeys(fewer, len(chosen)))
+            if not run.exhausted or (at_once and run.units is None):
+                return chosen, run.exhausted
+            if run.units is None:
                 break
-            rival = ended.units
-            self._require_measures(self._measures_agree(rival, ended.cost, by))
-            ours, theirs = (self.heard.costs(tree).key(by) for tree in (chosen, rival))
+            rival = run.units
+            self._require_measures(self._measures_agree(rival, run.cost, by))
+            ours, theirs = (self.listener.costs(tree).key(by) for tree in (chosen, rival))
             if theirs < ours:
                 chosen, wanted = rival, []
             elif theirs == ours and at_once:
                 chosen = min(chosen, rival, key=len)
             if theirs <= ours:
                 wanted.append(len(totals))
-        if not after or (after == _FEWEST and len(chosen) == fewest):
+        if not after or (after == _UNITS_ONLY and len(chosen) == fewest):
             return chosen, True
         for number in wanted:
             limits = (scales.weight(objective, chosen) for objective in after)
             mode = ",".join(["opt", *map(str, fixed), *map(str, limits)])
-            ended = self._run((*before, *after), totals, number, mode)
-            if ended.units is not None:
-                self._require_measures(self._measures_agree(ended.units, ended.cost, (*before, *after)))
-                self.holds.settled(ended.units, chosen, by)
-                chosen = ended.units
-            if not ended.exhausted:
+            run = self._run((*before, *after), totals, number, mode)
+            if run.units is not None:
+                self._require_measures(self._measures_agree(run.units, run.cost, (*before, *after)))
+                self.holds.settled(run.units, chosen, by)
+                chosen = run.units
+            if not run.exhausted:
                 return chosen, False
-            found = ended.units is not None or number != wanted[0]  # of the first, one is in hand
-            self._require_measures(found or not self.program.replaced)
-            self.holds.require(found, lambda: f"the best {scales.rounded} was lost")
+            settled = run.units is not None or number != wanted[0]  # the first total has a tree
+            self._require_measures(settled or not self.program.replaced)
+            self.holds.require(settled, lambda: f"the best {scales.rounded} was lost")
         return chosen, True
 
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
-        """Compare clingo's costs (modulo 2^32) with the weights of units, and these with what units cost.
+        """Compare clingo's costs (modulo 2^32) with the weights of units, and these with their costs.
 
-        A replaced objectives.lp may measure something else: then the optimum is the one it defines. A program
-        that is kept measures all levels, and what was not asked for as nothing.
+        A replaced objectives.lp may measure something else: then the optimum is the one it defines. A kept
+        program measures all levels, with 0 for those that are not optimized.
         """
-        scales, costs = self._scaled(), self.heard.costs(units)
+        scales, costs = self._scaled(), self.listener.costs(units)
         weights = {objective: scales.weight(objective, units) for objective in objectives}
         self.holds.require(
             all(scales.allows(o, weight, costs.measure(o)) for o, weight in weights.items()),
@@ -594,7 +619,7 @@ class _Solver:
             lambda: f"clingo reports the costs {list(cost)}, the units {sorted(units)} cost {ours}",
         )
         if not agree:
-            self.heard.reporter.warning(
+            self.listener.reporter.warning(
                 f"{self.program.files[1]} does not measure what the objectives "
                 f"{', '.join(self.levels)} measure here: the tree is optimal in its sense, and the costs "
                 "shown are the usual ones"
@@ -602,7 +627,7 @@ class _Solver:
         return agree
 
     def _require_measures(self, agree: bool) -> None:
-        """Raise :class:`UserError` if a replaced objectives.lp measures only some trees as we do."""
+        """Raise :class:`UserError` if a replaced objectives.lp measures only some trees as usual."""
         if not agree:
             raise UserError(
                 f"{self.program.files[1]} measures some trees as the objectives {', '.join(self.levels)} do, "
@@ -612,10 +637,10 @@ class _Solver:
     def _bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
         """Turn clingo's lower bounds, highest priority first, into bounds on the objectives.
 
-        Where it has none yet, no cost is below 0 and no success above 1. A bound on trees that are better
-        than the one in hand is no bound beyond that one. What the cuts say of the first objective counts.
-        Nothing is said of what comes after an objective that is rounded: rounded weights do not tell which
-        trees it counts among.
+        Before the first bound, no cost is below 0 and no success above 1. A bound on trees better than the
+        incumbent is capped by the incumbent. The bound of the cuts on the first objective counts, too.
+        Objectives after a rounded one have no bound, since rounded weights do not decide among which trees
+        they count.
         """
         bounds: dict[Objective, int | Fraction] = {}
         for objective, value in zip(self.levels, lower or [0], strict=False):
@@ -625,29 +650,33 @@ class _Solver:
             )
             if scales and objective is scales.rounded:
                 break
-        reduced = self.first.reduced
+        reduced = self.prepared.reduced
         if reduced is None or reduced.costs is None:
             return bounds
-        first, proved = self.levels[0], reduced.costs.first(reduced.bound)
-        if multiplies(first):
-            return {first: min(bounds[first], proved)}
-        assert self.heard.best is not None
-        _, best = self.heard.best
-        bounds[first] = max(bounds[first], proved)
+        objective_first, proved = self.levels[0], reduced.costs.first(reduced.bound)
+        if multiplies(objective_first):
+            return {objective_first: min(bounds[objective_first], proved)}
+        assert self.listener.incumbent is not None
+        _, best = self.listener.incumbent
+        bounds[objective_first] = max(bounds[objective_first], proved)
         for objective, bound in bounds.items():
             if not multiplies(objective):
                 bounds[objective] = min(bound, best.measure(objective))
-        return bounds if bounds[first] == best.measure(first) else {first: bounds[first]}
+        return (
+            bounds
+            if bounds[objective_first] == best.measure(objective_first)
+            else {objective_first: bounds[objective_first]}
+        )
 
     def _report_bound(self, lower: Sequence[int]) -> None:
         for objective, bound in self._bounds(lower).items():
-            self.heard.reporter.bound(objective, bound)
+            self.listener.reporter.bound(objective, bound)
 
     def _outcome(
         self, status: Status, units: Units | None, bounds: dict[Objective, int | Fraction]
     ) -> Outcome:
-        """State the outcome, once it holds."""
-        first, reduced = self.first, self.first.reduced
+        """Return the outcome after its postconditions hold."""
+        prepared, reduced = self.prepared, self.prepared.reduced
         proof = Proof.SOLVER if status in {Status.OPTIMAL, Status.INFEASIBLE} else None
         if status is Status.OPTIMAL and reduced and reduced.settled:
             proof = Proof.CUTS
@@ -666,17 +695,17 @@ class _Solver:
         if units is None:
             return outcome
         began = time.perf_counter()
-        size = len(self.problem.network.objects)  # beyond are sets of units that rules ask for
+        size = len(self.problem.network.objects)  # larger ids are required sets of units
         outcome = outcome._replace(
             units=self.holds.tree(units),
-            costs=self.heard.costs(units),
-            left=0 if proof is Proof.CUTS else len(first.units),
+            costs=self.listener.costs(units),
+            left=0 if proof is Proof.CUTS else len(prepared.units),
             cases=reduced.cases if reduced else None,
             cuts=tuple(tuple(sorted(objects)) for objects in _cuts(reduced) if max(objects) < size),
         )
-        assert self.heard.best is not None
-        self.holds.outcome(outcome, None if self.program.replaced else self.heard.best[1], reduced)
-        first.require_kept(units)
+        assert self.listener.incumbent is not None
+        self.holds.outcome(outcome, None if self.program.replaced else self.listener.incumbent[1], reduced)
+        prepared.require_kept(units)
         self._spent("check", began)
         return outcome
 
@@ -685,9 +714,9 @@ class _Solver:
 
 
 def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
-    """Give the cuts of the best bound, those that were found before anything was left out, and those between.
+    """Return the cuts of the best bound, those found before any reduced-cost fixing, and those in between.
 
-    What was left out may cross many of the first; of the second, all units count.
+    Excluded actions may cross many of the former; among the latter all units count.
     """
     if reduced is None:
         return []
@@ -699,11 +728,11 @@ def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
 
 
 def _few_objects(cuts: Cuts | None) -> list[frozenset[int]]:
-    """Return the objects of cuts, of the first ones only where they have very many together."""
-    found, total = list[frozenset[int]](), 0
+    """Return the objects of cuts, up to ``_MAX_CUT_OBJECTS`` in all."""
+    object_sets, total = list[frozenset[int]](), 0
     for cut in cuts.cuts if cuts else ():
-        if total > _MOST_CUT_OBJECTS:
+        if total > _MAX_CUT_OBJECTS:
             break
-        found.append(cut.objects)
-        total += len(found[-1])
-    return found
+        object_sets.append(cut.objects)
+        total += len(object_sets[-1])
+    return object_sets

@@ -1,4 +1,4 @@
-"""Optimal plans where items are used up: whole counts of executions, an order for them, and the claim."""
+"""Optimal plans with consumable items: integer counts of executions, their order, and the outcome."""
 
 import math
 import time
@@ -41,15 +41,14 @@ from foon_asp.rules.limit import Limit
 Plan = tuple[int, ...]
 """Units by id in the order of execution, with repeats."""
 
-_LARGEST = 10**12  # a cost that is not rounded
-_FINE = 10**6  # steps of the greatest cost, where costs are rounded
-# Constraints of ours about what is available before something else, or that count units and not executions,
-# and predicates of the first kind.
+_MAX_EXACT_COST = 10**12  # largest cost that is counted unrounded
+_COST_STEPS = 10**6  # steps of the greatest cost, where costs are rounded
+# Ready-made constraints about order, or that count units and not executions, and predicates about order.
 _NOT_BUILT = ("before", "require_intermediate")
 _NOT_READ = frozenset({"available", "executes", "taken", "makes"})
-_MANY = 10  # counts without an order, after which clingo looks at all that are left
-_MOST_AT_ONCE = 500  # executions that it can look at
-_MOST_COPIES = 4  # executions of a unit beyond its count, up to which a first plan is looked for
+_MAX_UNORDERED = 10  # counts without an order, after which clingo searches all remaining ones at once
+_MAX_EXECUTIONS = 500  # executions in one such search
+_MAX_EXTRA_COPIES = 4  # executions of a unit beyond its count in the search for a first plan
 
 
 def solve_used_up(
@@ -60,7 +59,7 @@ def solve_used_up(
 ) -> Outcome:
     """Find the best plan under a lexicographic list of objectives, and prove it.
 
-    Raises :class:`UserError` for what is not built for items that are used up, by name.
+    Raises :class:`UserError` naming a feature that is not built for items that are used up.
     """
     solver = _solver(problem, tuple(objectives), settings or Settings(), reporter or Reporter())
     outcome = solver.solve()
@@ -73,17 +72,17 @@ def _solver(
     problem: Problem, objectives: tuple[Objective, ...], settings: Settings, reporter: Reporter
 ) -> "_Solver":
     require_built_for_plans(settings)
-    asked = levels(objectives)
-    problem.require_known_for(asked)
-    return _Solver(problem, objectives, asked, settings, reporter)
+    by_levels = levels(objectives)
+    problem.require_known_for(by_levels)
+    return _Solver(problem, objectives, by_levels, settings, reporter)
 
 
 def most_executions(
     problem: Problem, objectives: Sequence[Objective], settings: Settings
 ) -> dict[int, tuple[int, int]]:
-    """Return how often each unit that can matter is executed, at least and at most, by any best plan.
+    """Return the least and greatest number of executions in any best plan, by unit that can matter.
 
-    Where it is proved that there is no plan, each of all units is executed once at most. Raises
+    Where no plan exists, every unit has at most one execution. Raises
     :class:`UserError` where neither is proved.
     """
     solver = _solver(problem, tuple(objectives), settings, Reporter())
@@ -99,9 +98,9 @@ def most_executions(
 
 
 def executions_as_good(outcome: Outcome, settings: Settings) -> dict[int, int] | None:
-    """Return how often each unit is executed at most by plans that are as good as one by its first objective.
+    """Return the most executions of each unit in plans as good as an outcome by its first objective.
 
-    ``None`` where nothing says so.
+    ``None`` where some unit has no bound.
     """
     solver = _solver(outcome.problem, outcome.objectives, settings, Reporter())
     if outcome.costs is None or not solver._apply_rules():
@@ -109,8 +108,8 @@ def executions_as_good(outcome: Outcome, settings: Settings) -> dict[int, int] |
     units = solver._cut() or []
     counting = _Counting(solver, units)
     caps = counting.bound.caps(counting.level(solver.levels[0], outcome.costs)) if units else []
-    found = {unit: cap for unit, cap in zip(units, caps, strict=True) if cap is not None}
-    return found if len(found) == len(units) else None
+    caps_by_unit = {unit: cap for unit, cap in zip(units, caps, strict=True) if cap is not None}
+    return caps_by_unit if len(caps_by_unit) == len(units) else None
 
 
 def best_plans(
@@ -118,64 +117,70 @@ def best_plans(
     objectives: Sequence[Objective],
     settings: Settings,
     reporter: Reporter,
-    most: int,
+    max_plans: int,
 ) -> tuple[list[tuple[Plan, Costs]], bool, bool]:
-    """Return plans that are best, none of which executes each unit as often as another does; at most so many.
+    """Return at most ``max_plans`` best plans with different counts of executions, each with its costs.
 
-    Then whether the first is proved the best, and whether there are no others.
+    Also returns whether the first is proved optimal, and whether there are no others.
     """
     solver = _solver(problem, tuple(objectives), settings, reporter)
     outcome = solver.solve()
     if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:
-        known = [] if outcome.units is None or outcome.costs is None else [(outcome.units, outcome.costs)]
-        return known, False, outcome.status is Status.INFEASIBLE
+        incumbents = (
+            [] if outcome.units is None or outcome.costs is None else [(outcome.units, outcome.costs)]
+        )
+        return incumbents, False, outcome.status is Status.INFEASIBLE
     units, best = solver._cut() or [], outcome.costs
     counting = _Counting(solver, units)
     counting.bound.derivation = [a for a, unit in enumerate(units) if unit in outcome.units]
-    found = {frozenset(Counter(outcome.units).items()): outcome.units}
+    plans_by_counts = {frozenset(Counter(outcome.units).items()): outcome.units}
 
     def ask(counts: Counts) -> None:
         plan = counting.order(counts)
         if plan is not None and problem.costs(plan).key(solver.levels) == best.key(solver.levels):
-            found.setdefault(frozenset(Counter(plan).items()), plan)
-            if len(found) > most:
+            plans_by_counts.setdefault(frozenset(Counter(plan).items()), plan)
+            if len(plans_by_counts) > max_plans:
                 raise Stopped
 
     complete = True
     try:
         if units:
-            counting.bound.every([counting.level(each, best) for each in solver.levels], ask)
+            counting.bound.every([counting.level(objective, best) for objective in solver.levels], ask)
     except (Stopped, KeyboardInterrupt) as stop:
         complete = False
         if isinstance(stop, KeyboardInterrupt):
             solver.deadline.interrupt()
-    return [(plan, problem.costs(plan)) for plan in list(found.values())[:most]], True, complete
+    return (
+        [(plan, problem.costs(plan)) for plan in list(plans_by_counts.values())[:max_plans]],
+        True,
+        complete,
+    )
 
 
 def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
-    """Return units, repeats included, in an order in which a plan runs; ``None`` where none does."""
+    """Return units, repeats included, in an executable order; ``None`` where there is none."""
     solver = _solver(problem, (Objective.UNITS,), Settings(), Reporter())
     counted = Counter(units)
     return _Counting(solver, list(counted)).order(dict(enumerate(counted.values())))
 
 
 def require_built_for_plans(settings: Settings) -> None:
-    """Raise :class:`UserError` for what is not built for items that are used up, by name."""
-    for each in settings.constraints:
-        name = Path(each.name.partition(":")[0]).stem
+    """Raise :class:`UserError` naming a feature that is not built for items that are used up."""
+    for constraint in settings.constraints:
+        name = Path(constraint.name.partition(":")[0]).stem
         if name in _NOT_BUILT:
             raise UserError(f"the constraint {name} is not built for items that are used up")
-    for given, what in (
+    for setting, feature in (
         (settings.encodings, "other encodings (--encodings)"),
         (settings.relaxed, "soft constraints"),
         (settings.bounded and settings.bounded.rules, "bounds on objectives by rules"),
     ):
-        if given:
-            raise UserError(f"{what} are not built for items that are used up")
+        if setting:
+            raise UserError(f"{feature} are not built for items that are used up")
 
 
 def require_rules_of_plans(program: Program) -> None:
-    """Raise :class:`UserError` for rules of the user's that look at more than a plan says."""
+    """Raise :class:`UserError` for user rules that read more than the executions of a plan."""
     for name, arity in sorted(program.looked_at):
         if name.lstrip("_") in _NOT_READ:
             raise UserError(f"rules over {name}/{arity} are not built for items that are used up")
@@ -189,11 +194,14 @@ def require_rules_of_plans(program: Program) -> None:
 
 
 def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
-    """Return what some units do with what may run out, by their place; that of other units is left out."""
-    asked = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
+    """Return the preconditions, consumption and add effects of units, by their index in ``units``.
+
+    Object nodes that only other units need are excluded.
+    """
+    needed = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
 
     def finite(ids: Sequence[int]) -> list[int]:
-        return [o for o in ids if o not in problem.endless and o in asked]
+        return [o for o in ids if o not in problem.endless and o in needed]
 
     flows = [problem.flows[unit] for unit in units]
     return Flows(
@@ -201,43 +209,43 @@ def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
         [finite(flow.uses) for flow in flows],
         [finite(flow.adds) for flow in flows],
         [[o for o in flow.asks if o in problem.endless] for flow in flows],
-        {o: problem.stock_of(o) or 0 for o in asked & problem.kitchen - problem.endless},
+        {o: problem.stock_of(o) or 0 for o in needed & problem.kitchen - problem.endless},
         [goal for goal in problem.goals if goal not in problem.endless],
     )
 
 
 class _ManyError(Exception):
-    """Many counts have no order: clingo had better look at all of them at once."""
+    """Too many counts have no order: clingo has to search all of them at once."""
 
 
 class _Solver:
-    """One question that is being solved."""
+    """Solver of one question."""
 
     def __init__(
         self,
         problem: Problem,
         objectives: tuple[Objective, ...],
-        asked: tuple[Objective, ...],
+        by_levels: tuple[Objective, ...],
         settings: Settings,
         reporter: Reporter,
     ) -> None:
-        self.problem, self.objectives, self.levels = problem, objectives, asked
+        self.problem, self.objectives, self.levels = problem, objectives, by_levels
         self.settings, self.deadline, self.reporter = settings, settings.begun, reporter
         self.program = assemble(settings, reporter.warning, used_up=True, problem=problem)
-        self.program.require_facts(problem, asked)
+        self.program.require_facts(problem, by_levels)
         require_rules_of_plans(self.program)
         self.removed: Callable[[int], bool] = lambda _: False
         self.required: tuple[frozenset[int], ...] = ()
         self.limits: Sequence[Limit] = ()
         bounded = settings.bounded or Bounded()
         self.below = [(objective, cost) for costs in bounded.below for objective, cost in costs.items()]
-        self.beside = bounded.beside
-        if not {objective for objective, _ in self.below} <= set(asked):
+        self.incomparable = bounded.incomparable
+        if not {objective for objective, _ in self.below} <= set(by_levels):
             raise BugError("a bound is on an objective that is not asked for")
-        self.tree: frozenset[int] = frozenset()  # some that makes the goals if nothing is used up
+        self.tree: frozenset[int] = frozenset()  # some tree that makes the goals if nothing is used up
         self.seconds: dict[str, float] = {}
         self.best: tuple[Plan, Costs] | None = None
-        self.searched = False  # by clingo, so that there are statistics
+        self.searched = False  # whether clingo ran, so that there are statistics
         self.bounds: dict[Objective, int | Fraction] = {}
 
     def solve(self) -> Outcome:
@@ -259,49 +267,49 @@ class _Solver:
         return self._outcome(Status.INFEASIBLE, Proof.CUTS) if units is None else self._search(units)
 
     def _apply_rules(self) -> bool:
-        """Take what rules say of single units, and of sets of which one is needed; whether they allow a plan.
+        """Apply rules that remove units, require sets or limit sums; return whether they allow a plan.
 
-        Of rules about how often a unit is executed, those that limit sums are taken along, too; the others
-        are left to the search, since what is said of them is meant for items that last, where that is once.
+        Other rules about executions are left to the search, since their analysis assumes items that last,
+        where every unit is executed once.
         """
         rules = self.program.understood
         if rules is None:
             return True
         self.limits = rules.limits(self.problem)
-        found = rules.varying({TIMES}).applied(self.problem)
-        if isinstance(found, Restriction):
-            self.removed, self.required = found.removed, found.required
-        return isinstance(found, Restriction)
+        restriction = rules.varying({TIMES}).applied(self.problem)
+        if isinstance(restriction, Restriction):
+            self.removed, self.required = restriction.removed, restriction.required
+        return isinstance(restriction, Restriction)
 
     @property
-    def _keeps_spare(self) -> bool:
-        """Whether a rule may ask for units that lead to no goal."""
+    def _keeps_redundant(self) -> bool:
+        """Whether a rule may require redundant units, which lead to no goal."""
         rules = self.program.understood
         return rules is not None and not (rules.shrinking and rules.only_limits)
 
     def _cut(self) -> list[int] | None:
-        """Return the units that can matter, ascending; ``None`` where no goal is reached even if items last.
+        """Return the units that can matter, ascending; ``None`` if a goal is unreachable even if items last.
 
-        They make what a goal or another of them asks for and what does not run out; all that can be executed,
-        where rules may ask for others.
+        These are the achievers of goals and of preconditions of each other; with rules that may require
+        redundant units, all units that can execute.
         """
         problem = self.problem
         stocked = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
-        left = Restriction(self.removed, self.required)
-        lasting = replace(problem, kitchen=stocked, restriction=left)
+        restriction = Restriction(self.removed, self.required)
+        lasting = replace(problem, kitchen=stocked, restriction=restriction)
         reached = reach(lasting)
         if not all(reached.available[goal] for goal in problem.goals):
             return None
-        if not all(each & set(reached.units) for each in self.required):
+        if not all(required_set & set(reached.units) for required_set in self.required):
             return None
         self.tree = frozenset(first_tree(lasting, reached) or ())
-        if self._keeps_spare:
+        if self._keeps_redundant:
             return sorted(reached.units)
         return sorted(relevant_to_plans(problem, reached))
 
     def _search(self, units: list[int]) -> Outcome:
         counting = _Counting(self, units)
-        if not units:  # every goal is there, and a plan without steps is the only one, or keeps to most rules
+        if not units:  # every goal is available: only the empty plan is irredundant
             if not self.program.own and counting.order({}) is None:
                 return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
             return self._outcome(Status.OPTIMAL if self._take(()) else Status.INFEASIBLE, Proof.CUTS)
@@ -319,7 +327,7 @@ class _Solver:
         if plan is not None and self._take(plan):
             counting.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
             counting = self._below_cutoff(counting, plan)
-        elif self._none_lasts():
+        elif self._no_lasting_tree():
             return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
         elif counting.none_is_left():
             return self._outcome(Status.INFEASIBLE, Proof.COUNTS)
@@ -336,7 +344,7 @@ class _Solver:
                 self._spent("bound", began)
 
     def _below_cutoff(self, counting: "_Counting", plan: Plan) -> "_Counting":
-        """Leave out units that alone cost more than a plan, where costs are too large to count unrounded."""
+        """Exclude units that alone cost more than a plan, where costs are too large to count unrounded."""
         objective = self.levels[0]
         if multiplies(objective) or counting.measure(objective).exact is None:
             return counting
@@ -348,18 +356,18 @@ class _Solver:
         fewer.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
         return fewer
 
-    def _none_lasts(self) -> bool:
-        """Whether it is proved that rules allow no tree even if items last: a plan executes a tree."""
+    def _no_lasting_tree(self) -> bool:
+        """Whether it is proved that rules allow no tree even if items last, and so no plan."""
         rules, problem = self.program.understood, self.problem
         if rules is None or not rules.only_limits:
             return False
-        there = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
-        lasting = replace(problem, kitchen=there, items=None)
+        kitchen = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
+        lasting = replace(problem, kitchen=kitchen, items=None)
         settings = self.settings._replace(bounded=None)
         return solve_lasting(lasting, (Objective.UNITS,), settings).status is Status.INFEASIBLE
 
     def _take(self, plan: Plan) -> bool:
-        """Keep a plan if it is the best so far, and what is asked for."""
+        """Make a plan the incumbent if it is allowed and better; return whether it is."""
         costs = self.problem.costs(plan)
         if not self._allows(plan):
             return False
@@ -370,7 +378,7 @@ class _Solver:
         return True
 
     def _allows(self, plan: Plan) -> bool:
-        """Whether a plan keeps to limits and bounds, and is another than those that are known; exactly."""
+        """Whether a plan keeps exactly to limits and bounds, and contains none of the incomparable plans."""
         counts, costs = Counter(plan), self.problem.costs(plan)
         for limit in self.limits:
             total = sum(
@@ -379,7 +387,7 @@ class _Solver:
             if (total < limit.bound) if limit.at_least else (total > limit.bound):
                 return False
         better = all(costs.key([o]) < (-cost if multiplies(o) else cost,) for o, cost in self.below)
-        return better and not any(counts >= Counter(known) for known in self.beside)
+        return better and not any(counts >= Counter(other) for other in self.incomparable)
 
     def _outcome(self, status: Status, proof: Proof | None) -> Outcome:
         plan, costs = self.best or (None, None)
@@ -400,50 +408,50 @@ class _Solver:
         )
 
     def _require_runs(self, plan: Plan, costs: Costs) -> None:
-        """Require that a plan runs, and that it costs what is said: replayed without any of the above."""
+        """Require that a plan executes and has the stated costs, by an independent replay."""
         replay = replay_for(self.problem, self.problem.tree(plan))
         if replay.shortage is not None:
             raise BugError(f"the plan {list(plan)} lacks {replay.shortage.node}")
         if self.problem.costs(plan) != costs:
             raise BugError(f"the plan {list(plan)} does not cost {costs}")
         objects = self.problem.network.objects
-        taken = {objects[o]: count for o, count in self.problem.copies_taken(plan).items()}
-        if taken != replay.stock:
-            raise BugError(f"the plan {list(plan)} takes {replay.stock} of the stock and not {taken}")
+        copies = {objects[o]: count for o, count in self.problem.copies_taken(plan).items()}
+        if copies != replay.stock:
+            raise BugError(f"the plan {list(plan)} takes {replay.stock} of the stock and not {copies}")
 
     def _spent(self, phase: str, began: float) -> None:
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began
 
 
 class _Counting:
-    """Counts of the units of a question, by place, and the orders that they can be executed in."""
+    """Counts of executions of the units of a question, by index, and the search for their order."""
 
     def __init__(self, solver: _Solver, units: list[int]) -> None:
         self._solver, self._problem, self.units = solver, solver.problem, units
         self._measures: dict[Objective, Measure] = {}
-        self._step = Fraction(1)  # of what is counted by the first objective
-        self._asked = -math.inf  # orders that were asked for in vain, where they are counted
+        self._step = Fraction(1)  # step of the counted costs of the first objective
+        self._orders_sought = -math.inf  # searches for an order since the proof began
         problem = solver.problem
-        places = {unit: a for a, unit in enumerate(units)}
+        positions = {unit: a for a, unit in enumerate(units)}
         self.bound = CountBound(
             flows_of(problem, units),
-            [[a for a, unit in enumerate(units) if unit in each] for each in solver.required],
+            [[a for a, unit in enumerate(units) if unit in required_set] for required_set in solver.required],
             [
-                Limit({a: each.weights[u] for a, u in enumerate(units) if each.weights.get(u)}, *each[1:])
-                for each in solver.limits
+                Limit({a: limit.weights[u] for a, u in enumerate(units) if limit.weights.get(u)}, *limit[1:])
+                for limit in solver.limits
             ],
             [a for a, unit in enumerate(units) if unit in solver.tree],
             [self._below(objective, cost) for objective, cost in solver.below],
             [
-                {places[u]: n for u, n in each.items()}
-                for each in solver.beside
-                if places.keys() >= each.keys()
+                {positions[u]: n for u, n in plan.items()}
+                for plan in solver.incomparable
+                if positions.keys() >= plan.keys()
             ],
             expired=lambda: solver.deadline.passed,
         )
 
     def measure(self, objective: Objective) -> Measure:
-        """Return what each unit costs by an objective, once for each objective."""
+        """Return the measure of an objective over the units, cached."""
         if objective not in self._measures:
             self._measures[objective] = self._measured(objective)
         return self._measures[objective]
@@ -480,18 +488,18 @@ class _Counting:
             ) from None
 
     def _scale(self, objective: Objective) -> Fraction:
-        """Return into how many steps 1 is divided: as many as needed, or as are of use."""
+        """Return the factor by which costs are scaled: exact where costs stay small, else rounding."""
         figures = self._figures(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
-        most = max(figures, default=Fraction(0))
-        return Fraction(common) if common * most <= _LARGEST else _FINE / most
+        greatest = max(figures, default=Fraction(0))
+        return Fraction(common) if common * greatest <= _MAX_EXACT_COST else _COST_STEPS / greatest
 
     def level(self, objective: Objective, costs: Costs) -> Level:
-        """Return a level of the question with what a plan costs."""
+        """Return the level of an objective with the cost of a plan."""
         return self._level(objective, Fraction(costs.measure(objective)))
 
     def _below(self, objective: Objective, cost: int | Fraction) -> Level:
-        """Return a level of plans that cost less."""
+        """Return the level of plans that cost less."""
         level = self._level(objective, Fraction(cost))
         if level.measure.exact is not None:
             return level._replace(strict=True)
@@ -507,7 +515,7 @@ class _Counting:
         return Level(measure, scale * cost, int(scale * cost))
 
     def prove(self) -> None:
-        """Prove that no plan is better than the best so far; raises :class:`BetterError` if one is."""
+        """Prove that no plan is better than the incumbent; raises :class:`BetterError` if one is."""
         assert self._solver.best is not None
         plan, costs = self._solver.best
         levels: list[Level] = []
@@ -520,42 +528,44 @@ class _Counting:
             if not levels:
                 self._step = split[0]
             levels += split[1]
-        self._asked = 0
+        self._orders_sought = 0
         try:
             self.bound.prove(levels, self._is_better)
         except _ManyError:
             if not self._best_within_caps(levels[0]):
-                self._asked = -math.inf
+                self._orders_sought = -math.inf
                 self.bound.prove(levels, self._is_better)
 
     def _split(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
         """Split costs too large to count unrounded into two levels: large ones in steps, and all others.
 
-        Plans that differ in the large costs differ by a step at least. Where what a plan in hand costs by
-        all others is less, no plan is better that costs a step more. Returns the step, too; ``None`` where
-        costs need no such levels, or have none.
+        Plans that differ in the large costs differ by a step at least. Where the small costs of the plan sum
+        up to less, no plan that costs a step more is better. Returns the step and the levels; ``None`` where
+        costs need no such levels, or cannot be split.
         """
         if multiplies(objective) or objective.row.item or self.measure(objective).exact is None:
             return None
         figures = self._figures(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
         costs = [int(common * figure) for figure in figures]
-        step = math.gcd(*(cost for cost in costs if cost > _LARGEST))
+        step = math.gcd(*(cost for cost in costs if cost > _MAX_EXACT_COST))
         counts = Counter(plan)
         executed = [counts[unit] for unit in self.units]
         levels = []
         for large in (True, False):
-            of_level = [(cost // step if large else cost) * ((cost > _LARGEST) is large) for cost in costs]
+            of_level = [
+                (cost // step if large else cost) * ((cost > _MAX_EXACT_COST) is large) for cost in costs
+            ]
             total = sum(cost * n for cost, n in zip(of_level, executed, strict=True))
-            if max(of_level) > _LARGEST or (not large and total >= step):
+            if max(of_level) > _MAX_EXACT_COST or (not large and total >= step):
                 return None
             levels.append(Level(Measure(of_level), Fraction(total), total))
         return Fraction(step, common), levels
 
     def none_is_left(self) -> bool:
-        """Prove that no counts are those of a plan, where there are not too many; whether that is so.
+        """Prove that no counts belong to a plan, where there are not too many; return whether it is proved.
 
-        If a plan is found on the way, it is kept. Raises :class:`Stopped` where nothing is proved.
+        A plan found on the way becomes the incumbent. Raises :class:`Stopped` where nothing is proved.
         """
         try:
             self.bound.none_is_left(self.measure(Objective.UNITS), self._is_better)
@@ -564,9 +574,9 @@ class _Counting:
         return True
 
     def proved(self) -> dict[Objective, int | Fraction]:
-        """Return what the first objective costs at least, where something is proved and no rates multiply.
+        """Return the proved lower bound of the first objective; empty where there is none or rates multiply.
 
-        Rounded costs are rounded down, so what they come to at least is a bound, too.
+        Costs are rounded down, so a bound on rounded costs is valid.
         """
         objective = self._solver.levels[0]
         if self.bound.proved <= 0 or multiplies(objective):
@@ -575,14 +585,14 @@ class _Counting:
         return {objective: int(least) if objective.row.whole else least}
 
     def _best_within_caps(self, level: Level) -> bool:
-        """Let clingo prove that no plan is better, if all that is better is known to be within caps.
+        """Prove with clingo that no plan is better, where all better plans have executions within caps.
 
-        Whether that is proved. Raises :class:`BetterError` if one is.
+        Returns whether it is proved. Raises :class:`BetterError` if a plan is better.
         """
         caps = [cap for cap in self.bound.caps(level) if cap is not None]
-        if len(caps) < len(self.units) or sum(caps) > _MOST_AT_ONCE:
+        if len(caps) < len(self.units) or sum(caps) > _MAX_EXECUTIONS:
             return False
-        if not all(each.row.whole for each in self._solver.levels):
+        if not all(objective.row.whole for objective in self._solver.levels):
             return False
         ended = self._ended({a: (0, cap) for a, cap in enumerate(caps)}, True)
         if ended.units is not None and self._solver._take(self._sequence(ended)):
@@ -590,20 +600,20 @@ class _Counting:
         return ended.exhausted and ended.units is not None
 
     def _is_better(self, counts: Counts) -> bool:
-        self._asked += 1
-        if self._asked > _MANY:
+        self._orders_sought += 1
+        if self._orders_sought > _MAX_UNORDERED:
             raise _ManyError
         plan = self.order(counts)
         return plan is not None and self._solver._take(plan)
 
     def order(self, counts: Counts) -> Plan | None:
-        """Ask clingo for an order in which units can be executed so often; ``None`` where there is none."""
+        """Return an executable order of counts, found by clingo; ``None`` where there is none."""
         return self._plan({a: (n, n) for a, n in counts.items()})
 
     def any_order(self, counts: Counts) -> Plan | None:
-        """Ask clingo for a good plan that executes units not much more often than counts say."""
+        """Return a good plan with few executions beyond counts, found by clingo; ``None`` without one."""
         extra = 1
-        while extra <= _MOST_COPIES:
+        while extra <= _MAX_EXTRA_COPIES:
             plan = self._plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self.units))}, True)
             if plan is not None:
                 return plan
@@ -628,18 +638,20 @@ class _Counting:
         solver, problem = self._solver, self._problem
         units = [self.units[a] for a in times]
         number = problem.network.unit_number
-        # within fixed counts only the copies that are taken of a stock are left to choose
-        wanted = solver.levels if best else [each for each in solver.levels if each is Objective.KITCHEN]
+        # with fixed counts only the copies taken of a stock are free
+        wanted = solver.levels if best else [level for level in solver.levels if level is Objective.KITCHEN]
         looked_at = None if solver.program.own else solver.program.looked_at
         scales = Scales(problem, units, wanted) if best or looked_at is not None else None
         text = facts.write_facts(problem, units, scales, looked_at)
-        text += facts.write_times({number(self.units[a]): each for a, each in times.items()})
+        text += facts.write_times({number(self.units[a]): bounds for a, bounds in times.items()})
         text += facts.write_objectives(wanted)
         files = solver.program.files
-        if best and scales is not None and (solver.below or solver.beside):
-            # those by fractions are held by counts alone
+        if best and scales is not None and (solver.below or solver.incomparable):
+            # bounds by fractions are enforced by counts alone
             text += facts.write_below([{o: cost} for o, cost in solver.below if o.row.whole], scales)
-            text += facts.write_beside([{number(u): n for u, n in each.items()} for each in solver.beside])
+            text += facts.write_beside(
+                [{number(u): n for u, n in plan.items()} for plan in solver.incomparable]
+            )
             files = (*files, question_encoding("bounded_plans.lp"))
         ended = search.run(
             files,
@@ -659,13 +671,13 @@ class _Counting:
 
 
 def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
-    """Number figures by their size, equal ones alike; -1 for the one that changes nothing."""
+    """Return the rank of each figure among the different figures, -1 for the neutral one."""
     numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
     return [-1 if figure == idle else numbers[figure] for figure in figures]
 
 
 def _sequence(problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]) -> Plan:
-    """Put executions into an order, the earliest units first where there is a choice."""
+    """Return executions in topological order, the smallest units first among those that are ready."""
     before: dict[tuple[int, int], set[tuple[int, int]]] = {
         (unit, turn): set() for unit, count in times for turn in range(1, count + 1)
     }
@@ -677,8 +689,8 @@ def _sequence(problem: Problem, times: frozenset[tuple[int, ...]], after: frozen
     while sorter.is_active():
         ready = sorted(sorter.get_ready())
         for unit, _ in ready:
-            here = problem.network.unit_of_number(unit)
-            assert here is not None
-            plan.append(here)
+            unit_id = problem.network.unit_of_number(unit)
+            assert unit_id is not None
+            plan.append(unit_id)
         sorter.done(*ready)
     return tuple(plan)

@@ -7,7 +7,7 @@ import msgspec
 from msgspec.structs import asdict, replace
 
 from foon_asp.asp import Outcome, Settings, solve
-from foon_asp.asp.assembly import asks_of_all
+from foon_asp.asp.assembly import need_whole_network
 from foon_asp.batch.asked import Asked, Asker
 from foon_asp.comparison.rows_file import RowForm
 from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
@@ -73,7 +73,7 @@ def answer_row(
         outcome = None if near is None else solve_nearby(near, objectives, settings)
         if outcome is None:
             with deadline.watched("reading", late=True):
-                problem = problem.whole if asks_of_all(problem, settings) else problem
+                problem = problem.whole if need_whole_network(problem, settings) else problem
                 assert problem.goals  # what they can need is read when it is looked at
             outcome = solve(problem, objectives, settings)
         row = _answered(asked, outcome)

@@ -39,7 +39,7 @@ class OwnLimits:
         numbered, relaxed = relax(
             settings.constraints, settings.constants, soft=True, deadline=settings.begun
         )
-        shrinking = {rule.source for rule in rules.rest if rule.kind in {Kind.FACT, Kind.SHRINKING}}
+        shrinking = {rule.source for rule in rules.unsettled if rule.kind in {Kind.FACT, Kind.SHRINKING}}
         theirs = {c.number: 1 for c in numbered if c.constraint in own and c.source in shrinking}
         relaxed = relaxed._replace(rules=relaxed.rules + write_soft(theirs))
         self._settings = settings._replace(constraints=(), relaxed=relaxed)

@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
-from foon_asp.asp.assembly import hold_for_parts, leave_a_rest, program_of
+from foon_asp.asp.assembly import hold_for_parts, leave_unsettled, program_of
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.deadline import Deadline
@@ -49,7 +49,7 @@ def solve_nearby(
     units_of_rules = set[int]()  # units, by number, on which the rules depend
     smallest: list[int] | None = None  # with the rules, by number; ``None`` before the search
     unconstrained: Outcome | None = None
-    if leave_a_rest(settings):  # the optimum without rules is needed anyway, and read quickly
+    if leave_unsettled(settings):  # the optimum without rules is needed anyway, and read quickly
         unconstrained = solve_nearby(nearby, objectives, without_rules, _OnlyWarnings(reporter))
         if unconstrained is None:
             return None
@@ -130,7 +130,7 @@ def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: se
     use units near this tree. Empty where there is no tree, or at a limit.
     """
     while True:
-        outcome = solve(nearby.relaxed, (Objective.UNITS,), settings, known=units_of_rules)
+        outcome = solve(nearby.relaxed, (Objective.UNITS,), settings, mattered=units_of_rules)
         if outcome.status is not Status.OPTIMAL or outcome.units is None:
             return []
         lacking = nearby.lacking(outcome.units)

@@ -1,1 +1,1 @@
-"""What clingo is given: facts and numbers of a problem, encodings and their checks, and one run of them."""
+"""Input of clingo: facts and numbers of a problem, encodings and their checks, and one run of them."""

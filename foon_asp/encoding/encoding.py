@@ -1,4 +1,4 @@
-"""Encoding files, built-in or the user's, and checks of them before solving."""
+"""Encodings, built-in or of the user: their parser, and checks before solving."""
 
 import difflib
 import re
@@ -24,13 +24,15 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 Signature = tuple[str, int]
 
-# Every name that begins so is ours, but for the public ones below: see encodings/README.md.
+# The prefix of reserved names: see encodings/README.md.
 _PREFIX = "_"
 PUBLIC = frozenset((*FACT_PREDICATES.items(), ("use", 1), ("times", 2), ("available", 1)))
 EXTENDED = frozenset(
     (("allergen", 1), ("allowed", 1), ("heats", 1))
-)  # to which files of the user's add facts
-_LOOKED_AT = frozenset((("_by_person", 1),))  # by constraints, under a question that has it
+)  # predicates that user files add facts to
+_LOOKED_AT = frozenset(
+    (("_by_person", 1),)
+)  # reserved predicates that constraints may read, in a question that has them
 _TERMS = frozenset(objective.row.term for objective in Objective)
 PUBLIC_NAMES = frozenset(name for name, _ in (*PUBLIC, *EXTENDED)) | _TERMS
 
@@ -51,31 +53,30 @@ _REFUSED = {
     ASTType.TheoryDefinition: f"#theory, expected rules: {_THEORY}",
     ASTType.TheoryAtom: f"a theory atom, expected rules: {_THEORY}",
 }
-# What encodings that replace ours may not hold either, since it would be lost there too.
+# Statements that replaced encodings may not have either, since clingo would ignore them.
 _LOST = (ASTType.Program, ASTType.External, ASTType.TheoryDefinition, ASTType.TheoryAtom)
 _CODES = {ASTType.Minimize: "minimize", ASTType.Program: "program-part"}
 
-# A message of clingo: file, line and column of what it is about, its kind, and its first line.
+# A message of clingo: file, line and column, its kind, and its first line.
 _MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)")
 _NEGATIVE = re.compile(r"-\d+(,|$)")  # the weight of an element
-_SAME = {ComparisonOperator.Equal, ComparisonOperator.NotEqual}
-_OF_ANYTHING = {AggregateFunction.Min, AggregateFunction.Max}  # and not of numbers alone
+_EQUALITIES = {ComparisonOperator.Equal, ComparisonOperator.NotEqual}
+_NON_NUMERIC = {AggregateFunction.Min, AggregateFunction.Max}  # aggregates over terms of any type
 _EXAMPLE = ':- use(U), motion(U,"fry").'
 _WORD = re.compile(r"[a-z][A-Za-z0-9_]*")
 
 
 @dataclass
 class Encoding:
-    """A file, or rules that are in none, parsed: the predicates they define and use, and their constants.
+    """A parsed file or text of rules: the predicates that it defines and uses, and its constants.
 
     ``defined`` holds the signatures of atoms in heads, ``used`` those in bodies and ``declared`` those under
-    ``#defined``, with the place where each is met first; the name of a negated atom (``-p``) begins with a
+    ``#defined``, with the place of each first occurrence; the name of a negated atom (``-p``) begins with a
     minus. ``names`` are those of constants and functions in terms. ``constants`` maps the names of ``#const``
     statements to their values as written, ``constant_sources`` to their places. ``special`` are statements
-    and atoms that are no plain rules, by what they are. ``assigns`` says that a variable may get its value
-    from an aggregate (``N = #count {...}``). ``text`` is every statement as clingo understands it, and
-    ``statements`` are these, in order. Places in ``rules`` that are in no file have their name in that of the
-    file.
+    and atoms other than plain rules, by type. ``assigns`` says that a variable may get its value
+    from an aggregate (``N = #count {...}``). ``text`` is every statement as clingo prints it, and
+    ``statements`` are these, in order. Places in rules without a file have the name of the rules as file.
     """
 
     rules: Loaded
@@ -91,8 +92,10 @@ class Encoding:
     statements: list[AST] = field(default_factory=list)
 
     def first_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
-        """Return predicates among some, with their first arguments where these are names."""
-        symbols = (node.symbol for each in self.statements for node in nodes(each) if _is_atom(node))
+        """Return the atoms over signatures, as predicate and first argument, empty if that is no name."""
+        symbols = (
+            node.symbol for statement in self.statements for node in nodes(statement) if _is_atom(node)
+        )
         for symbol in symbols:
             if (symbol.name, len(symbol.arguments)) in signatures:
                 first = symbol.arguments[0]
@@ -102,18 +105,18 @@ class Encoding:
     @property
     def definitions(self) -> list[AST]:
         """The ``#const`` statements."""
-        return [each for each in self.statements if each.ast_type == ASTType.Definition]
+        return [statement for statement in self.statements if statement.ast_type == ASTType.Definition]
 
     def saying(self, constant: str) -> set[Signature]:
-        """Return the predicates of which rules say that they hold of a constant."""
-        heads = (each.head for each in self.statements if each.ast_type == ASTType.Rule)
+        """Return the predicates that rules derive with a constant as argument."""
+        heads = (rule.head for rule in self.statements if rule.ast_type == ASTType.Rule)
         atoms = (
             head.atom.symbol for head in heads if head.ast_type == ASTType.Literal and _is_atom(head.atom)
         )
         return {(atom.name, len(atom.arguments)) for atom in atoms if constant in map(str, atom.arguments)}
 
     def remark(self, severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
-        """Make a diagnostic about a place in these rules, with its line."""
+        """Return a diagnostic about a place in these rules, with its line."""
         return located(severity, code, message, source, [self.rules])
 
 
@@ -124,23 +127,23 @@ def _is_atom(node: AST) -> bool:
 def read_encoding(rules: Loaded) -> Encoding:
     """Parse an encoding, the files it includes with it; raises :class:`InputError` for a syntax error.
 
-    Raises what :func:`foon_asp.encoding.encoding_file.included_files` and ``check_text`` there do, too.
+    Raises as :func:`foon_asp.encoding.encoding_file.included_files` and ``check_text`` there do, too.
     """
     encoding = Encoding(rules)
     collector = _Collector(encoding)
-    met: set[str] = set()
-    said: set[ASTType] = set()
+    included: set[str] = set()
+    kinds: set[ASTType] = set()
 
     def statement(statement: AST) -> None:
-        met.add(statement.location.begin.filename)
-        said.add(statement.ast_type)
+        included.add(statement.location.begin.filename)
+        kinds.add(statement.ast_type)
         collector.statement(statement)
 
     if isinstance(rules, Stated):
         check_text(rules.text, rules.place)
-        known: set[Path] = set()
+        checked: set[Path] = set()
     elif rules.is_file():
-        known = {file.resolve() for file in included_files(rules)}
+        checked = {file.resolve() for file in included_files(rules)}
     else:
         raise UserError(f"{rules}: no such file; expected an encoding (.lp)")
     messages: list[str] = []
@@ -149,17 +152,17 @@ def read_encoding(rules: Loaded) -> Encoding:
     except RuntimeError as error:
         raise fault(messages, str(error), [rules]) from None
     if isinstance(rules, Stated):
-        if not said - {ASTType.Program, ASTType.Comment}:
+        if not kinds - {ASTType.Program, ASTType.Comment}:
             raise UserError(f"{rules.place}: found {rules.text!r}, expected a rule such as {_EXAMPLE}")
         return encoding
-    others = sorted(file for file in met if Path(file).resolve() not in known)
+    others = sorted(file for file in included if Path(file).resolve() not in checked)
     if others:
         raise UserError(f"{rules} includes {others[0]}, which was not checked: leave that out")
     return encoding
 
 
 class _Collector(Transformer):
-    """Walks statements and notes signatures in heads and in bodies, and names in terms."""
+    """Visitor that collects signatures in heads and bodies, and names in terms, of statements."""
 
     def __init__(self, encoding: Encoding) -> None:
         self.encoding = encoding
@@ -265,59 +268,59 @@ def check_encodings(
 ) -> list[Diagnostic]:
     """Check the user's files: the constraints ``added``, and files in ``base`` that are not built-in.
 
-    ``others`` are further files of ours that are loaded. Returns warnings: atoms that nothing defines, with
-    the nearest predicate that something does, and what numbers are compared with and is none. Raises
-    :class:`InputError` for what would change which trees there are or which are best, and for what would be
-    lost without a word: rules for predicates that are ours, names that are, and statements other than rules.
+    ``others`` are further built-in files that are loaded. Returns warnings: undefined atoms, with the most
+    similar predicate that is defined, and terms that are compared with numbers and never are numbers. Raises
+    :class:`InputError` for statements that would change the set of trees or their order, or that clingo
+    would ignore silently: rules for built-in predicates, reserved names, and statements other than rules.
     """
     errors: list[Diagnostic] = []
-    known = set(PUBLIC)
+    defined = set(PUBLIC)
     for encoding in (*added, *base, *others):
-        known |= encoding.defined.keys() | encoding.declared.keys()
-    mine = [encoding for encoding in added if not _is_ours(encoding.rules)]
+        defined |= encoding.defined.keys() | encoding.declared.keys()
+    user_files = [encoding for encoding in added if not _is_ours(encoding.rules)]
     replaced = [encoding for encoding in base if not _is_ours(encoding.rules)]
-    for encoding in mine:
+    for encoding in user_files:
         errors += _statements(encoding, tuple(_REFUSED))
-        errors += _definitions(encoding, PUBLIC.union(*(each.defined for each in base)))
+        errors += _definitions(encoding, PUBLIC.union(*(file.defined for file in base)))
         errors += _reserved_names(encoding)
     for encoding in replaced:
         errors += _statements(encoding, _LOST)
         errors += _replaced_definitions(encoding)
     settable = {name for encoding in added if _is_ours(encoding.rules) for name in encoding.constants}
-    for encoding in (*mine, *replaced):
+    for encoding in (*user_files, *replaced):
         names = set(settable)
-        if encoding in mine:
-            for each in replaced:
-                names |= each.names.keys() | {name for name, _ in (*each.defined, *each.used)}
+        if encoding in user_files:
+            for file in replaced:
+                names |= file.names.keys() | {name for name, _ in (*file.defined, *file.used)}
         errors += _constants(encoding, names)
     if errors:
         raise InputError(errors)
     warnings = [
-        encoding.remark(Severity.WARNING, "undefined-atom", undefined(signature, known), source)
+        encoding.remark(Severity.WARNING, "undefined-atom", undefined(signature, defined), source)
         for encoding in added
         for signature, source in encoding.used.items()
-        if signature not in known
+        if signature not in defined
     ]
     constants = {name for encoding in (*added, *base, *others) for name in encoding.constants}
-    for encoding in mine:
+    for encoding in user_files:
         for term, message in no_numbers(encoding.statements, constants):
             warnings.append(encoding.remark(Severity.WARNING, "no-number", message, _source(term.location)))
     return warnings
 
 
 def no_numbers(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
-    """Return terms that are above every number where one is compared with them, and what to say of that.
+    """Return terms above every number that numbers are compared with, each with a message.
 
-    These are names that no ``#const`` sets, and texts in place of a bound of what is counted or added up.
+    These are names that no ``#const`` sets, and texts as guards of a count or sum.
     """
     for node in (node for statement in statements for node in nodes(statement)):
         terms: list[AST] = []
         texts = False
         if node.ast_type == ASTType.Comparison:
-            if not _SAME.issuperset(guard.comparison for guard in node.guards):
+            if not _EQUALITIES.issuperset(guard.comparison for guard in node.guards):
                 terms = [node.term, *(guard.term for guard in node.guards)]
         elif node.ast_type == ASTType.Aggregate or (
-            node.ast_type == ASTType.BodyAggregate and node.function not in _OF_ANYTHING
+            node.ast_type == ASTType.BodyAggregate and node.function not in _NON_NUMERIC
         ):
             terms = [guard.term for guard in (node.left_guard, node.right_guard) if guard is not None]
             texts = True
@@ -346,7 +349,7 @@ def _statements(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnost
 
 
 def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
-    """Find rules for predicates that a constraint may not define."""
+    """Return errors for rules for predicates that a constraint may not define."""
     return [
         encoding.remark(
             Severity.ERROR,
@@ -361,7 +364,7 @@ def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagno
 
 
 def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
-    """Find reserved names elsewhere in a constraint."""
+    """Return errors for reserved names in bodies, ``#defined`` and terms of a constraint."""
     atoms = [
         (f"{name}/{arity}", source)
         for noted in (encoding.used, encoding.declared)
@@ -381,7 +384,7 @@ def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
 
 
 def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
-    """Find rules for reserved predicates in a replaced file whose original does not define them."""
+    """Return errors for rules for reserved predicates that the replaced original does not define."""
     name = encoding.rules.name if isinstance(encoding.rules, Path) else ""
     ours = [
         file for file in (encodings_folder() / name, encodings_folder() / "by_need" / name) if file.is_file()
@@ -401,7 +404,7 @@ def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
 
 
 def _constants(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
-    """Find constants that would replace a name in the facts or in another file."""
+    """Return errors for constants that would replace a name in the facts or in another file."""
     return [
         encoding.remark(
             Severity.ERROR,
@@ -419,22 +422,22 @@ def _is_reserved(name: str) -> bool:
     return name.lstrip("-").startswith(_PREFIX)
 
 
-def undefined(signature: Signature, known: set[Signature]) -> str:
-    """Say that no rule or fact defines a predicate, and which one may be meant."""
+def undefined(signature: Signature, defined: set[Signature]) -> str:
+    """Return the message that a predicate is undefined, with the similar one that may be meant."""
     name, arity = signature
     message = f"no rule or fact defines {name}/{arity}, so it never holds"
-    same_name = sorted(n for other, n in known if other == name)
+    same_name = sorted(n for other, n in defined if other == name)
     if same_name:
         return message + f"; did you mean {name}/{same_name[0]}?"
-    nearest = difflib.get_close_matches(name, sorted({other for other, _ in known}), n=1, cutoff=0.5)
+    nearest = difflib.get_close_matches(name, sorted({other for other, _ in defined}), n=1, cutoff=0.5)
     if not nearest:
         return message + "; the predicates are listed in encodings/README.md"
-    arities = {n for other, n in known if other == nearest[0]}
+    arities = {n for other, n in defined if other == nearest[0]}
     return message + f"; did you mean {nearest[0]}/{min(arities, key=lambda n: (abs(n - arity), n))}?"
 
 
 def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) -> list[str]:
-    """Turn ``NAME=VALUE`` settings into clingo's, typed after the ``#const`` they set.
+    """Return ``NAME=VALUE`` settings as arguments of clingo, typed after the ``#const`` they set.
 
     Where the encoding's own value is a string the setting is one too, quotes or not; where it is a number
     the setting has to be a whole number that fits 32 bits. Raises :class:`UserError` for an unknown name, and
@@ -452,9 +455,8 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
         if not equals:
             raise UserError(f"found the constant {setting!r}, expected NAME=VALUE")
         if name not in defaults:
-            uses = (each.rules for each in encodings if isinstance(each.rules, Stated))
-            for use in uses:
-                if name in dict(use.renamed).values():
+            for use in (encoding.rules for encoding in encodings):
+                if isinstance(use, Stated) and name in dict(use.renamed).values():
                     raise UserError(
                         f"found a value of the constant {name!r}, but {use.written} has values of its own: "
                         "set it there"
@@ -480,32 +482,38 @@ def constant_value(name: str, default: str, value: str) -> str:
 
 
 def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
-    """Warn about constants that have no effect until they are set: their default is "", #sup or #inf.
+    """Return warnings for constants without effect until they are set: their default is "", #sup or #inf.
 
-    A constant that is only one way to say something has one where other rules say more of that, as
-    ``allergen("milk").`` does.
+    A constant that adds one fact to a predicate has an effect where other rules add facts to it, such as
+    ``allergen("milk").``
     """
-    given = {setting.partition("=")[0] for setting in constants}
-    found = []
+    settings_given = {setting.partition("=")[0] for setting in constants}
+    warnings = []
     for encoding in added:
         rules = encoding.rules
-        others = {each for other in added if other is not encoding for each in other.defined}
+        others = {signature for other in added if other is not encoding for signature in other.defined}
         for name, value in encoding.constants.items():
-            if value not in {'""', "#sup", "#inf"} or name in given or encoding.saying(name) & others:
+            if (
+                value not in {'""', "#sup", "#inf"}
+                or name in settings_given
+                or encoding.saying(name) & others
+            ):
                 continue
             if isinstance(rules, Stated) and rules.file is not None:
-                called = dict(rules.renamed)[name]
-                where = f"{rules.file} ({rules.written})"
-                how, empty = re.subn(rf"(?<=[:,]){called}=(?=,|$)", f"{called}=VALUE", rules.written)
-                how = how if empty else f"{rules.written},{called}=VALUE"
+                shown_name = dict(rules.renamed)[name]
+                origin = f"{rules.file} ({rules.written})"
+                advice, empty = re.subn(
+                    rf"(?<=[:,]){shown_name}=(?=,|$)", f"{shown_name}=VALUE", rules.written
+                )
+                advice = advice if empty else f"{rules.written},{shown_name}=VALUE"
             else:
-                where = rules.place if isinstance(rules, Stated) else f"{rules}"
-                called, how = name, f"-c {name}=VALUE"
-            found.append(
-                f"{where}: warning: the constant {called} is not set and the constraint has no effect; "
-                f"set it with {how}"
+                origin = rules.place if isinstance(rules, Stated) else f"{rules}"
+                shown_name, advice = name, f"-c {name}=VALUE"
+            warnings.append(
+                f"{origin}: warning: the constant {shown_name} is not set and the constraint has no effect; "
+                f"set it with {advice}"
             )
-    return found
+    return warnings
 
 
 def _is_number(value: str) -> bool:
@@ -517,26 +525,26 @@ def _fits(value: str) -> bool:
 
 
 def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ()) -> InputError | UserError:
-    """Turn clingo's messages about a program into one error with places and source lines.
+    """Return clingo's messages about a program as one error with places and source lines.
 
-    ``files`` are those of the program, of which those matter that are no files.
+    ``files`` are the files and texts of the program; the texts are needed for their lines.
     """
     errors: dict[Source, Diagnostic] = {}
     for message in messages:
         first, *notes = (_MESSAGE.match(line) for line in message.strip().split("\n"))
         if first is None:
             continue
-        found = [first]
-        more = [line.strip() for line in message.strip().split("\n")[1:]]
+        matches = [first]
+        details = [line.strip() for line in message.strip().split("\n")[1:]]
         if first["text"].startswith("unsafe variables"):
-            found = list(filter(None, notes))
-        for match in found:
+            matches = list(filter(None, notes))
+        for match in matches:
             if match is not first:
                 text = f"the variable {match['text'].split()[0]} is unsafe: no literal of the body binds it"
             elif first["kind"] == "error":
-                text = " ".join([first["text"], *more])
+                text = " ".join([first["text"], *details])
             else:
-                text = _left_out(first["text"].rstrip(":"), " ".join(more))
+                text = _left_out(first["text"].rstrip(":"), " ".join(details))
             source = Source(match["file"], int(match["line"]), int(match["column"]))
             errors.setdefault(source, located(Severity.ERROR, "clingo", text, source, files))
     if errors:
@@ -549,19 +557,19 @@ def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ())
     return UserError("".join(messages).strip() or otherwise)
 
 
-def _left_out(what: str, part: str) -> str:
-    """Explain why clingo would leave out a part of a program."""
-    no_value = f"a term has no value here: {part.removeprefix('(').removesuffix(')')}"
-    if what == "tuple ignored" and _NEGATIVE.match(part):
+def _left_out(message: str, term: str) -> str:
+    """Return why clingo would drop an instance of a rule or element."""
+    no_value = f"a term has no value here: {term.removeprefix('(').removesuffix(')')}"
+    if message == "tuple ignored" and _NEGATIVE.match(term):
         return (
-            f"the weight in {part} is below 0, which #sum+ counts as nothing; clingo would leave this out "
+            f"the weight in {term} is below 0, which #sum+ counts as nothing; clingo would leave this out "
             "silently: use #sum, or a condition that keeps such weights out"
         )
     reason = {
         "operation undefined": no_value,
         "interval undefined": no_value,
-        "tuple ignored": f"the weight in {part} is not a number",
-    }.get(what, f"{what} {part}".strip())
+        "tuple ignored": f"the weight in {term} is not a number",
+    }.get(message, f"{message} {term}".strip())
     return (
         f"{reason}; clingo would leave this out silently: calculate with whole numbers only, and do "
         "not divide by 0"
@@ -571,7 +579,7 @@ def _left_out(what: str, part: str) -> str:
 def located(
     severity: Severity, code: str, message: str, source: Source, files: Sequence[Loaded] = ()
 ) -> Diagnostic:
-    """Make a diagnostic with its line of the encoding, which is one of the files or in one that they name."""
+    """Return a diagnostic with its source line, from one of the files or texts, or the file of the source."""
     for rules in files:
         if isinstance(rules, Stated) and rules.place == source.file:
             lines = rules.text.split("\n")

@@ -1,7 +1,7 @@
-"""The text of an encoding, checked before clingo reads it: included files, letters and numbers.
+"""Checks of the text of an encoding before clingo reads it: included files, letters and numbers.
 
-clingo opens any file that an ``#include`` names, takes a number that is too large modulo 2^32, and ends the
-whole process where its message about an odd letter is not UTF-8. So none of that may get to it.
+clingo opens any file that an ``#include`` names, reads a number that is too large modulo 2^32, and aborts the
+whole process where its message about an unexpected letter is not UTF-8. These texts are refused here.
 """
 
 import re
@@ -38,20 +38,20 @@ _SUFFIX = ".lp"
 def included_files(path: Path) -> list[Path]:
     """Return an encoding and all files that it includes, directly or not, each once.
 
-    A file may include those in its own folder, and below. Raises :class:`InputError` for other files, for a
-    ``#script``, for letters that clingo does not know, and for numbers that it has not.
+    A file may include files in its own folder and below. Raises :class:`InputError` for other files, for a
+    ``#script``, for letters outside of clingo's syntax, and for numbers beyond its range.
     """
-    found: dict[Path, Path] = {}  # by what they are
+    files: dict[Path, Path] = {}  # by resolved path
     pending = [path]
     errors: list[Diagnostic] = []
     while pending:
         file = pending.pop()
-        if file.resolve() not in found:
-            found[file.resolve()] = file
-            pending += _look_over(file, errors)
+        if file.resolve() not in files:
+            files[file.resolve()] = file
+            pending += _check_file(file, errors)
     if errors:
         raise InputError(errors)
-    return list(found.values())
+    return list(files.values())
 
 
 def excerpt(source: Source) -> str:
@@ -64,28 +64,28 @@ def excerpt(source: Source) -> str:
 
 
 class _Token(NamedTuple):
-    """A token, its kind, and where in the text it begins."""
+    """A token, its kind, and its offset in the text."""
 
     kind: str
     text: str
     start: int
 
 
-def check_text(text: str, place: str) -> None:
-    """Check rules that are in no file, as :func:`included_files` does; they include nothing."""
+def check_text(text: str, origin: str) -> None:
+    """Check rules without a file, as :func:`included_files` does; they may include nothing."""
     errors: list[Diagnostic] = []
     if any("\ud800" <= letter <= "\udfff" for letter in text):
-        raise UserError(f"{place}: expected a rule in UTF-8")
-    _look_over_text(text, place, None, errors)
+        raise UserError(f"{origin}: expected a rule in UTF-8")
+    _check_content(text, origin, None, errors)
     if errors:
         raise InputError(errors)
 
 
-def _look_over(file: Path, errors: list[Diagnostic]) -> list[Path]:
-    """Record what is wrong with a file, and give the files that it includes."""
+def _check_file(file: Path, errors: list[Diagnostic]) -> list[Path]:
+    """Append the errors of a file to ``errors``, and return the files that it includes."""
     if file.suffix != _SUFFIX:
         raise UserError(f"{file}: expected an encoding, a file whose name ends in {_SUFFIX}")
-    if any("\ud800" <= letter <= "\udfff" for letter in str(file)):  # what clingo cannot be given
+    if any("\ud800" <= letter <= "\udfff" for letter in str(file)):  # clingo takes UTF-8 only
         raise UserError(f"{file}: expected an encoding with a name in UTF-8")
     content = file.read_bytes()
     try:
@@ -98,20 +98,20 @@ def _look_over(file: Path, errors: list[Diagnostic]) -> list[Path]:
         source = Source(str(file), line, column)
         errors.append(Diagnostic(Severity.ERROR, "not-utf-8", message, source, shown))
         return []
-    return _look_over_text(text, str(file), file, errors)
+    return _check_content(text, str(file), file, errors)
 
 
-def _look_over_text(text: str, place: str, file: Path | None, errors: list[Diagnostic]) -> list[Path]:
-    """Note what is wrong with a text, that of a file if it is in one, and give the files that it includes."""
+def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagnostic]) -> list[Path]:
+    """Append the errors of a text to ``errors``; return the files it includes, if it is of a ``file``."""
     lines = text.split("\n")
 
     def error(code: str, message: str, start: int) -> None:
         line = text.count("\n", 0, start) + 1
         column = start - text.rfind("\n", 0, start)
         shown = lines[line - 1].rstrip("\r")
-        errors.append(Diagnostic(Severity.ERROR, code, message, Source(place, line, column), shown))
+        errors.append(Diagnostic(Severity.ERROR, code, message, Source(origin, line, column), shown))
 
-    if "\0" in text:  # where a text ends for clingo, be it in a comment
+    if "\0" in text:  # clingo ends a text there, even within a comment
         error("letter", "found U+0000, which no rule can have", text.index("\0"))
         return []
     included: list[Path] = []
@@ -158,8 +158,8 @@ def _refused(file: Path, target: str) -> str:
         return f"expected an encoding, a file whose name ends in {_SUFFIX}"
     if not path.is_file():
         return f"expected an existing file: there is none in {folder}"
-    here = Path(target)  # clingo looks there first
-    if here.is_file() and not here.samefile(path):
+    working_file = Path(target)  # clingo prefers the working folder
+    if working_file.is_file() and not working_file.samefile(path):
         return (
             "but the folder in which foon-asp was started has a file of this name, too, which clingo would "
             "take: give the file another name, or start foon-asp elsewhere"
@@ -169,15 +169,15 @@ def _refused(file: Path, target: str) -> str:
 
 def _tokens(text: str) -> Iterator[_Token]:
     """Return the tokens of a program, without blanks and comments."""
-    place = 0
-    while match := _TOKEN.match(text, place):
+    offset = 0
+    while match := _TOKEN.match(text, offset):
         kind = str(match.lastgroup)
-        place = match.end()
+        offset = match.end()
         if kind == "block":
             depth = 1
-            while depth and (part := _IN_BLOCK.search(text, place)):
-                depth += {"%*": 1, "*%": -1}.get(part[0], 0)
-                place = part.end()
+            while depth and (mark := _IN_BLOCK.search(text, offset)):
+                depth += {"%*": 1, "*%": -1}.get(mark[0], 0)
+                offset = mark.end()
             if depth:  # clingo says so
                 return
         elif kind not in {"comment", "blank"}:
@@ -185,9 +185,9 @@ def _tokens(text: str) -> Iterator[_Token]:
 
 
 def string_constant(value: str) -> str:
-    """Return the text that is meant by a setting of a string constant, with or without quotes.
+    """Return the text of a setting of a string constant, with or without quotes.
 
-    Raises :class:`UserError` for a quote at the beginning with no string of clingo's after it.
+    Raises :class:`UserError` for a quote at the beginning without a string of clingo.
     """
     if not value.startswith('"'):
         return value
@@ -195,4 +195,4 @@ def string_constant(value: str) -> str:
         raise UserError(
             f'found {value} for a constant, expected a text in quotes, with \\" for a quote in it'
         )
-    return _ESCAPED.sub(lambda found: "\n" if found[1] == "n" else found[1], value[1:-1])
+    return _ESCAPED.sub(lambda match: "\n" if match[1] == "n" else match[1], value[1:-1])

@@ -1,7 +1,7 @@
-"""Success rates as integers for clingo, and as exact exponents where rounding could decide.
+"""Success rates as integer weights for clingo, and as exact exponents where rounding could decide.
 
-A product of rates is the sum of their logarithms; clingo adds integers, so each rate p is given the weight
-``floor(S * -ln p)``. Rounding down loses less than 1 per unit, which bounds what it can hide: see
+The logarithm of a product of rates is the sum of theirs; clingo adds integers, so each rate p has the weight
+``floor(S * -ln p)``. Rounding down loses less than 1 per unit, which bounds its error: see
 ``docs/dev/exact-success.md`` for the argument and ``foon_asp/asp/solver.py`` for its use.
 """
 
@@ -15,10 +15,10 @@ from foon_asp.bounds.coprime_base import coprime_base, powers
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 
-_LARGEST = 2**31 - 1
-_FINE = 10**8  # as fine as there is use for, but next to 1
-_ENOUGH = 1000  # what a rate should weigh at least: next to 1 a finer scale is taken where it fits
-_DIGITS = 40  # of a logarithm, at first
+_MAX_NUMBER = 2**31 - 1
+_USUAL_SCALE = 10**8  # the finest scale, except for rates next to 1
+_MIN_WEIGHT = 1000  # least weight of a rate: next to 1 the scale is finer where it fits
+_DIGITS = 40  # of a logarithm, initially
 _CONTEXT = Context(prec=60, Emax=MAX_EMAX, Emin=MIN_EMIN)
 
 
@@ -27,7 +27,7 @@ class RateScale(NamedTuple):
 
     ``weights[p]`` is ``floor(scale * -ln p)``; ``exponents[p][f]`` is the power to which the rate holds
     factor number ``f``. The factors are pairwise coprime, so two products of rates are equal exactly when
-    the sums of their exponents are. A weight of 0 says nothing of the rate: it may be next to 1.
+    the sums of their exponents are. A weight of 0 does not mean a rate of 1, which may be next to 1.
     """
 
     scale: int
@@ -43,11 +43,11 @@ class RateScale(NamedTuple):
         return total
 
     def weigh(self, product: Fraction) -> int:
-        """Give ``floor(scale * -ln product)`` of a product of rates: no plan of that success weighs more."""
+        """Return ``floor(scale * -ln product)``: no plan of that success weighs more."""
         return _weight(product, self.scale)
 
     def success_bound(self, weight: int) -> Fraction:
-        """Bound from above the success of every tree whose weights sum to at least ``weight``.
+        """Return an upper bound on the success of trees whose weights sum up to at least ``weight``.
 
         Since rounding went down, such a tree has ``-ln(success) >= weight / scale``.
         """
@@ -58,9 +58,9 @@ class RateScale(NamedTuple):
 
 
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
-    """Scale rates in (0, 1] as finely as clingo's 32-bit integers allow and as is useful.
+    """Return the finest useful scale of rates in (0, 1] within clingo's 32-bit integers.
 
-    That is 10^8 at most, and more only where a rate next to 1 would weigh next to nothing. Raises
+    It is at most 10^8, and more only where a rate next to 1 would weigh almost 0. Raises
     ``ValueError`` for other rates.
     """
     if not all(0 < rate <= 1 for rate in rates):
@@ -74,20 +74,20 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 def _scale(logarithms: Collection[Decimal]) -> int:
     """Return the power of ten by which logarithms above 0 become weights."""
     if not logarithms:
-        return _FINE
-    fitting: int = 10 ** (_LARGEST / max(logarithms)).adjusted()
-    useful: int = 10 ** ((_ENOUGH / min(logarithms)).adjusted() + 1)
-    return min(fitting, max(_FINE, useful))
+        return _USUAL_SCALE
+    fitting: int = 10 ** (_MAX_NUMBER / max(logarithms)).adjusted()
+    useful: int = 10 ** ((_MIN_WEIGHT / min(logarithms)).adjusted() + 1)
+    return min(fitting, max(_USUAL_SCALE, useful))
 
 
 def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
-    """Scale the rates of some units of a problem.
+    """Return the scale of the rates of units of a problem.
 
-    Raises :class:`UserError` where clingo could not add up their exponents.
+    Raises :class:`UserError` where the sum of their exponents overflows.
     """
     units = list(units)
     scale = rate_scale(problem.different_rates(units))
-    if any(len(units) * abs(e) > _LARGEST for rate in scale.exponents.values() for e in rate.values()):
+    if any(len(units) * abs(e) > _MAX_NUMBER for rate in scale.exponents.values() for e in rate.values()):
         raise UserError(
             "the success rates of the motions are too far apart: written as powers of common factors, "
             f"the exponents of {len(units)} units add up to more than clingo's numbers hold"
@@ -110,7 +110,7 @@ def _weight(rate: Fraction, scale: int) -> int:
     The logarithm of a rational number other than 1 is irrational, so enough digits always settle the floor.
     """
     lost = scale * (1 - rate)
-    low, high = lost, lost / rate  # which is enough next to 1
+    low, high = lost, lost / rate  # bounds of -ln rate, precise enough next to 1
     digits = _DIGITS
     while math.floor(low) < math.floor(high):
         value = scale * Fraction(_minus_log(rate, digits))
@@ -123,8 +123,8 @@ def _weight(rate: Fraction, scale: int) -> int:
 def _exponents(rates: Collection[Fraction]) -> dict[Fraction, dict[int, int]]:
     base = coprime_base(number for rate in rates for number in rate.as_integer_ratio())
     numbers = {factor: number for number, factor in enumerate(base)}
-    found: dict[Fraction, dict[int, int]] = {}
+    exponents: dict[Fraction, dict[int, int]] = {}
     for rate in rates:
         up, down = (powers(number, base) for number in rate.as_integer_ratio())  # no factor is in both
-        found[rate] = {numbers[f]: e for f, e in up.items()} | {numbers[f]: -e for f, e in down.items()}
-    return found
+        exponents[rate] = {numbers[f]: e for f, e in up.items()} | {numbers[f]: -e for f, e in down.items()}
+    return exponents

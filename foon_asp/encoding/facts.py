@@ -1,4 +1,4 @@
-"""The facts handed to clingo, as text."""
+"""Writer of facts for clingo, as text."""
 
 from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -13,8 +13,8 @@ from foon_asp.network import ObjectNode, Source
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.text.exact_number import decimal_text
 
-# What is said of every question, with arity; encodings/README.md gives the meanings. What an encoding of a
-# question reads beside it, its header says.
+# Predicates of the facts of every question, with arity; encodings/README.md has the meanings. Encodings of
+# questions list further ones in their headers.
 FACT_PREDICATES = {
     "unit": 1,
     "motion": 2,
@@ -44,7 +44,7 @@ FACT_PREDICATES = {
     "stock": 2,
 }
 
-# What encodings of ours look at, those of questions as well.
+# Predicates that built-in encodings read, including those of questions.
 READ_BY_OURS = frozenset(
     (name, FACT_PREDICATES[name])
     for name in (
@@ -63,9 +63,9 @@ READ_BY_OURS = frozenset(
 
 OBJECT_FACTS = frozenset(("object", "label", "state", "ingredient", "located"))  # each about one object node
 
-_Atom = tuple[str, str]  # the name of the predicate, and the arguments as text
+_Atom = tuple[str, str]  # predicate, and arguments as text
 
-_LARGEST = 2**31 - 1  # clingo's numbers wrap silently above
+_MAX_NUMBER = 2**31 - 1  # clingo's numbers wrap silently above
 _PRICE = ("price", 2)
 _OF_RULES = frozenset({("source", 2), ("video", 2), _PRICE})
 
@@ -76,12 +76,12 @@ def write_facts(
     scales: Scales | None = None,
     looked_at: Collection[tuple[str, int]] | None = None,
 ) -> str:
-    """Describe the given units of a problem, their object nodes, the kitchen and the goals.
+    """Return the facts about units of a problem, their object nodes, the kitchen and the goals.
 
-    One line per unit and per object node; ids are those of the whole network. ``scales`` give the weights
-    of ``risk/2`` and ``cost/3``; without them there are none. ``looked_at`` are the predicates that rules of
-    the user's look at, for whom is added where each unit was read and what it costs. Raises
-    :class:`UserError` where a price that they look at cannot be told exactly.
+    One line per unit and per object node, with public numbers. ``scales`` have the weights of ``risk/2`` and
+    ``cost/3``; without them these facts are omitted. ``looked_at`` are the predicates that user rules read:
+    unless it is ``None``, sources, videos and prices of units are added. Raises :class:`UserError` where a
+    price that they read is no whole number of hundredths.
     """
     name = problem.network.object_number
     nodes = described(problem, units)
@@ -104,9 +104,9 @@ def write_facts(
 def write_facts_read(
     problem: Problem, units: Sequence[int], read: Collection[tuple[str, int]], scales: Scales | None = None
 ) -> str:
-    """Describe units, their object nodes and the goals as :func:`write_facts` does, by some predicates alone.
+    """Return the facts of :func:`write_facts` restricted to the predicates in ``read``.
 
-    Without ``scales``, those that depend on them are not among them. Raises :class:`UserError` as that does.
+    Without ``scales``, predicates that depend on them are omitted. Raises :class:`UserError` as that does.
     """
     seen = problem.as_seen or problem
     name = problem.network.object_number
@@ -131,7 +131,8 @@ def write_facts_read(
     for o in nodes:
         atoms = [("object", f"{_check(name(o))}")]
         atoms += [
-            (each, f"{name(o)},{said}") for each, said in object_facts(problem.network.objects[o], of_objects)
+            (predicate, f"{name(o)},{arguments}")
+            for predicate, arguments in object_facts(problem.network.objects[o], of_objects)
         ]
         if o in kitchen:
             atoms.append(("kitchen", f"{name(o)}"))
@@ -140,21 +141,21 @@ def write_facts_read(
 
 
 def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
-    """Say which labels are utensils, what the goals are, and what is at hand that rules do not see there."""
+    """Yield the facts of utensils, goals, and available object nodes outside the kitchen that rules see."""
     name = problem.network.object_number
     labels = {problem.network.objects[o].label for o in nodes}
     yield from (f"utensil({quote(label)})." for label in sorted(labels & problem.utensils))
     yield from (f"goal({name(o)})." for o in problem.goals)
-    taken = problem.kitchen - problem.kitchen_seen
-    yield from (f"available({name(o)})." for o in nodes if o in taken)
+    assumed = problem.kitchen - problem.kitchen_seen
+    yield from (f"available({name(o)})." for o in nodes if o in assumed)
 
 
 def write_worlds(
     problem: Problem, units: Iterable[int], predicates: Collection[str], world: str
 ) -> Iterator[str]:
-    """Describe units and their object nodes by some predicates, each unit in a world of its own.
+    """Yield facts about units and their object nodes by predicates, each unit in a world of its own.
 
-    So the facts about one unit are no facts about another; ``world`` is the predicate of worlds.
+    So rules see each unit separately; ``world`` is the predicate of worlds.
     """
     network = problem.network
     sees_nodes = not OBJECT_FACTS.isdisjoint(predicates)
@@ -163,7 +164,10 @@ def write_worlds(
     @cache
     def of_object(o: int) -> list[_Atom]:
         number = network.object_number(o)
-        atoms = [(name, f"{number},{said}") for name, said in object_facts(network.objects[o], predicates)]
+        atoms = [
+            (name, f"{number},{arguments}")
+            for name, arguments in object_facts(network.objects[o], predicates)
+        ]
         return [*atoms, ("object", f"{_check(number)}")] if "object" in predicates else atoms
 
     for unit in units:
@@ -175,7 +179,9 @@ def write_worlds(
         if sees_nodes:
             for o in dict.fromkeys((*network.inputs[unit], *network.outputs[unit])):
                 atoms += of_object(o)
-        yield f"{world}({number})." + "".join([f"_{name}({number},{said})." for name, said in atoms])
+        yield f"{world}({number})." + "".join(
+            [f"_{name}({number},{arguments})." for name, arguments in atoms]
+        )
 
 
 def _written(atom: _Atom) -> str:
@@ -189,7 +195,7 @@ def _unit_atom(problem: Problem, unit: int) -> str:
 def _unit_atoms(
     problem: Problem, unit: int, scales: Scales | None, prices: Mapping[int, int] | None
 ) -> list[_Atom]:
-    """Return the facts about a unit, except that it is one; with ``prices``, also those for rules alone."""
+    """Return the facts about a unit without ``unit/1``; with ``prices``, also those for rules alone."""
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
     ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
@@ -208,7 +214,7 @@ def _unit_atoms(
         seen = (problem.as_seen or problem).rate(unit)
         atoms += [("rate", f"{u},{millionths(seen)}"), ("risk", f"{u},{_check(weight)}")]
     if scales:
-        weights = ((each.row.term, scales.weight(each, [unit])) for each in scales.facts)
+        weights = ((objective.row.term, scales.weight(objective, [unit])) for objective in scales.facts)
         atoms += [("cost", f"{term},{u},{_check(weight)}") for term, weight in weights]
     if prices is not None:
         sources = network.sources[unit]
@@ -224,8 +230,8 @@ def hundredths(
 ) -> dict[int, int]:
     """Return the price of each unit that has one, in hundredths.
 
-    Where that cannot be told exactly, or a sum could not, there are none, or :class:`UserError` is raised if
-    somebody looks at them.
+    Empty where a price is no whole number of hundredths, or their sum overflows; raises :class:`UserError`
+    instead if rules read prices.
     """
     if problem.unit_prices is None:
         if _PRICE in looked_at:
@@ -235,10 +241,10 @@ def hundredths(
             )
         return {}
     prices = [(unit, price) for unit in units if (price := problem.prices[unit]) is not None]
-    found = {unit: price.numerator * 100 // price.denominator for unit, price in prices}
-    broken = next((each for each in prices if each[1].numerator * 100 % each[1].denominator), None)
-    if broken is None and sum(found.values()) <= LARGEST:
-        return found
+    by_unit = {unit: price.numerator * 100 // price.denominator for unit, price in prices}
+    broken = next((pair for pair in prices if pair[1].numerator * 100 % pair[1].denominator), None)
+    if broken is None and sum(by_unit.values()) <= LARGEST:
+        return by_unit
     if _PRICE not in looked_at:
         return {}
     if broken is None:
@@ -260,13 +266,13 @@ def _object_atom(problem: Problem, o: int) -> str:
 
 
 def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
-    """Return the facts about an object node, except that it is one and whether it is at hand."""
+    """Return the facts about an object node without ``object/1`` and ``kitchen/1``."""
     number = problem.network.object_number(o)
-    return [(name, f"{number},{said}") for name, said in object_facts(problem.network.objects[o])]
+    return [(name, f"{number},{arguments}") for name, arguments in object_facts(problem.network.objects[o])]
 
 
 def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -> list[_Atom]:
-    """Return what facts of some predicates say of an object node, without the node."""
+    """Return facts about an object node by predicates, without its number as first argument."""
     atoms = [("label", quote(node.label))] if "label" in predicates else []
     if "state" in predicates:
         atoms += [("state", quote(state)) for state in sorted(node.states)]
@@ -280,99 +286,102 @@ def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -
 def described(problem: Problem, units: Iterable[int]) -> list[int]:
     """Return the object nodes in the facts about some units, including the goals, in order."""
     network = problem.network
-    touched = {o for unit in units for side in (network.inputs, network.outputs) for o in side[unit]}
+    touched = {
+        o for unit in units for objects_of in (network.inputs, network.outputs) for o in objects_of[unit]
+    }
     return sorted(touched.union(problem.goals))
 
 
 def write_times(times: Mapping[int, tuple[int, int]]) -> str:
-    """Return how often units, by number, are executed at least and at most."""
+    """Return facts for the least and greatest number of executions of units, by number."""
     return "".join(
-        f"_least({unit},{least}). _most({unit},{_check(most)}).\n" for unit, (least, most) in times.items()
+        f"_least({unit},{least}). _most({unit},{_check(greatest)}).\n"
+        for unit, (least, greatest) in times.items()
     )
 
 
 def write_objectives(objectives: Sequence[Objective]) -> str:
-    """Switch criteria on, the first with the highest priority."""
+    """Return facts that switch objectives on, the first with the highest priority."""
     return "".join(
-        f"optimize({objective.row.term},{len(objectives) - place}).\n"
-        for place, objective in enumerate(objectives)
+        f"optimize({objective.row.term},{len(objectives) - position}).\n"
+        for position, objective in enumerate(objectives)
     )
 
 
 def write_exponents(problem: Problem, scales: Scales) -> str:
-    """Return the vector of every unit by the objective that is rounded: its rate over the coprime factors."""
+    """Return facts of the vector of every unit by the rounded objective; see :meth:`Scales.vector`."""
     return "".join(
-        f"_exponent({problem.network.unit_number(unit)},{place},{_check(number)}).\n"
+        f"_exponent({problem.network.unit_number(unit)},{factor},{_check(number)}).\n"
         for unit, vector in scales.unit_vectors().items()
-        for place, number in vector.items()
+        for factor, number in vector.items()
     )
 
 
 def write_product(number: int, exponents: Mapping[int, int]) -> str:
-    """Describe a product of rates by its exponents."""
+    """Return facts of a product of rates, by its exponents."""
     return "".join(f"_product({number},{factor},{_check(e)}).\n" for factor, e in exponents.items())
 
 
 def write_seen(numbers: Iterable[int]) -> str:
-    """Rule products of rates out, by number."""
+    """Return facts that exclude products of rates, by number."""
     return "".join(f"_seen({number}).\n" for number in numbers)
 
 
 def write_fewer(units: Mapping[int, int]) -> str:
-    """Let trees of fewer units have products of rates that are ruled out, by number."""
+    """Return facts that allow excluded products of rates, by number, to trees of fewer units."""
     return "".join(f"_fewer({number},{count}).\n" for number, count in units.items())
 
 
 def write_wanted(number: int) -> str:
-    """Ask for trees with exactly that product of rates."""
+    """Return the fact that requires the product of rates of a number."""
     return f"_wanted({number}).\n"
 
 
 def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
-    """Say which object nodes can be bought, at which price (a whole number), and which only if necessary."""
+    """Return facts of object nodes for sale, with integer prices, and which are bought only if necessary."""
     facts = [f"_for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
     return "".join([*facts, *(f"_second_choice({o}).\n" for o in second_choices)])
 
 
 def write_list(number: int, items: Iterable[int]) -> str:
-    """Return a shopping list that was found before."""
+    """Return facts of a shopping list that was found before."""
     return f"_found_list({number}).\n" + "".join(f"_on_list({number},{o}).\n" for o in items)
 
 
 def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
-    """Return the cost of dropping each constraint, by number, and those that are kept."""
+    """Return facts of the cost of dropping each constraint, by number, and of those that are kept."""
     facts = [f"_constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
     return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])
 
 
 def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
-    """Return sets of constraints, by number, each of which leaves a tree when it is dropped."""
+    """Return facts of correction sets: constraints, by number, without which there is a tree."""
     return "".join(
-        f"_correction({place},{number}).\n"
-        for place, correction in enumerate(corrections)
+        f"_correction({index},{number}).\n"
+        for index, correction in enumerate(corrections)
         for number in correction
     )
 
 
 def write_soft(weights: Mapping[int, int]) -> str:
-    """Return the weight of each soft constraint, by number."""
+    """Return facts of the weight of each soft constraint, by number."""
     return "".join(f"_soft({number},{_check(weight)}).\n" for number, weight in weights.items())
 
 
 def write_least_penalty(priority: int) -> str:
-    """Minimize the weights of broken constraints, with a priority among the objectives."""
+    """Return the fact that minimizes the weights of broken constraints, at a priority."""
     return f"optimize(_soft,{priority}).\n"
 
 
 def write_greatest_penalty(penalty: int) -> str:
-    """Bound the weights of broken constraints."""
+    """Return the fact that bounds the weights of broken constraints."""
     return f"_greatest_penalty({_check(penalty)}).\n"
 
 
 def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
-    """Return a bound: objectives with numbers, of which at least one must not be exceeded.
+    """Return facts of a set of upper bounds by objective, of which at least one has to hold.
 
-    Raises ``ValueError`` for ``success``, which does not count.
+    Raises ``ValueError`` for ``success``, which is no sum.
     """
     if any(map(multiplies, bounds)):
         raise ValueError("success is a product, and no sum that a bound could be put on")
@@ -382,7 +391,7 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
 
 
 def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Scales) -> str:
-    """Bound costs by objectives with fractions: of each set, at least one bound must hold.
+    """Return facts of sets of strict upper bounds, of each of which at least one has to hold.
 
     Raises :class:`UserError` for an objective that is rounded.
     """
@@ -392,37 +401,37 @@ def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Sca
     )
 
 
-def write_assisted(twins: Mapping[int, int], most: int) -> str:
-    """Say which units are a person's, each with the robot's unit that it is, and bound how many are used."""
+def write_assisted(twins: Mapping[int, int], max_assisted: int) -> str:
+    """Return facts that pair units of a person with those of the robot, and bound the former in a tree."""
     facts = [f"_takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
-    return "".join([*facts, f"_at_most_assisted({_check(most)}).\n"])
+    return "".join([*facts, f"_at_most_assisted({_check(max_assisted)}).\n"])
 
 
 def write_required(sets: Sequence[Iterable[int]]) -> str:
-    """Give sets of units, by their numbers in the whole network, of each of which a tree has to have one."""
+    """Return facts of sets of units, by number, of each of which a tree has to have one."""
     return "".join(
-        "".join([f"_required({place}).\n", *(f"_one_of({place},{_check(number)}).\n" for number in numbers)])
-        for place, numbers in enumerate(sets)
+        "".join([f"_required({index}).\n", *(f"_one_of({index},{_check(number)}).\n" for number in numbers)])
+        for index, numbers in enumerate(sets)
     )
 
 
 def write_known(numbers: Iterable[int]) -> str:
-    """Return the units of which all is there that may make what they need, by their numbers."""
+    """Return facts of the units, by number, whose achievers are all present; others may lack inputs."""
     return "".join(f"_known({_check(number)}).\n" for number in numbers)
 
 
 def write_tree(units: Collection[int]) -> str:
-    """Ask for a tree of exactly these units."""
+    """Return facts that require the tree of exactly these units."""
     return f"_tree_size({len(units)}).\n" + "".join(f"_in_tree({unit}).\n" for unit in units)
 
 
 def write_avoided(number: int, units: Iterable[int]) -> str:
-    """Rule out a tree, by the ids of its units in the whole network, and all trees that contain it."""
+    """Return facts that exclude a tree, by the numbers of its units, and all trees that contain it."""
     return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
 
 
 def write_beside(plans: Sequence[Mapping[int, int]]) -> str:
-    """Rule out plans that execute units, by their numbers in the whole network, as often as known ones."""
+    """Return facts that exclude plans with at least the executions of known ones, by unit number."""
     return "".join(
         f"_avoid({number},{_check(unit)},{count}).\n"
         for number, plan in enumerate(plans)
@@ -431,29 +440,32 @@ def write_beside(plans: Sequence[Mapping[int, int]]) -> str:
 
 
 def write_given(numbers: Collection[int]) -> str:
-    """Ask whether units, by their numbers in the whole network, are a tree."""
+    """Return facts of the units, by number, that are to be checked as a tree."""
     return f"_given_units({len(numbers)}).\n" + "".join(f"_given({number}).\n" for number in numbers)
 
 
 def write_same_rates(classes: Sequence[Iterable[int]]) -> str:
-    """Return the units of each success rate, by their numbers in the whole network."""
+    """Return facts of the units of each success rate, by number."""
     return "".join(
         f"_same_rate({rate},{number}).\n" for rate, numbers in enumerate(classes) for number in numbers
     )
 
 
-def write_most_alike(most: Sequence[int]) -> str:
-    """Bound how many units of each success rate a tree has."""
-    return "".join(f"_most_alike({rate},{_check(number)}).\n" for rate, number in enumerate(most))
+def write_most_alike(limits: Sequence[int]) -> str:
+    """Return facts that bound the number of units of each success rate."""
+    return "".join(f"_most_alike({rate},{_check(number)}).\n" for rate, number in enumerate(limits))
 
 
 def write_exactly_alike(numbers: Sequence[int]) -> str:
-    """Return how many units of each success rate the tree is to have."""
+    """Return facts that fix the number of units of each success rate."""
     return "".join(f"_exactly_alike({rate},{_check(number)}).\n" for rate, number in enumerate(numbers))
 
 
 def write_distances(trees: Sequence[Collection[Hashable]], chosen: int) -> str:
-    """Ask for a choice of ``chosen`` trees, given by their units or executions."""
+    """Return facts of the distances between trees, of which ``chosen`` are to be chosen.
+
+    The trees are sets of units or of executions.
+    """
     sets = list(map(frozenset, trees))
     facts = [f"_chosen_trees({chosen}).", *(f"_tree({number})." for number in range(len(sets)))]
     for number, one in enumerate(sets):
@@ -469,17 +481,21 @@ def write_tool_order(
     after: Iterable[Iterable[int]],
     may_lack: bool,
 ) -> str:
-    """Describe which steps use tools of which kind, how many there are, and what steps wait for."""
+    """Return facts of the tools of each kind, their uses by steps, and the order of steps."""
     facts = [f"_tools({kind},{_check(count)}).\n" for kind, count in enumerate(tools)]
     facts += [f"_may_lack({kind}).\n" for kind in range(len(tools)) if may_lack]
     for use, (kind, steps) in enumerate(uses):
         facts += [f"_tool_use({use},{kind}).\n", *(f"_in_use({use},{step}).\n" for step in steps)]
-    facts += [f"_waits({step},{each}).\n" for step, earlier in enumerate(after) for each in sorted(earlier)]
+    facts += [
+        f"_waits({step},{earlier_step}).\n"
+        for step, earlier in enumerate(after)
+        for earlier_step in sorted(earlier)
+    ]
     return "".join(facts)
 
 
 def quote(text: str) -> str:
-    """Give a clingo string; raises :class:`UserError` for a name that clingo would cut short or not take."""
+    """Return a text as a string of clingo; raises :class:`UserError` for a text that clingo cannot take."""
     if not text.isascii() or "\0" in text:
         if "\0" in text:
             raise UserError(f"the name {text!r} has a zero character, which the solver cannot be given")
@@ -493,7 +509,7 @@ def quote(text: str) -> str:
 
 
 def source_names(sources: Iterable[Source]) -> dict[str, None]:
-    """Return the names of a unit's places for constraints: files, with folders and without, and videos."""
+    """Return the names of the sources of a unit: files, with folders and without, and videos."""
     names: dict[str, None] = {}
     for source in sources:
         names.update(_file_names(source.file))
@@ -507,11 +523,11 @@ def _file_names(file: str) -> dict[str, None]:
 
 
 def millionths(rate: Fraction) -> int:
-    """Return a success rate as constraints see it."""
+    """Return a success rate in millionths, rounded down, as rules read it."""
     return rate.numerator * 1_000_000 // rate.denominator
 
 
 def _check(number: int) -> int:
-    if not -_LARGEST <= number <= _LARGEST:
+    if not -_MAX_NUMBER <= number <= _MAX_NUMBER:
         raise UserError(f"the number {number} is too large for clingo, whose numbers have 32 bits")
     return number

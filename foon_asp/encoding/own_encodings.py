@@ -1,7 +1,7 @@
-"""Which encodings are unchanged built-in ones: cuts and certificates rely on them.
+"""Recognition of unchanged built-in encodings, which cuts and certificates rely on.
 
-``encodings/SHA256SUMS`` holds the digest of each, with the line ends of Unix. One of ours that was changed in
-place is what runs, but it is then treated like a user's: what it says may be something else.
+``encodings/SHA256SUMS`` holds the digest of each, with the line ends of Unix. A built-in encoding that was
+changed in place runs, but is treated as one of the user.
 """
 
 import hashlib
@@ -20,12 +20,12 @@ _DIGESTS = "SHA256SUMS"
 def is_own(file: Path) -> bool:
     """Whether an encoding is an unchanged built-in one."""
     digests = _digests()
-    known = digests.get(file) or digests.get(file.resolve())
-    return known is not None and known == digest(file)
+    expected = digests.get(file) or digests.get(file.resolve())
+    return expected is not None and expected == digest(file)
 
 
 def question_encoding(name: str) -> Path:
-    """Return a built-in encoding that a question needs and that cannot be replaced, such as ``soft.lp``.
+    """Return a built-in encoding that a question needs and the user cannot replace, such as ``soft.lp``.
 
     Raises :class:`UserError` where it was changed.
     """
@@ -33,7 +33,7 @@ def question_encoding(name: str) -> Path:
 
 
 def exact_success() -> Path:
-    """Return the encoding that settles products of rates. Raises :class:`UserError` where it was changed."""
+    """Return the encoding that compares products of rates; raises :class:`UserError` if it was changed."""
     return _unchanged(encodings_folder() / "exact_success.lp")
 
 

@@ -1,4 +1,4 @@
-"""The costs of units as integers for clingo: unchanged, scaled, or rounded down and settled later."""
+"""Costs of units as integers for clingo: unchanged, scaled, or rounded down and compared exactly later."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -9,16 +9,15 @@ from foon_asp.encoding.exact_success import RateScale, problem_scale
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, multiplies
 
-_LARGEST = 2**31 - 1
-_FINE = 10**8  # steps to 1, where not all of a cost fits
+_MAX_NUMBER = 2**31 - 1
+_USUAL_SCALE = 10**8  # scale of costs that have to be rounded
 
 
 class CostScale(NamedTuple):
     """Integer weights for the costs of units by an objective whose costs are fractions and add up.
 
-    ``weights[c]`` is ``floor(scale * c)``; ``exact`` says that nothing had to be rounded. ``places[c]``
-    numbers the costs: how often a tree has each of them tells what it costs. ``total`` is what all units
-    weigh together.
+    ``weights[c]`` is ``floor(scale * c)``; ``exact`` says that no cost is rounded. ``places[c]`` is the
+    index of a cost in the vectors of :meth:`Scales.vector`. ``total`` is the weight of all units.
     """
 
     scale: Fraction
@@ -29,34 +28,34 @@ class CostScale(NamedTuple):
 
 
 def cost_scale(costs: Iterable[Fraction]) -> CostScale:
-    """Scale costs so that none is rounded, or where that does not fit clingo, as finely as is of use."""
+    """Return the exact scale of costs, or where that overflows, the finest useful one."""
     costs = list(costs)
     different = sorted(set(costs))
-    most = max(different, default=Fraction(0))
+    greatest = max(different, default=Fraction(0))
     common = math.lcm(*(cost.denominator for cost in different))
-    exact = common * most <= _LARGEST
-    scale = Fraction(common) if exact else min(Fraction(_FINE), _LARGEST / most)
+    exact = common * greatest <= _MAX_NUMBER
+    scale = Fraction(common) if exact else min(Fraction(_USUAL_SCALE), _MAX_NUMBER / greatest)
     weights = {cost: math.floor(scale * cost) for cost in different}
-    places = {cost: place for place, cost in enumerate(different)}
+    places = {cost: index for index, cost in enumerate(different)}
     return CostScale(scale, exact, weights, places, sum(weights[cost] for cost in costs))
 
 
 def require_one_rounded(problem: Problem, objectives: Iterable[Objective]) -> None:
-    """Raise :class:`UserError` for objectives of which two have to be rounded by what units may cost.
+    """Raise :class:`UserError` where two of the objectives have to be rounded.
 
-    All units of the network count, so that a question is refused however few units matter for its goals.
+    All units of the network count, so that the error does not depend on the units that matter for the goals.
     """
-    fractions = [each for each in objectives if multiplies(each) or not each.row.whole]
+    fractions = [objective for objective in objectives if multiplies(objective) or not objective.row.whole]
     if len(fractions) < 2:
         return
     costs = {
-        each: {Fraction(problem.figure(each, unit)) for unit in range(len(problem.network))}
-        for each in fractions
+        objective: {Fraction(problem.figure(objective, unit)) for unit in range(len(problem.network))}
+        for objective in fractions
     }
     rounded = [
-        each
-        for each in fractions
-        if (costs[each] - {1} if multiplies(each) else not cost_scale(costs[each]).exact)
+        objective
+        for objective in fractions
+        if (costs[objective] - {1} if multiplies(objective) else not cost_scale(costs[objective]).exact)
     ]
     if len(rounded) > 1:
         raise too_many_rounded(rounded)
@@ -71,15 +70,15 @@ def too_many_rounded(objectives: Iterable[Objective]) -> UserError:
 
 
 class Scales:
-    """How the units of a question are measured in clingo, by each of its objectives.
+    """Scales of the units of a question in clingo, by objective.
 
-    ``rates`` is the scale of success rates, ``None`` where none are known; ``costs`` are those of objectives
-    that add up fractions. ``facts`` are the objectives whose costs the facts tell one by one. ``rounded`` is
-    the one objective, if any, that clingo only adds up roughly.
+    ``rates`` is the scale of success rates, ``None`` where none are known; ``costs`` are the scales of
+    objectives that add up fractions. ``facts`` are the objectives whose costs are facts per unit.
+    ``rounded`` is the one objective whose weights are rounded, ``None`` where none is.
     """
 
     def __init__(self, problem: Problem, units: Iterable[int], objectives: Iterable[Objective] = ()) -> None:
-        """Scale what some units of a problem cost.
+        """Scale the costs of units of a problem.
 
         Raises :class:`UserError` where two of the objectives have to be rounded.
         """
@@ -98,7 +97,7 @@ class Scales:
         self.rounded: Objective | None = rounded[0] if rounded else None
 
     def weight(self, objective: Objective, units: Iterable[int]) -> int:
-        """Return what clingo adds up for some units."""
+        """Return the total weight of units in clingo."""
         if multiplies(objective):
             assert self.rates is not None
             return sum(self.rates.weights[self._problem.rate(unit)] for unit in units)
@@ -112,10 +111,10 @@ class Scales:
         return int(sum(problem.figure(objective, unit) for unit in units)) + objective.row.item * len(items)
 
     def cost_weight(self, objective: Objective, cost: int | Fraction) -> int:
-        """Return what clingo adds up for a cost that bounds others.
+        """Return the weight of a cost that is an upper bound.
 
-        Raises :class:`UserError` for an objective that is rounded, and where sums may not fit: where clingo
-        compares a sum with a number, what all units weigh together wraps, and the bound is lost.
+        Raises :class:`UserError` for an objective that is rounded, and where the weight of all units
+        overflows, since then clingo ignores the bound.
         """
         if objective.row.whole:
             return int(cost)
@@ -125,7 +124,7 @@ class Scales:
                 f"the objective {objective} has to be rounded for the solver, so it cannot be bounded: leave "
                 "it out, or the other objective that has to be rounded"
             )
-        if scale.total > _LARGEST:
+        if scale.total > _MAX_NUMBER:
             raise UserError(
                 f"by the objective {objective} all units together cost more than fits into clingo's numbers, "
                 "which have 32 bits, so no bound can be put on it: leave it out, or take fewer digits"
@@ -140,14 +139,14 @@ class Scales:
         assert self.rounded is not None
         costs = (self._problem.figure(self.rounded, unit) for unit in units)
         if multiplies(self.rounded):
-            return sum(rate != 1 for rate in costs)  # also those that weigh 0
+            return sum(rate != 1 for rate in costs)  # rates of weight 0 count, too
         scale, _, weights, *_ = self.costs[self.rounded]
         return sum(scale * cost != weights[Fraction(cost)] for cost in costs)
 
     def vector(self, units: Iterable[int]) -> dict[int, int]:
-        """Return the numbers that tell one total by the rounded objective from another, by place.
+        """Return the vector that identifies a total by the rounded objective exactly, by index.
 
-        Where rates multiply these are exponents of coprime factors, else it is how often each cost occurs.
+        Where rates multiply, it has the exponents of coprime factors, else the number of units of each cost.
         """
         assert self.rounded is not None
         if multiplies(self.rounded):
@@ -172,15 +171,15 @@ class Scales:
         return {unit: self.unit_vector(unit) for unit in self._units}
 
     def bound(self, objective: Objective, weight: int) -> int | Fraction:
-        """Turn a lower bound on weights into one on an objective (on success: from above)."""
+        """Return the bound on an objective from a lower bound on weights (an upper bound on success)."""
         if multiplies(objective):
             return Fraction(1) if self.rates is None else self.rates.success_bound(weight)
         return weight / self.costs[objective].scale if objective in self.costs else weight
 
     def allows(self, objective: Objective, weight: int, figure: int | Fraction) -> bool:
-        """Whether units of a weight can have some costs by an objective.
+        """Whether units of a weight can have a cost by an objective.
 
-        Exactly these, if nothing is rounded.
+        Without rounding, only one cost has that weight.
         """
         bound = self.bound(objective, weight)
         if objective is not self.rounded:

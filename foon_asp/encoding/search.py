@@ -1,4 +1,4 @@
-"""One run of clingo over encodings and facts, with limits; it claims nothing itself."""
+"""One run of clingo over encodings and facts, within limits."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -14,7 +14,7 @@ from foon_asp.grounding.stated import Loaded
 
 
 def check(arguments: Sequence[str]) -> None:
-    """Raise :class:`UserError` for options that clingo does not take."""
+    """Raise :class:`UserError` for options that clingo refuses."""
     messages: list[str] = []
     try:
         with refusing(messages):
@@ -37,11 +37,11 @@ def run(
 ) -> Run:
     """Ground the files and facts and search for the best answer.
 
-    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
-    ``predicates``, by name and arity, have atoms that are wanted besides ``use``, which begin with a number.
-    ``products`` says how many products of rates the facts describe, ``endless`` that nobody knows whether the
-    grounding comes to an end. Stopped at a limit, or at ctrl-C, it gives what is known by then. Raises what
-    :func:`foon_asp.encoding.encoding.fault` makes of clingo's messages where a program is at fault.
+    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
+    ``predicates``, by name and arity, are those whose atoms are returned besides ``use``; these begin with a
+    number. ``products`` is the number of products of rates in the facts, ``endless`` says that grounding may
+    not terminate. At a limit or ctrl-C, the run has the last answer. Raises the error of
+    :func:`foon_asp.encoding.encoding.fault` where clingo refuses the program.
     """
     began = time.perf_counter()
     try:
@@ -66,7 +66,7 @@ def ground(
     products: int = 0,
     endless: bool = False,
 ) -> Grounded:
-    """Ground the files and facts; raises like :func:`run`, and ``KeyboardInterrupt`` where it is stopped."""
+    """Return the ground program of files and facts; raises like :func:`run`, and ``KeyboardInterrupt``."""
     try:
         return Grounded(files, facts, arguments, products, deadline, endless)
     except ProgramError as error:
@@ -74,7 +74,7 @@ def ground(
 
 
 def refused(error: ProgramError, files: Sequence[Loaded] = ()) -> UserError:
-    """Turn clingo's messages into one error with places and source lines."""
+    """Return clingo's messages as one error with places and source lines."""
     from foon_asp.encoding.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
 
     return fault(error.messages, error.otherwise, files)

@@ -1,1 +1,1 @@
-"""Programs that clingo grounds and searches, here or in a process that can be ended."""
+"""Programs that clingo grounds and searches, in this process or in a worker that can be killed."""

@@ -1,4 +1,4 @@
-"""What a program derives that leaves nothing open: its atoms are known when it is grounded."""
+"""Atoms of a stratified program, which grounding alone derives."""
 
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from foon_asp.grounding.number_checks import Exact
 
 
 class Term(NamedTuple):
-    """A term that is neither a number nor a string, as it is written."""
+    """A term that is neither a number nor a string, as text."""
 
     text: str
 
@@ -20,9 +20,9 @@ Value = int | str | Term
 
 
 def derive(text: str, name: str, arity: int) -> list[tuple[Value, ...]]:
-    """Ground a program and give the arguments of all atoms of a predicate.
+    """Ground a program and return the arguments of all atoms of a predicate.
 
-    Raises :class:`ProgramError` for what clingo refuses or leaves out.
+    Raises :class:`ProgramError` for statements or instances that clingo refuses or drops.
     """
     messages: list[str] = []
     with refusing(messages):

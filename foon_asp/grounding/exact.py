@@ -1,4 +1,4 @@
-"""What terms come to in whole numbers of any size, where clingo's have 32 bits."""
+"""Exact evaluation of arithmetic terms, to find those beyond clingo's numbers of 32 bits."""
 
 from collections.abc import Callable, Sequence
 from typing import Final
@@ -7,11 +7,11 @@ LARGEST: Final = 2**31 - 2  # clingo adds 1 to a bound: with 2^31 - 1 a conditio
 
 
 class _BeyondError(Exception):
-    """A number is none of clingo's."""
+    """A result that clingo cannot represent."""
 
 
 def _divided(a: int, b: int) -> int:
-    """Divide as clingo does: towards 0."""
+    """Return a quotient as clingo does, rounded towards 0."""
     return abs(a) // abs(b) * (1 if (a < 0) == (b < 0) else -1)
 
 
@@ -22,7 +22,7 @@ def _power(a: int, b: int) -> int:
     return power
 
 
-_TWO: Final[dict[str, Callable[[int, int], int]]] = {
+_BINARY: Final[dict[str, Callable[[int, int], int]]] = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
     "*": lambda a, b: a * b,
@@ -33,27 +33,27 @@ _TWO: Final[dict[str, Callable[[int, int], int]]] = {
     "?": lambda a, b: a | b,
     "^": lambda a, b: a ^ b,
 }
-_ONE: Final[dict[str, Callable[[int], int]]] = {"neg": lambda a: -a, "abs": abs, "~": lambda a: ~a}
+_UNARY: Final[dict[str, Callable[[int], int]]] = {"neg": lambda a: -a, "abs": abs, "~": lambda a: ~a}
 
 
 def is_beyond(text: str, values: Sequence[int]) -> bool:
-    """Whether a term has no exact value among clingo's numbers, or something on the way to it has none.
+    """Whether the value of a term or of a subterm is outside clingo's numbers.
 
-    The text has the places of values, and operators behind what they are applied to: ``0 1 + 0 *``.
+    ``text`` is the term in postfix notation, with indices into ``values``: ``0 1 + 0 *``.
     """
-    known: list[int] = []
+    stack: list[int] = []
     try:
         for word in text.split():
-            if word in _TWO:
-                b = known.pop()
-                found = _TWO[word](known.pop(), b)
+            if word in _BINARY:
+                b = stack.pop()
+                result = _BINARY[word](stack.pop(), b)
             else:
-                found = _ONE[word](known.pop()) if word in _ONE else values[int(word)]
-            if abs(found) > LARGEST:
+                result = _UNARY[word](stack.pop()) if word in _UNARY else values[int(word)]
+            if abs(result) > LARGEST:
                 return True
-            known.append(found)
+            stack.append(result)
     except _BeyondError:
         return True
-    except ZeroDivisionError:  # clingo says so
+    except ZeroDivisionError:  # reported by clingo
         return False
     return False

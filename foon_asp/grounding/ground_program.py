@@ -1,6 +1,6 @@
-"""A program that clingo grounds and searches, with nothing in it that knows of the question.
+"""A program that clingo grounds and searches, independent of the question.
 
-What comes in and goes out are plain values, so that it may be in another process.
+Arguments and results are plain values, so that it may be in another process.
 """
 
 from collections import Counter
@@ -13,16 +13,16 @@ from clingo.symbol import Number, Symbol, SymbolType
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
-from foon_asp.grounding.number_checks import PLACE, Exact, numbers_beyond
-from foon_asp.grounding.run import Ended, Heard, asks_for_statistics
+from foon_asp.grounding.number_checks import CHECKS_FILE, Exact, numbers_beyond
+from foon_asp.grounding.run import Ended, FoundAnswer, asks_for_statistics
 from foon_asp.grounding.stated import Stated
 
 
 class GroundProgram:
-    """Files and text, grounded; raises :class:`ProgramError` for what clingo refuses.
+    """Ground program of files and text; raises :class:`ProgramError` where clingo refuses it.
 
-    It raises that, too, for what clingo would leave out with no more than a message. ``products`` says how
-    many products of rates the text describes. A search ends at the ``deadline``, if any.
+    Instances that clingo drops with a mere message are an error, too. ``products`` is the number of products
+    of rates in the text. A search ends at the ``deadline``, if any.
     """
 
     deadline: Deadline | None = None
@@ -33,21 +33,23 @@ class GroundProgram:
         self._messages: list[str] = []
         self._statistics = asks_for_statistics(arguments)
         with refusing(self._messages):
-            hear = listener(self._messages)
-            self._control = Control(list(arguments), logger=hear, message_limit=NO_LIMIT)
-            checks = [file for file in files if isinstance(file, Stated) and file.place == PLACE]
-            self._load([file for file in files if file not in checks], hear)
+            logger = listener(self._messages)
+            self._control = Control(list(arguments), logger=logger, message_limit=NO_LIMIT)
+            checks = [file for file in files if isinstance(file, Stated) and file.place == CHECKS_FILE]
+            self._load([file for file in files if file not in checks], logger)
             self._control.add("base", [], text)
-            self._load(checks, hear)  # last: what finds a sum that clasp refuses is grounded before the sum
+            self._load(
+                checks, logger
+            )  # last, since the check of a sum that clasp refuses has to be grounded before the sum
             parts = [("_product", [Number(number)]) for number in range(products)]
             self._ground([("base", []), *parts])
 
-    def _load(self, files: Sequence[str | Stated], hear: Callable[[MessageCode, str], None]) -> None:
+    def _load(self, files: Sequence[str | Stated], logger: Callable[[MessageCode, str], None]) -> None:
         for file in files:
             if isinstance(file, Stated):
                 from foon_asp.grounding.parsing import load  # noqa: PLC0415 (slow to import)
 
-                load(self._control, file, hear)
+                load(self._control, file, logger)
             else:
                 self._control.load(file)
 
@@ -58,31 +60,34 @@ class GroundProgram:
             self._messages += numbers_beyond(self._control)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Return for each predicate, by name and arity, the numbers of its atoms: all that the rules derive.
+        """Return the arguments of all atoms of each predicate, given by name and arity; these are numbers.
 
-        To be asked of rules without choice, whose atoms grounding alone settles.
+        For stratified rules, whose atoms grounding alone derives.
         """
         atoms = self._control.symbolic_atoms
         return [
-            [tuple([term.number for term in atom.symbol.arguments]) for atom in atoms.by_signature(*each)]
-            for each in predicates
+            [
+                tuple([term.number for term in atom.symbol.arguments])
+                for atom in atoms.by_signature(*predicate)
+            ]
+            for predicate in predicates
         ]
 
     def search(
         self,
         opt_mode: str,
         predicates: Sequence[tuple[str, int]],
-        on_tree: Callable[[Heard], None],
+        on_tree: Callable[[FoundAnswer], None],
         on_bound: Callable[[list[int]], None],
     ) -> Ended:
-        """Search for the best answer, and say how the search ended; any thread may report trees.
+        """Search for the best answer, and return how the search ended; any thread may report trees.
 
-        ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
-        ``predicates``, by name and arity, have atoms that are wanted besides ``use``, which begin with a
-        number. Raises :class:`UserError` for an option that clasp does not take, for answers that are none,
-        and what ``on_tree`` raises.
+        ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
+        ``predicates``, by name and arity, are those whose atoms are reported besides ``use``; these begin
+        with a number. Raises :class:`UserError` for an option that clasp refuses and for invalid answers, and
+        whatever ``on_tree`` raises.
         """
-        # whatever the options say: a proof needs the whole search space
+        # overrides the options: a proof needs the whole search space
         models = 1 if opt_mode == "ignore" else 0
         settings = {"opt_mode": opt_mode, "models": models, "enum_mode": "auto", "project": "no"}
         try:
@@ -90,13 +95,13 @@ class GroundProgram:
                 setattr(self._control.configuration.solve, name, value)
         except RuntimeError as error:
             raise UserError(str(error)) from None
-        faults: list[Exception] = []  # raised in clingo's thread, to be raised in ours
+        faults: list[Exception] = []  # raised in clingo's thread, to be raised again in this one
 
         def model(model: Model) -> bool:
             try:
                 atoms = {name: _numbers(model, name, arity) for name, arity in predicates}
                 rows = {name: _rows(model, name, arity) for name, arity in predicates}
-                on_tree(Heard(_used(model), tuple(model.cost), atoms, rows))
+                on_tree(FoundAnswer(_used(model), tuple(model.cost), atoms, rows))
             except Exception as error:
                 faults.append(error)
             return not faults
@@ -117,19 +122,19 @@ class GroundProgram:
 
 
 def _lines(statistics: Any, name: str = "") -> Iterator[str]:
-    """Return clingo's statistics, a tree of numbers, as lines with the path to each."""
+    """Return clingo's statistics, a tree of numbers, as one line per number with its path."""
     if isinstance(statistics, dict):
-        for key, each in statistics.items():
-            yield from _lines(each, f"{name}.{key}" if name else key)
+        for key, child in statistics.items():
+            yield from _lines(child, f"{name}.{key}" if name else key)
     elif isinstance(statistics, list):
-        for number, each in enumerate(statistics):
-            yield from _lines(each, f"{name}.{number}")
+        for number, child in enumerate(statistics):
+            yield from _lines(child, f"{name}.{number}")
     else:
         yield f"{name} = {statistics:g}"
 
 
 def _wait(handle: SolveHandle, deadline: Deadline) -> None:
-    """Wait for the end of a search, and cancel it when it is time to stop."""
+    """Wait for the end of a search, and cancel it at the deadline or ctrl-C."""
     try:
         while not handle.wait(deadline.slice()):
             if deadline.passed:

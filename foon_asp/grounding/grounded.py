@@ -1,4 +1,4 @@
-"""A ground program that keeps to limits, wherever it is."""
+"""A ground program under limits, in this process or in a worker."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING
 
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.grounding.ground_program import GroundProgram
-from foon_asp.grounding.run import Heard, Run
+from foon_asp.grounding.run import FoundAnswer, Run
 from foon_asp.grounding.stated import Loaded
 
 if TYPE_CHECKING:
     from foon_asp.grounding.worker_process import WorkerProgram
 
-_SMALL = 1_500_000  # letters that encodings of ours ground in a fraction of a second
+_MAX_LETTERS_HERE = 1_500_000  # of facts: the built-in encodings ground them in a fraction of a second
 
 
 class Grounded:
-    """Files and text, grounded.
+    """Ground program of files and text.
 
-    With ``endless``, for rules whose grounding may have no end, it is in a process of its own, which ends at
-    the limits and at ctrl-C; so it is where there is much text, and where the memory is limited. ``doing`` is
-    what a limit says of it. Raises :class:`foon_asp.grounding.run.ProgramError` for what clingo refuses, and
+    With ``endless``, for rules whose grounding may not terminate, it is in a worker process, which is killed
+    at the limits and at ctrl-C; also with much text or limited memory. ``doing`` names the phase in messages
+    about limits. Raises :class:`foon_asp.grounding.run.ProgramError` where clingo refuses the program, and
     :class:`LimitError`.
     """
 
@@ -39,7 +39,7 @@ class Grounded:
         deadline.check()
         names = [str(file) if isinstance(file, Path) else file for file in files]
         self._program: GroundProgram | WorkerProgram
-        if endless or len(text) > _SMALL or deadline.memory is not None:
+        if endless or len(text) > _MAX_LETTERS_HERE or deadline.memory is not None:
             from foon_asp.grounding import worker_process  # noqa: PLC0415 (often not needed)
 
             self._program = worker_process.WorkerProgram(names, text, arguments, products, deadline)
@@ -47,7 +47,7 @@ class Grounded:
             self._program = GroundProgram(names, text, arguments, products)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Give for each predicate, by name and arity, the numbers of its atoms; raises as the class does."""
+        """Return the arguments of all atoms of each predicate; raises as the class does."""
         return self._program.consequences(predicates)
 
     def search(
@@ -58,35 +58,35 @@ class Grounded:
         on_bound: Callable[[list[int]], None] | None = None,
         predicates: Sequence[tuple[str, int]] = (),
     ) -> Run:
-        """Search for the best answer; at a limit, or at ctrl-C, what was found before.
+        """Return the run of a search for the best answer; at a limit or ctrl-C, with the last answer.
 
-        ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
-        ``predicates``, by name and arity, have atoms that are wanted besides ``use``, which begin with a
-        number. Raises what ``on_tree`` raises, and :class:`UserError` for answers that are none.
+        ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
+        ``predicates``, by name and arity, are those whose atoms are returned besides ``use``; these begin
+        with a number. Raises whatever ``on_tree`` raises, and :class:`UserError` for invalid answers.
         """
         result = Run()
         began = time.perf_counter()
 
-        def tree(heard: Heard) -> None:
-            result.units, result.cost, result.atoms, result.rows = heard
+        def tree(answer: FoundAnswer) -> None:
+            result.units, result.cost, result.atoms, result.rows = answer
             if on_tree:
-                on_tree(heard.units)
+                on_tree(answer.units)
 
         def bound(lower: list[int]) -> None:
-            result.lower = max(result.lower, lower)  # a lesser one may come behind; each of them holds
+            result.lower = max(result.lower, lower)  # a lesser bound may arrive later; all are valid
             if on_bound:
                 on_bound(result.lower)
 
         try:
             self._begin("searching", deadline)
             result.exhausted, result.statistics = self._program.search(opt_mode, predicates, tree, bound)
-        except LimitError:  # what was heard stands
+        except LimitError:  # the last answer remains
             pass
         result.solve_seconds = time.perf_counter() - began
         return result
 
     def close(self) -> None:
-        """Say that it is not needed any more; so is one that is dropped."""
+        """Release the program; dropping the last reference does so, too."""
         self._program.close()
 
     def _begin(self, doing: str, deadline: Deadline) -> None:

@@ -1,7 +1,7 @@
-"""Rules that find what a program calculates beyond clingo's numbers, where it takes others silently.
+"""Overflow checks: rules that find arithmetic beyond clingo's numbers, which wraps silently.
 
-They are in a part of their own, derive ``_beyond(File,Line,Column,Term)``, and call ``@_exact(Text,...)``
-with a term as :func:`foon_asp.grounding.exact.is_beyond` has it, and the values in it.
+They derive ``_beyond(File,Line,Column,Term)``, and call ``@_exact(Text,...)`` with a term in the notation of
+:func:`foon_asp.grounding.exact.is_beyond`, and its values.
 """
 
 from collections.abc import Callable, Iterator
@@ -12,7 +12,7 @@ from clingo.symbol import Number, Symbol, SymbolType
 
 from foon_asp.grounding.exact import LARGEST, is_beyond
 
-PLACE: Final = "_numbers"  # stands for the name of a file that these rules are in
+CHECKS_FILE: Final = "_numbers"  # the name of these rules in place of a file
 BEYOND: Final = "_beyond", 4
 
 
@@ -21,18 +21,20 @@ class Exact:
 
     def __getattribute__(self, name: str) -> Callable[..., Symbol]:
         if name != "_exact":
-            raise RuntimeError(f"no function is called, and {name!r} is one")  # nor is it read before
+            raise RuntimeError(
+                f"no function is called, and {name!r} is one"
+            )  # the text has been checked for calls
         return _exact
 
 
 def _exact(text: Symbol, *values: Symbol) -> Symbol:
     if any(value.type is not SymbolType.Number for value in values):
-        return Number(0)  # clingo says so
+        return Number(0)  # reported by clingo
     return Number(is_beyond(text.string, [value.number for value in values]))
 
 
 def numbers_beyond(control: Control) -> Iterator[str]:
-    """Return messages, as clingo would, for what a ground program calculates beyond its numbers."""
+    """Return messages in clingo's format for the overflows in a ground program."""
     for atom in control.symbolic_atoms.by_signature(*BEYOND):
         file, line, column, term = atom.symbol.arguments
         yield (

@@ -1,4 +1,4 @@
-"""The statements of files, and of rules that are in none, with their places."""
+"""Parser of statements of files and of rules without a file, with their places."""
 
 from collections.abc import Callable, Iterator
 
@@ -7,43 +7,43 @@ from clingo.ast import AST, ASTSequence, Location, ProgramBuilder, parse_files, 
 
 from foon_asp.grounding.stated import Loaded, Stated
 
-_TEXT = "<string>"  # what clingo calls a text that it parses
+_TEXT = "<string>"  # the file name that clingo uses for a text
 
 
 def parse(rules: Loaded, add: Callable[[AST], None], logger: Callable[[MessageCode, str], None]) -> None:
-    """Give each statement to ``add``; raises ``RuntimeError`` after messages, as clingo does."""
+    """Parse rules and call ``add`` with each statement; raises ``RuntimeError`` as clingo does."""
     if not isinstance(rules, Stated):
         parse_files([str(rules)], add, logger=logger)
         return
     place = rules.place
 
     def placed(statement: AST) -> None:
-        _place(statement, place)
+        _set_place(statement, place)
         add(statement)
 
-    def told(code: MessageCode, message: str) -> None:
+    def logged(code: MessageCode, message: str) -> None:
         logger(code, place + message.removeprefix(_TEXT) if message.startswith(_TEXT) else message)
 
-    parse_string(rules.text, placed, logger=told)
+    parse_string(rules.text, placed, logger=logged)
 
 
 def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], None]) -> None:
-    """Add rules that are in no file to a program; messages about them have their place."""
+    """Add rules without a file to a program; messages about them have their place."""
     with ProgramBuilder(control) as builder:
         parse(rules, builder.add, logger)
 
 
 def nodes(piece: AST) -> Iterator[AST]:
-    """Return a piece of a rule and all that is within it."""
+    """Return a node of the syntax tree and all its descendants."""
     yield piece
     for key in piece.child_keys:
         child = getattr(piece, key)
-        for part in child if isinstance(child, ASTSequence) else [child]:
-            if isinstance(part, AST):
-                yield from nodes(part)
+        for node in child if isinstance(child, ASTSequence) else [child]:
+            if isinstance(node, AST):
+                yield from nodes(node)
 
 
-def _place(statement: AST, place: str) -> None:
+def _set_place(statement: AST, place: str) -> None:
     for node in nodes(statement):
         if "location" in node.keys():  # noqa: SIM118 (it is no mapping)
             begin, end = node.location

@@ -1,4 +1,4 @@
-"""What a run of clingo gives, on the way and in the end."""
+"""Results of a run of clingo: answers on the way, and the end of the search."""
 
 import re
 from collections import Counter
@@ -16,14 +16,14 @@ class ProgramError(Exception):
 
 
 def asks_for_statistics(options: Sequence[str]) -> bool:
-    """Whether options of clingo ask for its statistics."""
+    """Whether options of clingo request its statistics."""
     return any(option == "--stats" or re.fullmatch("--stats=[1-9]\\d*", option) for option in options)
 
 
-class Heard(NamedTuple):
-    """An answer: the units in use, the cost vector, and counts of the atoms that were asked for.
+class FoundAnswer(NamedTuple):
+    """An answer: the units in use, the cost vector, and counts of atoms by predicate and first argument.
 
-    ``rows`` has the arguments of those atoms that have numbers only.
+    ``rows`` has the arguments of atoms with numbers only, by predicate.
     """
 
     units: frozenset[int]
@@ -33,7 +33,7 @@ class Heard(NamedTuple):
 
 
 class Ended(NamedTuple):
-    """How a search ended: whether it was exhausted, and clingo's statistics as text where asked for."""
+    """The end of a search: whether it was exhausted, and clingo's statistics as text if requested."""
 
     exhausted: bool
     statistics: str = ""
@@ -41,14 +41,14 @@ class Ended(NamedTuple):
 
 @dataclass
 class Run:
-    """What a run of clingo ended with.
+    """The result of a run of clingo.
 
-    ``units`` is the last (best) answer or ``None``, ``cost`` its cost vector as clingo reports it, which
-    wraps at 32 bits. ``exhausted`` says that the search space was, so that
-    the answer is optimal, or that there is none. ``lower`` holds the proved lower bound of each priority,
-    highest first, as far as known. ``atoms`` says for each predicate that was
-    asked for how many of its atoms in the answer begin with each number, and ``rows`` what the arguments are
-    of those that have numbers only. ``statistics`` are clingo's, as text, where an option asks for them.
+    ``units`` is the last (best) answer, ``None`` without one, ``cost`` its cost vector as clingo reports it,
+    which wraps at 32 bits. ``exhausted`` says that the whole search space was searched, so that the answer is
+    optimal, or that none exists. ``lower`` holds the proved lower bound of each priority, highest first, as
+    far as known. ``atoms`` has for each requested predicate the number of its atoms in the answer by first
+    argument, and ``rows`` the arguments of atoms with numbers only. ``statistics`` are clingo's, as text,
+    where an option requests them.
     """
 
     units: frozenset[int] | None = None

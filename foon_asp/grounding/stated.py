@@ -1,15 +1,15 @@
-"""Rules that are in no file."""
+"""Rules without a file."""
 
 from pathlib import Path
 from typing import NamedTuple
 
 
 class Stated(NamedTuple):
-    """The text of some rules, and what messages call it.
+    """The text of rules, and their name in messages.
 
-    ``place`` stands for the name of a file: ``rule 1``. Where the rules are those of a ready-made constraint
-    under constants of their own, ``file`` is that constraint, with the same lines, ``written`` says how it
-    was asked for, and ``renamed`` what its names stand for here.
+    ``place`` stands for the name of a file: ``rule 1``. For a ready-made constraint with constants of its
+    own, ``file`` is that constraint, with the same lines, ``written`` is the text of its option, and
+    ``renamed`` has pairs of the new and the original names of its constants.
     """
 
     place: str

@@ -1,4 +1,4 @@
-"""The other process: it obeys commands about one program, until no more come."""
+"""Main loop of the worker process: it executes commands about one program until its input ends."""
 
 import contextlib
 import errno
@@ -14,35 +14,35 @@ from foon_asp.processes.pipe import OUT_OF_MEMORY, receive, requests, send
 
 
 def serve() -> None:
-    """Obey the commands on standard input and answer on what was standard output."""
+    """Execute the commands on standard input and answer on the original standard output."""
     commands, answers = requests(receive)
     program: GroundProgram | None = None
 
-    def obey(command: str, *given: Any) -> object:
+    def obey(command: str, *parameters: Any) -> object:
         nonlocal program
         if command == "ground":
-            program = None  # before there are two
-            folder, *described, memory = given
+            program = None  # frees the memory before the next one
+            folder, *described, memory = parameters
             if folder is not None:
                 os.chdir(folder)
             _bound_memory(memory)
             program = GroundProgram(*described)
             return None
         if command == "derive":
-            *described, memory = given
+            *described, memory = parameters
             _bound_memory(memory)
             return derive(*described)
         assert program is not None
         if command == "consequences":
-            return program.consequences(*given)
+            return program.consequences(*parameters)
         assert command == "search"
-        opt_mode, predicates = given
-        tree, bound = (lambda said, kind=kind: send(answers, (kind, said)) for kind in ("tree", "bound"))
+        opt_mode, predicates = parameters
+        tree, bound = (lambda value, kind=kind: send(answers, (kind, value)) for kind in ("tree", "bound"))
         return tuple(program.search(opt_mode, predicates, tree, bound))
 
     while True:
         command = commands.get()
-        if command == ("forget",):  # nothing is answered
+        if command == ("forget",):  # without an answer
             program = None
             continue
         try:
@@ -64,11 +64,11 @@ def serve() -> None:
 
 
 def _bound_memory(size: int | None) -> None:
-    """Let no more be allocated than this, where the system can: the other process looks only now and then."""
+    """Limit the data segment to ``size`` bytes where the system can, since the parent only polls memory."""
     try:
         import resource  # noqa: PLC0415 (not on every system)
     except ImportError:
         return
-    most = resource.getrlimit(resource.RLIMIT_DATA)[1]
-    with contextlib.suppress(ValueError, OSError):  # of a system, or more than its owner allows
-        resource.setrlimit(resource.RLIMIT_DATA, (most if size is None else size, most))
+    hard_limit = resource.getrlimit(resource.RLIMIT_DATA)[1]
+    with contextlib.suppress(ValueError, OSError):  # not supported, or above the limit of the user
+        resource.setrlimit(resource.RLIMIT_DATA, (hard_limit if size is None else size, hard_limit))

@@ -1,4 +1,4 @@
-"""A program in a process of its own, which can be ended: clingo cannot be interrupted while it grounds."""
+"""Client of a worker process, which can be killed: clingo cannot be interrupted while it grounds."""
 
 import os
 import signal
@@ -11,21 +11,21 @@ from typing import Any
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.derived import Value
-from foon_asp.grounding.run import Ended, Heard, ProgramError
+from foon_asp.grounding.run import Ended, FoundAnswer, ProgramError
 from foon_asp.grounding.stated import Stated
 from foon_asp.processes.pipe import OUT_OF_MEMORY, packed
 from foon_asp.processes.worker import DiedError, Worker, give_back, take
 
 _KEY = "foon_asp.grounding.worker"
 _OF_MEMORY = {OUT_OF_MEMORY, -signal.SIGABRT, -9}
-_Heard = Mapping[str, Callable[[Any], None]]
+_Handlers = Mapping[str, Callable[[Any], None]]
 
 
 class WorkerProgram:
-    """Like :class:`foon_asp.grounding.ground_program.GroundProgram`, in another process.
+    """A :class:`foon_asp.grounding.ground_program.GroundProgram` in another process.
 
-    Where a limit is reached, or ctrl-C pressed, the process is ended, :class:`LimitError` is raised, and the
-    program is of no more use.
+    At a limit or ctrl-C, the process is killed, :class:`LimitError` is raised, and the program cannot be used
+    any more.
     """
 
     def __init__(
@@ -43,47 +43,47 @@ class WorkerProgram:
         _ask(self._worker, deadline, *command)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Return for each predicate, by name and arity, the numbers of its atoms."""
-        found: list[list[tuple[int, ...]]] = _ask(
+        """Return the arguments of all atoms of each predicate, given by name and arity."""
+        numbers: list[list[tuple[int, ...]]] = _ask(
             self._worker, self.deadline, "consequences", list(predicates)
         )
-        return found
+        return numbers
 
     def search(
         self,
         opt_mode: str,
         predicates: Sequence[tuple[str, int]],
-        on_tree: Callable[[Heard], None],
+        on_tree: Callable[[FoundAnswer], None],
         on_bound: Callable[[list[int]], None],
     ) -> Ended:
-        """Search for the best answer, and say how the search ended; trees are reported here."""
-        hear: _Heard = {"tree": on_tree, "bound": on_bound}
-        return Ended(*_ask(self._worker, self.deadline, "search", opt_mode, list(predicates), hear=hear))
+        """Search for the best answer, and return how the search ended; trees are reported in this process."""
+        handlers: _Handlers = {"tree": on_tree, "bound": on_bound}
+        return Ended(
+            *_ask(self._worker, self.deadline, "search", opt_mode, list(predicates), handlers=handlers)
+        )
 
     def close(self) -> None:
-        """Let the process have another program."""
+        """Release the process for another program."""
         self._give_back()
 
 
 def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[Value, ...]]:
-    """Do what :func:`foon_asp.grounding.derived.derive` does in another process, which ends at the limits."""
+    """Run :func:`foon_asp.grounding.derived.derive` in another process, which is killed at the limits."""
     worker = take(_KEY, _start)
     try:
-        found: list[tuple[Value, ...]] = _ask(
-            worker, deadline, "derive", text, name, arity, _memory(deadline)
-        )
-        return found
+        rows: list[tuple[Value, ...]] = _ask(worker, deadline, "derive", text, name, arity, _memory(deadline))
+        return rows
     finally:
         _forget(worker)
 
 
 def _memory(deadline: Deadline) -> int | None:
-    """Return how many bytes another process may use."""
+    """Return the number of bytes that another process may use, ``None`` without a limit."""
     return None if deadline.memory is None else max(1, deadline.memory - deadline.memory_in_use())
 
 
 def _folder() -> str | None:
-    """Give the folder that names of files are relative to: it may be another one than at the last program."""
+    """Return the current folder, which may change between programs; ``None`` if it was removed."""
     try:
         return os.getcwd()
     except OSError:  # it was removed
@@ -91,7 +91,7 @@ def _folder() -> str | None:
 
 
 def prepare() -> None:
-    """Start a process, if none waits: it gets ready while other things are done."""
+    """Start a process in advance, if none waits."""
     give_back(_KEY, take(_KEY, _start))
 
 
@@ -100,19 +100,19 @@ def _start() -> Worker:
 
 
 def _forget(worker: Worker) -> None:
-    """Let the process drop its program, and wait for the next."""
+    """Make the process drop its program, and return it to the pool."""
     if worker.ready:
         worker.tell(packed(("forget",)))
     give_back(_KEY, worker)
 
 
-def _ask(worker: Worker, deadline: Deadline, *command: object, hear: _Heard | None = None) -> Any:
-    """Return a command, and return the answer.
+def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handlers | None = None) -> Any:
+    """Send a command, and return the answer.
 
     Raises :class:`ProgramError` and :class:`UserError` as the program does, and :class:`LimitError`.
     """
     try:
-        kind, value = worker.ask(packed(command), deadline, hear)
+        kind, value = worker.ask(packed(command), deadline, handlers)
     except DiedError as died:
         raise _cause(died.code, worker.has_spoken, deadline) from None
     if kind == "refused":
@@ -125,7 +125,7 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, hear: _Heard | No
 
 
 def _cause(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
-    """Return why the process ended by itself: memory in most cases, or else clingo cannot take the rules."""
+    """Return the error for a process that died: mostly of memory, else by rules beyond clingo."""
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
         deadline.out_of_memory()
         return LimitError(deadline)

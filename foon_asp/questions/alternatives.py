@@ -395,7 +395,7 @@ def _ranked(
     else:
         complete = ranked.complete
     settled = len(trees)
-    for units, costs in ranked.known:
+    for units, costs in ranked.pending:
         worse_than_asked = trees and worse is not None and _is_worse(costs, trees[0].costs, order, worse)
         if not worse_than_asked and len(trees) < most:
             trees.append(_Listed(units, costs))

@@ -49,9 +49,9 @@ def given_constraints(given: Files) -> tuple[Constraint, ...]:
 
 def asked_with(problem: Problem, how: Settings) -> Problem:
     """Return the whole problem if the settings have rules that may be about any unit."""
-    from foon_asp.asp.assembly import asks_of_all  # noqa: PLC0415 (where there may be rules)
+    from foon_asp.asp.assembly import need_whole_network  # noqa: PLC0415 (where there may be rules)
 
-    return whole(problem) if asks_of_all(problem, how) else problem
+    return whole(problem) if need_whole_network(problem, how) else problem
 
 
 def whole(problem: Problem) -> Problem:

@@ -13,7 +13,7 @@ from foon_asp.results.table import Part
 from foon_asp.results.values import Value
 from foon_asp.rules.constraint import Constraint
 from foon_asp.rules.rule_kind import Kind
-from foon_asp.rules.rules import Together, Told
+from foon_asp.rules.rules import ShownRule, Together
 from foon_asp.text.json_value import schema_name
 
 _KINDS = {
@@ -68,13 +68,13 @@ class ExplainedRule(Value, frozen=True):
     looks_beyond: Remark | None
 
     @classmethod
-    def of(cls, told: Told) -> "ExplainedRule":
+    def of(cls, shown: ShownRule) -> "ExplainedRule":
         """Return what is known of a rule as a value."""
-        rule, (file, line, *_) = told.rule, told.source
-        reason = _remark(rule.reason, told.reason_source)
-        beyond = _remark(rule.further, told.further_source)
-        named = told.use or None
-        return cls(told.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
+        rule, (file, line, *_) = shown.rule, shown.source
+        reason = _remark(rule.reason, shown.reason_source)
+        beyond = _remark(rule.further, shown.further_source)
+        named = shown.use or None
+        return cls(shown.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
 
     def lines(self, more: int) -> Iterator[str]:
         """Return its place and text, what it does and how far it sees; ``more`` facts are like it."""
@@ -142,11 +142,11 @@ def explain_rules(
     rules = assemble(settings, reporter.warning).understood
     if rules is None:
         raise UserError("the built-in encodings were changed, so nothing is known of rules beside them")
-    far = next((str(told.source) for told in rules.told if not told.rule.local), "")
+    far = next((str(shown.source) for shown in rules.shown if not shown.rule.local), "")
     return ExplainedRules(
-        rules=tuple(map(ExplainedRule.of, rules.told)),
-        together=rules.together,
-        meaning=_TOGETHER[rules.together].format(far),
+        rules=tuple(map(ExplainedRule.of, rules.shown)),
+        together=rules.reductions_kept,
+        meaning=_TOGETHER[rules.reductions_kept].format(far),
     )
 
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
-from foon_asp.asp.assisted import assisted, require_near, sees_who_does_it
+from foon_asp.asp.assisted import assisted, require_local, sees_who_does_it
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.ranking import Ranked
 from foon_asp.problem import Objective, Problem, reach
@@ -175,7 +175,7 @@ def helped_trees(
     }
     counts = settings.replaced is not None
     if not counts and sees_who_does_it(settings.constraints):
-        require_near(settings)
+        require_local(settings)
         counts = True
     search = (CountedHelp if counts else PricedHelp)(problem, better, settings, reporter)
     rows: list[Outcome] = []

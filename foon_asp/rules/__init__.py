@@ -1,1 +1,1 @@
-"""Rules of the user: constraints and measures, and what they do to the trees of a question."""
+"""Rules of the user: constraints and measures, and their effect on the trees of a question."""

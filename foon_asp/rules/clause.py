@@ -1,4 +1,4 @@
-"""One rule of an encoding taken apart: its head, and the parts of its body."""
+"""One rule of an encoding taken apart: its head, and the conjuncts of its body."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from operator import eq, ge, gt, le, lt, ne
@@ -22,7 +22,7 @@ from foon_asp.grounding.stated import Loaded, Stated
 from foon_asp.network import Source
 
 Signature = tuple[str, int]
-Constants = Mapping[str, Symbol | None]  # by name; None where the value is not known
+Constants = Mapping[str, Symbol | None]  # by name; None where the value is unknown
 
 _FLIPPED = {
     ComparisonOperator.LessThan: ComparisonOperator.GreaterThan,
@@ -54,18 +54,18 @@ class Literal(NamedTuple):
 
     @property
     def positive(self) -> bool:
-        """Whether it has no ``not``, and so gives its variables their values."""
+        """Whether it has no ``not``, so that it binds its variables."""
         return not self.negations
 
     @property
     def single(self) -> bool:
         """Whether it is one atom once its variables have values; an interval stands for any number."""
-        within = (node for argument in self.arguments for node in nodes(argument))
-        return all(node.ast_type != ASTType.Interval for node in within)
+        nodes_inside = (node for argument in self.arguments for node in nodes(argument))
+        return all(node.ast_type != ASTType.Interval for node in nodes_inside)
 
 
 class Test(NamedTuple):
-    """A comparison, or ``#true`` and ``#false``; ``holds`` says whether it does where that is known."""
+    """A comparison, ``#true`` or ``#false``; ``holds`` is its value, ``None`` if unknown."""
 
     ast: AST
     holds: bool | None
@@ -76,7 +76,7 @@ class Conditional(NamedTuple):
     """``literal : condition`` in a body: the literal has to hold wherever the condition does."""
 
     literal: "Literal | Test | Strange"
-    condition: "tuple[Part, ...]"
+    condition: "tuple[Conjunct, ...]"
     text: str
 
 
@@ -84,18 +84,18 @@ class Element(NamedTuple):
     """One element of an aggregate: the terms that it adds, and when."""
 
     terms: tuple[AST, ...]
-    condition: "tuple[Part, ...]"
+    condition: "tuple[Conjunct, ...]"
 
 
 class Guard(NamedTuple):
-    """What the value of an aggregate is compared with: the aggregate on the left, the term on the right."""
+    """A guard of an aggregate: the comparison, with the aggregate on the left and the term on the right."""
 
     comparison: ComparisonOperator
     term: AST
 
 
 class Aggregate(NamedTuple):
-    """An aggregate in a body; ``holds`` says whether it does where its guards alone tell."""
+    """An aggregate in a body; ``holds`` is its value where the guards alone decide it, else ``None``."""
 
     function: AggregateFunction
     elements: tuple[Element, ...]
@@ -106,12 +106,12 @@ class Aggregate(NamedTuple):
 
 
 class Strange(NamedTuple):
-    """Anything else."""
+    """A conjunct of any other kind, such as a theory atom."""
 
     text: str
 
 
-Part = Literal | Test | Conditional | Aggregate | Strange
+Conjunct = Literal | Test | Conditional | Aggregate | Strange
 
 
 class Clause(NamedTuple):
@@ -122,9 +122,9 @@ class Clause(NamedTuple):
     """
 
     head: Literal | None
-    others: tuple[tuple[Literal, tuple[Part, ...]], ...]
+    others: tuple[tuple[Literal, tuple[Conjunct, ...]], ...]
     plain: bool
-    body: tuple[Part, ...]
+    body: tuple[Conjunct, ...]
     source: Source
     number: int
 
@@ -140,15 +140,15 @@ class Clause(NamedTuple):
 
 
 def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
-    """Take a rule apart: one clause for each way in which its pools can be read.
+    """Unpool a rule: return one clause for each choice from its pools.
 
-    ``number`` tells the clauses of one rule from those of another.
+    ``number`` is that of the rule, the same for all of its clauses.
     """
-    source = place(rule)
-    for each in rule.unpool(condition=True):
+    source = source_of(rule)
+    for clause in rule.unpool(condition=True):
         reader = _Reader(constants)
-        body = reader.parts(each.body)
-        head = each.head
+        body = reader.conjuncts(clause.body)
+        head = clause.head
         if head.ast_type == ASTType.Literal and head.sign == Sign.NoSign:
             if head.atom.ast_type == ASTType.BooleanConstant and not head.atom.value:
                 yield Clause(None, (), True, body, source, number)
@@ -160,7 +160,7 @@ def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
         yield Clause(None, tuple(reader.head_atoms(head)), False, body, source, number)
 
 
-def place(statement: AST) -> Source:
+def source_of(statement: AST) -> Source:
     """Return where a statement begins."""
     begin = statement.location.begin
     return Source(begin.filename, begin.line, begin.column)
@@ -182,7 +182,7 @@ def written(statement: AST, rules: Loaded | None = None) -> str:
 
 
 def _is_plain(term: AST) -> bool:
-    """Whether a term calculates nothing, so that it is what clingo reads."""
+    """Whether a term has no arithmetic, so that its text is its value."""
     return all(node.ast_type != ASTType.BinaryOperation for node in nodes(term))
 
 
@@ -214,7 +214,10 @@ def factors(term: AST) -> list[AST]:
 
 
 def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict[str, Symbol | None]:
-    """Give the constants of ``#const`` statements, as the settings ``name=value`` for clingo change them."""
+    """Return the values of constants by name: those of ``#const`` statements, or of settings ``name=value``.
+
+    ``None`` stands for a value that is unknown without clingo.
+    """
     texts: dict[str, str | None] = {}
     for definition in definitions:
         name = definition.name
@@ -225,9 +228,9 @@ def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict
         if texts.get(name) is not None:
             texts[name] = text
     values: dict[str, Symbol | None] = {}
-    for name, written in texts.items():
+    for name, value_text in texts.items():
         try:
-            symbol = None if written is None else parse_term(written)
+            symbol = None if value_text is None else parse_term(value_text)
         except RuntimeError:
             symbol = None
         if symbol is not None and symbol.type is SymbolType.Function:
@@ -238,45 +241,47 @@ def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict
 
 
 def variables(*pieces: AST) -> Iterator[str]:
-    """Give the names of the variables in pieces of a rule, but not ``_``, which is another one each time."""
-    within = (node for piece in pieces for node in nodes(piece))
-    return (node.name for node in within if node.ast_type == ASTType.Variable and node.name != "_")
+    """Return the names of the variables in pieces of a rule, without the anonymous ``_``."""
+    nodes_inside = (node for piece in pieces for node in nodes(piece))
+    return (node.name for node in nodes_inside if node.ast_type == ASTType.Variable and node.name != "_")
 
 
-def global_variables(part: Part) -> Iterator[str]:
-    """Give the variables of a part that the rule has as a whole; those in conditions may be of their own."""
-    if isinstance(part, Literal):
-        return variables(*part.arguments)
-    if isinstance(part, Test):
-        return variables(part.ast)
-    return variables(*(guard.term for guard in part.guards)) if isinstance(part, Aggregate) else iter(())
+def global_variables(conjunct: Conjunct) -> Iterator[str]:
+    """Return the global variables of a conjunct; variables in conditions may be local."""
+    if isinstance(conjunct, Literal):
+        return variables(*conjunct.arguments)
+    if isinstance(conjunct, Test):
+        return variables(conjunct.ast)
+    return (
+        variables(*(guard.term for guard in conjunct.guards)) if isinstance(conjunct, Aggregate) else iter(())
+    )
 
 
-def literals(parts: Iterable[Part]) -> Iterator[Literal]:
-    """Return all literals in parts of a body, those in conditions and aggregates, too."""
-    for part in parts:
-        if isinstance(part, Literal):
-            yield part
-        elif isinstance(part, Conditional):
-            yield from literals((part.literal, *part.condition))
-        elif isinstance(part, Aggregate):
-            for element in part.elements:
+def literals(conjuncts: Iterable[Conjunct]) -> Iterator[Literal]:
+    """Return all literals in conjuncts, including those in conditions and aggregates."""
+    for conjunct in conjuncts:
+        if isinstance(conjunct, Literal):
+            yield conjunct
+        elif isinstance(conjunct, Conditional):
+            yield from literals((conjunct.literal, *conjunct.condition))
+        elif isinstance(conjunct, Aggregate):
+            for element in conjunct.elements:
                 yield from literals(element.condition)
 
 
 class _Reader:
-    """Takes parts of a rule apart, with what is known of its constants."""
+    """Reader of rules, under known values of constants."""
 
     def __init__(self, constants: Constants) -> None:
         self._constants = constants
 
-    def parts(self, body: Iterable[AST]) -> tuple[Part, ...]:
-        return tuple(map(self.part, body))
+    def conjuncts(self, body: Iterable[AST]) -> tuple[Conjunct, ...]:
+        return tuple(map(self.conjunct, body))
 
-    def part(self, node: AST) -> Part:
+    def conjunct(self, node: AST) -> Conjunct:
         if node.ast_type == ASTType.ConditionalLiteral:
             literal = self.literal(node.literal)
-            return Conditional(literal, self.parts(node.condition), str(node))
+            return Conditional(literal, self.conjuncts(node.condition), str(node))
         if node.ast_type == ASTType.Literal and node.atom.ast_type in {
             ASTType.Aggregate,
             ASTType.BodyAggregate,
@@ -304,17 +309,17 @@ class _Reader:
         return Strange(text)
 
     def _compare(self, comparison: AST) -> bool | None:
-        """Return whether a comparison holds, if all its terms are known."""
-        known = [
+        """Return whether a comparison holds, ``None`` where a term has no known value."""
+        values = [
             value(term, self._constants) for term in (comparison.term, *(g.term for g in comparison.guards))
         ]
-        if None in known:
+        if None in values:
             return None
-        symbols = [symbol for symbol in known if symbol is not None]
+        symbols = [symbol for symbol in values if symbol is not None]
         operators = [guard.comparison for guard in comparison.guards]
         return all(
-            compared(left, operator, right)
-            for left, operator, right in zip(symbols, operators, symbols[1:], strict=False)
+            compared(first, operator, second)
+            for first, operator, second in zip(symbols, operators, symbols[1:], strict=False)
         )
 
     def _aggregate(self, node: AST) -> Aggregate:
@@ -328,12 +333,14 @@ class _Reader:
         if atom.ast_type == ASTType.Aggregate:
             function = AggregateFunction.Count
             elements = tuple(
-                Element((), (self.literal(each.literal), *self.parts(each.condition)))
-                for each in atom.elements
+                Element((), (self.literal(element.literal), *self.conjuncts(element.condition)))
+                for element in atom.elements
             )
         else:
             function = AggregateFunction(atom.function)
-            elements = tuple(Element(tuple(each.terms), self.parts(each.condition)) for each in atom.elements)
+            elements = tuple(
+                Element(tuple(element.terms), self.conjuncts(element.condition)) for element in atom.elements
+            )
         holds = [self._beyond(function, guard) for guard in guards]
         sure = False if False in holds else True if holds and all(holds) else None
         if sure is not None and node.sign == Sign.Negation:
@@ -341,26 +348,26 @@ class _Reader:
         return Aggregate(function, elements, tuple(guards), int(node.sign), sure, str(node))
 
     def _beyond(self, function: AggregateFunction, guard: Guard) -> bool | None:
-        """Return whether a sum or a count keeps to a guard that is beyond all numbers."""
+        """Return whether a sum or count satisfies a guard ``#inf`` or ``#sup``, ``None`` for other guards."""
         bound = value(guard.term, self._constants)
         if function not in _NUMBERS or bound not in (Infimum, Supremum):
             return None
         return compared(Number(0), guard.comparison, bound)
 
-    def head_atoms(self, head: AST) -> Iterator[tuple[Literal, tuple[Part, ...]]]:
+    def head_atoms(self, head: AST) -> Iterator[tuple[Literal, tuple[Conjunct, ...]]]:
         """Return the atoms of a head that is not plain, with their conditions."""
         if head.ast_type == ASTType.Literal:
             atom = self.literal(head)
             if isinstance(atom, Literal):
                 yield atom._replace(negations=0), ()
-        for each in getattr(head, "elements", ()):
-            conditional = each if each.ast_type == ASTType.ConditionalLiteral else each.condition
+        for element in getattr(head, "elements", ()):
+            conditional = element if element.ast_type == ASTType.ConditionalLiteral else element.condition
             if isinstance(conditional, AST) and conditional.ast_type == ASTType.ConditionalLiteral:
                 atom = self.literal(conditional.literal)
                 if isinstance(atom, Literal):
-                    yield atom._replace(negations=0), self.parts(conditional.condition)
+                    yield atom._replace(negations=0), self.conjuncts(conditional.condition)
 
 
-def compared(left: Symbol, comparison: int, right: Symbol) -> bool:
+def compared(first: Symbol, comparison: int, second: Symbol) -> bool:
     """Compare two values as clingo does: numbers before words before texts, and so on."""
-    return bool(_COMPARING[ComparisonOperator(comparison)](left, right))
+    return bool(_COMPARING[ComparisonOperator(comparison)](first, second))

@@ -1,4 +1,4 @@
-"""What may be given as a constraint: a file, a rule as text, a ready-made one with constants of its own."""
+"""Constraints as they are passed: a file, a rule as text, a ready-made one with constants of its own."""
 
 import re
 from os import PathLike
@@ -43,25 +43,30 @@ class LibraryUse(NamedTuple):
     @property
     def constants(self) -> dict[str, str]:
         """The constants with their values as written; raises :class:`UserError` for other texts."""
-        name, _, rest = self.written.partition(":")
-        found: dict[str, str] = {}
+        name, _, remaining = self.written.partition(":")
+        values: dict[str, str] = {}
         while True:
-            constant, equals, rest = rest.partition("=")
+            constant, equals, remaining = remaining.partition("=")
             if not equals or not constant.isidentifier():
                 raise UserError(
                     f"found {constant[:40]!r} in {self.written!r}, expected {name}:CONSTANT=VALUE, and more "
                     'of them after commas; a value with a comma is put in double quotes: "VALUE"'
                 )
-            if constant in found:
+            if constant in values:
                 raise UserError(f"found two values of {constant} in {self.written!r}, expected one")
-            quoted = _QUOTED.match(rest)
-            end = quoted.end() if quoted else (rest + ",").index(",")
-            found[constant], after, rest = rest[:end], rest[end : end + 1], rest[end + 1 :]
+            quoted = _QUOTED.match(remaining)
+            end = quoted.end() if quoted else (remaining + ",").index(",")
+            values[constant], after, remaining = (
+                remaining[:end],
+                remaining[end : end + 1],
+                remaining[end + 1 :],
+            )
             if not after:
-                return found
+                return values
             if after != ",":
                 raise UserError(
-                    f"found {after}{rest[:40]} after {found[constant]} in {self.written!r}, expected a comma"
+                    f"found {after}{remaining[:40]} after {values[constant]} in {self.written!r}, "
+                    "expected a comma"
                 )
 
 
@@ -69,30 +74,33 @@ Constraint = Path | RuleText | LibraryUse
 """A path (or the name of a ready-made constraint), rules as text, or a ready-made one with constants."""
 
 
-def given_constraint(given: str | PathLike[str] | Constraint) -> Constraint:
-    """Read a constraint as Python gives it, or take one that was read.
+def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint:
+    """Return a constraint of a Python argument, which may be one already.
 
     A text that has ``:-``, or ends in a full stop, is a rule, unless it is an existing path or the name of a
-    ready-made constraint; a path is always a path. An empty text is none of these: raises
-    :class:`UserError` for it.
+    ready-made constraint; a path is always a path. Raises :class:`UserError` for an empty text.
     """
-    if isinstance(given, RuleText | LibraryUse):
-        return given
-    if not isinstance(given, str):
-        return Path(given)
-    if not given.strip():
+    if isinstance(constraint, RuleText | LibraryUse):
+        return constraint
+    if not isinstance(constraint, str):
+        return Path(constraint)
+    if not constraint.strip():
         raise UserError(
             "found an empty text for a constraint, expected a file, the name of a ready-made one, or a rule "
             'such as :- use(U), motion(U,"fry").'
         )
-    named = named_constraint(given)
-    if isinstance(named, Path) and not exists(named) and (":-" in given or given.rstrip().endswith(".")):
-        return RuleText(given)
+    named = named_constraint(constraint)
+    if (
+        isinstance(named, Path)
+        and not exists(named)
+        and (":-" in constraint or constraint.rstrip().endswith("."))
+    ):
+        return RuleText(constraint)
     return named
 
 
 def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
-    """Read a path, or the name of a ready-made constraint, perhaps with constants of its own."""
+    """Return a path, or a ready-made constraint by its name with constants of its own."""
     name, colon, _ = text.partition(":")
     if colon and not exists(Path(text)):
         file = _bundled(Path(name))
@@ -139,7 +147,7 @@ def _bundled(path: Path) -> Path | None:
 
 
 def exists(path: Path) -> bool:
-    """Whether a path exists; a text that can be none does not."""
+    """Whether a path exists; a text that cannot be a path does not."""
     try:
         return path.exists()
     except (OSError, ValueError):

@@ -1,7 +1,7 @@
-"""How what rules derive depends on the tree: what grows with it, what shrinks, and what nobody can say.
+"""Monotonicity of predicates in the tree: monotone, antimonotone, both or neither.
 
-``available(O)`` is at hand or made by a unit of the tree, all of which execute, so it grows with the tree.
-Where rules say nothing of a predicate, and it is no fact, it never holds.
+``available(O)`` means that O is in the kitchen or made by a unit of the tree, all of which execute, so it is
+monotone. A predicate with neither rules nor facts never holds.
 """
 
 from collections import defaultdict
@@ -18,10 +18,10 @@ from foon_asp.rules.clause import (
     Aggregate,
     Clause,
     Conditional,
+    Conjunct,
     Constants,
     Guard,
     Literal,
-    Part,
     Signature,
     Strange,
     factors,
@@ -39,11 +39,11 @@ _UNSURE = {
     ("optimize", 2): "it differs from one search of a question to the next",
 }
 
-_Place = tuple[Signature, int]
+_ArgumentPosition = tuple[Signature, int]
 
 
 class Depends(Flag):
-    """What becomes of something when units come to a tree: it may come to hold, or cease to hold."""
+    """Monotonicity: whether an atom may turn true (``GROWS``) or false (``SHRINKS``) with more units."""
 
     NOT = 0
     GROWS = 1
@@ -51,22 +51,25 @@ class Depends(Flag):
     BOTH = 3
 
     def negated(self) -> "Depends":
-        """Return what becomes of its negation."""
+        """Return the monotonicity of the negation."""
         swapped = {Depends.GROWS: Depends.SHRINKS, Depends.SHRINKS: Depends.GROWS}
         return swapped.get(self, self)
 
 
 class Doubt(NamedTuple):
-    """Why nothing is known of a predicate, and where the reason stands, if in a rule."""
+    """The reason why the monotonicity of a predicate is unknown.
+
+    ``source`` is the place of the rule that is the reason, ``None`` where no rule is.
+    """
 
     reason: str
     source: Source | None = None
 
 
 class Dependence:
-    """What becomes of each predicate of a program when units come to a tree.
+    """Monotonicity of each predicate of a program, as a fixpoint over its rules.
 
-    ``varied`` are predicates that the question says otherwise, or more of.
+    ``varied`` are predicates whose facts vary within the question.
     """
 
     def __init__(
@@ -76,8 +79,8 @@ class Dependence:
         self._varied = frozenset(varied)
         self._depends: dict[Signature, Depends] = {USE: Depends.GROWS, AVAILABLE: Depends.GROWS}
         self.doubts: dict[Signature, Doubt] = {}
-        self.loops: dict[Signature, Source] = {}  # those derived from themselves in an unclear way
-        self._at_least_0: set[_Place] = set()
+        self.loops: dict[Signature, Source] = {}  # predicates with recursion through negation or an aggregate
+        self._at_least_0: set[_ArgumentPosition] = set()
         self._defined = {atom.signature for clause in program for atom in clause.heads}
         self._find_numbers(program)
         self._find_doubts(program)
@@ -87,44 +90,44 @@ class Dependence:
             for clause in program:
                 if clause.head is not None:
                     before = self.of(clause.head.signature)
-                    after = before | self.of_parts(clause.body)
+                    after = before | self.of_body(clause.body)
                     changed |= after != before
                     self._depends[clause.head.signature] = after
 
     def of(self, signature: Signature) -> Depends:
-        """Return what becomes of the atoms of a predicate."""
+        """Return the monotonicity of a predicate."""
         return self._depends.get(signature, Depends.NOT)
 
-    def of_parts(self, parts: Iterable[Part]) -> Depends:
-        """Return what becomes of parts of a body, all of which have to hold."""
-        together = Depends.NOT
-        for part in parts:
-            together |= self.of_part(part)
-        return together
+    def of_body(self, conjuncts: Iterable[Conjunct]) -> Depends:
+        """Return the monotonicity of a conjunction."""
+        dependence = Depends.NOT
+        for conjunct in conjuncts:
+            dependence |= self.of_conjunct(conjunct)
+        return dependence
 
-    def of_part(self, part: Part) -> Depends:
-        """Return what becomes of one part of a body."""
-        if isinstance(part, Literal):
-            depends = self.of(part.signature)
-            return depends.negated() if part.negations == 1 else depends
-        if isinstance(part, Conditional):
-            return self.of_part(part.literal) | self.of_parts(part.condition).negated()
-        if isinstance(part, Aggregate):
-            return self._of_aggregate(part)
-        return Depends.BOTH if isinstance(part, Strange) else Depends.NOT
+    def of_conjunct(self, conjunct: Conjunct) -> Depends:
+        """Return the monotonicity of one conjunct of a body."""
+        if isinstance(conjunct, Literal):
+            depends = self.of(conjunct.signature)
+            return depends.negated() if conjunct.negations == 1 else depends
+        if isinstance(conjunct, Conditional):
+            return self.of_conjunct(conjunct.literal) | self.of_body(conjunct.condition).negated()
+        if isinstance(conjunct, Aggregate):
+            return self._of_aggregate(conjunct)
+        return Depends.BOTH if isinstance(conjunct, Strange) else Depends.NOT
 
-    def doubt(self, parts: Iterable[Part]) -> Doubt | None:
-        """Return why nothing is known of parts of a body, ``None`` where enough is."""
-        parts = tuple(parts)
-        for literal in literals(parts):
-            found = self.doubts.get(literal.signature) or self._doubt_of(literal.signature)
-            if found:
-                return found
-        strange = next((part for part in parts if isinstance(part, Strange)), None)
+    def doubt(self, conjuncts: Iterable[Conjunct]) -> Doubt | None:
+        """Return why the monotonicity of conjuncts is unknown, ``None`` where it is known."""
+        conjuncts = tuple(conjuncts)
+        for literal in literals(conjuncts):
+            reason = self.doubts.get(literal.signature) or self._doubt_of(literal.signature)
+            if reason:
+                return reason
+        strange = next((conjunct for conjunct in conjuncts if isinstance(conjunct, Strange)), None)
         return Doubt(f"{strange.text} is nothing that is looked into") if strange else None
 
     def _doubt_of(self, signature: Signature) -> Doubt | None:
-        """Return why nothing is known of a predicate that has no rules here."""
+        """Return why the monotonicity of a predicate without rules is unknown, ``None`` where it is known."""
         name, arity = signature
         if name.startswith("-"):
             return Doubt(f"{name}/{arity} is negated with a minus")
@@ -149,15 +152,15 @@ class Dependence:
         while changed:
             changed = False
             for clause in program:
-                found = self.doubt(clause.body)
-                for atom in clause.heads if found else ():
+                doubt = self.doubt(clause.body)
+                for atom in clause.heads if doubt else ():
                     if atom.signature not in self.doubts:
-                        assert found
-                        self.doubts[atom.signature] = Doubt(found.reason, found.source or clause.source)
+                        assert doubt
+                        self.doubts[atom.signature] = Doubt(doubt.reason, doubt.source or clause.source)
                         changed = True
 
     def _find_loops(self, program: Sequence[Clause]) -> None:
-        """Record the predicates that are derived from themselves through ``not`` or an aggregate."""
+        """Record in ``loops`` the predicates with recursion through ``not`` or an aggregate."""
         reads: defaultdict[Signature, set[Signature]] = defaultdict(set)
         unclear: list[tuple[Signature, Signature, Source]] = []
         for clause in program:
@@ -170,73 +173,75 @@ class Dependence:
         for head_signature, read, source in unclear:
             if head_signature not in behind.get(read, ()):
                 continue
-            for each in behind[read]:
-                if head_signature in behind.get(each, ()):
-                    self.loops.setdefault(each, source)
-                    reason = f"{named(each)} is derived from itself through `not` or an aggregate"
-                    self.doubts.setdefault(each, Doubt(reason, source))
+            for looped in behind[read]:
+                if head_signature in behind.get(looped, ()):
+                    self.loops.setdefault(looped, source)
+                    reason = f"{named(looped)} is derived from itself through `not` or an aggregate"
+                    self.doubts.setdefault(looped, Doubt(reason, source))
 
     def _find_numbers(self, program: Sequence[Clause]) -> None:
-        """Find the arguments of predicates that are never negative numbers."""
-        facts = {(signature, place) for signature, each in SUBJECTS.items() for place in each.numbers}
+        """Find the arguments of predicates that are never negative numbers, as a greatest fixpoint."""
+        facts = {
+            (signature, position) for signature, subjects in SUBJECTS.items() for position in subjects.numbers
+        }
         derived = {
-            (head.signature, place)
+            (head.signature, position)
             for clause in program
             for head in clause.heads
-            for place in range(head.signature[1])
+            for position in range(head.signature[1])
         }
         self._at_least_0 = facts | derived
         changed = True
         while changed:
-            wrong = {
-                (clause.head.signature, place)
+            maybe_negative = {
+                (clause.head.signature, position)
                 for clause in program
                 if clause.head is not None
-                for place, term in enumerate(clause.head.arguments)
+                for position, term in enumerate(clause.head.arguments)
                 if not self._is_at_least_0(term, clause.body)
             }
-            changed = not wrong.isdisjoint(self._at_least_0)
-            self._at_least_0 -= wrong
+            changed = not maybe_negative.isdisjoint(self._at_least_0)
+            self._at_least_0 -= maybe_negative
 
-    def _is_at_least_0(self, term: AST, condition: Iterable[Part]) -> bool:
-        """Whether a term is a number from 0 wherever it is one and a condition holds.
+    def _is_at_least_0(self, term: AST, condition: Iterable[Conjunct]) -> bool:
+        """Whether a term, where it is a number and the condition holds, is at least 0.
 
-        So is such a number times how often a unit is executed, which is once where items last.
+        Its product with the number of executions of a unit is at least 0, too.
         """
         condition = tuple(condition)
         product = factors(term)
         if len(product) > 1:
-            counts = [str(each.arguments[1]) for each in condition if _counts_executions(each)]
+            counts = [str(literal.arguments[1]) for literal in condition if _counts_executions(literal)]
             return any(
                 str(count) in counts and self._is_at_least_0(other, condition)
                 for count, other in (product, product[::-1])
             )
-        known = value(term, self._constants)
-        if known is not None:
-            return known.type is SymbolType.Number and known.number >= 0
+        symbol = value(term, self._constants)
+        if symbol is not None:
+            return symbol.type is SymbolType.Number and symbol.number >= 0
         return term.ast_type == ASTType.Variable and any(
-            isinstance(part, Literal)
-            and part.positive
+            isinstance(conjunct, Literal)
+            and conjunct.positive
             and any(
-                (part.signature, place) in self._at_least_0 and str(argument) == str(term)
-                for place, argument in enumerate(part.arguments)
+                (conjunct.signature, position) in self._at_least_0 and str(argument) == str(term)
+                for position, argument in enumerate(conjunct.arguments)
             )
-            for part in condition
+            for conjunct in condition
         )
 
     def _of_aggregate(self, aggregate: Aggregate) -> Depends:
         conditions = Depends.NOT
         for element in aggregate.elements:
-            conditions |= self.of_parts(element.condition)
+            conditions |= self.of_body(element.condition)
         if conditions is Depends.NOT or aggregate.holds is not None:
             return Depends.NOT
-        found = Depends.NOT
+        dependence = Depends.NOT
         for guard in aggregate.guards:
-            found |= self._of_guard(aggregate, guard, conditions)
-        return found.negated() if aggregate.negations == 1 else found
+            dependence |= self._of_guard(aggregate, guard, conditions)
+        return dependence.negated() if aggregate.negations == 1 else dependence
 
     def _of_guard(self, aggregate: Aggregate, guard: Guard, conditions: Depends) -> Depends:
-        """Return what becomes of a comparison of an aggregate whose elements come and go in a known way."""
+        """Return the monotonicity of one guard of an aggregate from that of its conditions."""
         operator, function = guard.comparison, aggregate.function
         if operator in {ComparisonOperator.Equal, ComparisonOperator.NotEqual}:
             if operator is ComparisonOperator.Equal and self._is_zero(aggregate, guard):
@@ -254,7 +259,7 @@ class Dependence:
         return conditions if upwards else conditions.negated()
 
     def _is_zero(self, aggregate: Aggregate, guard: Guard) -> bool:
-        """Whether a guard says that nothing is counted."""
+        """Whether a guard is ``#count { ... } = 0``."""
         bound = value(guard.term, self._constants)
         return (
             aggregate.function is AggregateFunction.Count
@@ -264,8 +269,8 @@ class Dependence:
         )
 
 
-def _counts_executions(part: Part) -> TypeGuard[Literal]:
-    return isinstance(part, Literal) and part.positive and part.signature == TIMES
+def _counts_executions(conjunct: Conjunct) -> TypeGuard[Literal]:
+    return isinstance(conjunct, Literal) and conjunct.positive and conjunct.signature == TIMES
 
 
 def named(signature: Signature) -> str:
@@ -273,25 +278,25 @@ def named(signature: Signature) -> str:
     return f"{signature[0]}/{signature[1]}"
 
 
-def _reads(parts: Iterable[Part], plainly: bool) -> Iterator[tuple[Signature, bool]]:
-    """Return the predicates that a body reads, and whether as they are: not negated, and in no aggregate."""
-    for part in parts:
-        if isinstance(part, Literal):
-            yield part.signature, plainly and part.positive
-        elif isinstance(part, Conditional):
-            yield from _reads((part.literal,), plainly)
-            yield from _reads(part.condition, plainly=False)
-        elif isinstance(part, Aggregate):
-            for element in part.elements:
+def _reads(conjuncts: Iterable[Conjunct], plainly: bool) -> Iterator[tuple[Signature, bool]]:
+    """Return the predicates that a body reads, each with whether plainly: neither negated nor aggregated."""
+    for conjunct in conjuncts:
+        if isinstance(conjunct, Literal):
+            yield conjunct.signature, plainly and conjunct.positive
+        elif isinstance(conjunct, Conditional):
+            yield from _reads((conjunct.literal,), plainly)
+            yield from _reads(conjunct.condition, plainly=False)
+        elif isinstance(conjunct, Aggregate):
+            for element in conjunct.elements:
                 yield from _reads(element.condition, plainly=False)
 
 
 def _closure(start: Signature, reads: Mapping[Signature, set[Signature]]) -> set[Signature]:
-    """Return a predicate and all that it is derived from."""
-    found, stack = {start}, [start]
+    """Return a predicate and all predicates that it is derived from, its transitive closure."""
+    closure, stack = {start}, [start]
     while stack:
         for read in reads.get(stack.pop(), ()):
-            if read not in found:
-                found.add(read)
+            if read not in closure:
+                closure.add(read)
                 stack.append(read)
-    return found
+    return closure

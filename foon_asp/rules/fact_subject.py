@@ -1,4 +1,4 @@
-"""What facts are about: a unit, an object node or a label, and which others they lead to from there."""
+"""Subjects of facts: the unit, object node or label that each is about, and the ones it leads to."""
 
 from enum import StrEnum
 from typing import NamedTuple
@@ -7,7 +7,7 @@ from foon_asp.rules.clause import Signature
 
 
 class Subject(StrEnum):
-    """What an argument stands for."""
+    """The kind of an argument."""
 
     UNIT = "unit"
     OBJECT = "object node"
@@ -15,10 +15,10 @@ class Subject(StrEnum):
 
 
 class Subjects(NamedTuple):
-    """Of the arguments of a fact, by place: what it is about, and what can be reached from that.
+    """The arguments of a fact, by position: its subjects, and the ones that it leads to.
 
-    If it is about a unit of the tree, or an object node of one, so is what it leads to. The rest are names
-    and numbers, which ``numbers`` says are never negative.
+    If the subjects are in the tree, so are those that it leads to. Other arguments are names and numbers; the
+    positions in ``numbers`` are never negative.
     """
 
     about: dict[int, Subject]
@@ -27,18 +27,18 @@ class Subjects(NamedTuple):
 
 
 _OF_UNIT = Subjects({0: Subject.UNIT}, {})
-_SIDE = Subjects({0: Subject.UNIT}, {1: Subject.OBJECT})
+_UNIT_OBJECT = Subjects({0: Subject.UNIT}, {1: Subject.OBJECT})
 _NUMBER = Subjects({0: Subject.UNIT}, {}, (1,))
 _OF_OBJECT = Subjects({0: Subject.OBJECT}, {})
 
-# Facts that say the same of a unit or a node whatever else is in the facts. Those left out do not.
+# Facts that are the same for a unit or a node whatever other facts there are. Facts not listed are not.
 SUBJECTS: dict[Signature, Subjects] = {
     ("unit", 1): _OF_UNIT,
     ("motion", 2): _OF_UNIT,
-    ("input", 2): _SIDE,
-    ("output", 2): _SIDE,
-    ("needs", 2): _SIDE,
-    ("gives", 2): _SIDE,
+    ("input", 2): _UNIT_OBJECT,
+    ("output", 2): _UNIT_OBJECT,
+    ("needs", 2): _UNIT_OBJECT,
+    ("gives", 2): _UNIT_OBJECT,
     ("object", 1): _OF_OBJECT,
     ("label", 2): Subjects({0: Subject.OBJECT}, {1: Subject.LABEL}),
     ("state", 2): _OF_OBJECT,

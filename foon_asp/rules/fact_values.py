@@ -1,4 +1,4 @@
-"""The values that facts of a question have: whether some fact matches constants, and the nearest that do."""
+"""Values in the facts of a question: whether some fact matches constants, and the most similar texts."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import islice
@@ -12,14 +12,14 @@ from foon_asp.problem import Problem
 
 Names = tuple[str, ...]
 Value = str | int | None
-"""A text, a number, or ``None`` for a term that no fact has: a word without quotes."""
+"""A text, a number, or ``None`` for a term that occurs in no fact: a word without quotes."""
 
 _MAX_LOOKUPS = 20  # suggestions for one question
-_MAX_READ = 200_000  # units or object nodes of a store that are looked through for a name
+_MAX_NODES_READ = 200_000  # units or object nodes of a store that are searched for a name
 
 
 class Columns(NamedTuple):
-    """The arguments of a fact, by place: numbers of units, numbers of object nodes, other numbers, texts."""
+    """The columns of a fact, by position: numbers of units, numbers of object nodes, other numbers, texts."""
 
     units: tuple[int, ...] = ()
     objects: tuple[int, ...] = ()
@@ -27,7 +27,7 @@ class Columns(NamedTuple):
     texts: tuple[int, ...] = ()
 
 
-_SIDE: Final = Columns(units=(0,), objects=(1,))
+_UNIT_OBJECT: Final = Columns(units=(0,), objects=(1,))
 _NUMBER: Final = Columns(units=(0,), numbers=(1,))
 _UNIT_TEXT: Final = Columns(units=(0,), texts=(1,))
 _OBJECT_TEXT: Final = Columns(objects=(0,), texts=(1,))
@@ -40,7 +40,9 @@ COLUMNS: Final[Mapping[tuple[str, int], Columns]] = {
     ("motion", 2): _UNIT_TEXT,
     ("source", 2): _UNIT_TEXT,
     ("video", 2): _UNIT_TEXT,
-    **dict.fromkeys(((name, 2) for name in ("input", "output", "needs", "gives", "stays", "uses_up")), _SIDE),
+    **dict.fromkeys(
+        ((name, 2) for name in ("input", "output", "needs", "gives", "stays", "uses_up")), _UNIT_OBJECT
+    ),
     **dict.fromkeys(((name, 2) for name in ("inputs", "ingredients", "rate", "price", "risk")), _NUMBER),
     **dict.fromkeys(((name, 1) for name in ("object", "kitchen", "goal", "available")), _OBJECT),
     **dict.fromkeys(((name, 2) for name in ("label", "state", "ingredient")), _OBJECT_TEXT),
@@ -52,7 +54,7 @@ COLUMNS: Final[Mapping[tuple[str, int], Columns]] = {
 MOTIONS: Final = ("motion",)
 CONTENTS: Final = ("label", "ingredient")
 
-# Predicates that files of the user's add facts to, by the facts that the names are looked for in.
+# Predicates that user files add facts to, each with the predicates whose texts its names have to match.
 LISTED_FACTS: Final[Mapping[tuple[str, int], tuple[str, ...]]] = {
     ("allergen", 1): CONTENTS,
     ("allowed", 1): ("source",),
@@ -60,8 +62,8 @@ LISTED_FACTS: Final[Mapping[tuple[str, int], tuple[str, ...]]] = {
 }
 
 
-class _Part(NamedTuple):
-    """What is looked through of a network."""
+class _NetworkPart(NamedTuple):
+    """The part of a network that is searched for texts."""
 
     motions: Iterable[str]
     sources: Iterable[Sequence[Source]]
@@ -69,36 +71,36 @@ class _Part(NamedTuple):
     utensils: Iterable[str]
 
 
-_TEXTS: Final[Mapping[str, Callable[[_Part], Iterable[Names]]]] = {
-    "motion": lambda part: ((motion,) for motion in part.motions),
-    "source": lambda part: ((name,) for each in part.sources for name in source_names(each)),
-    "video": lambda part: (
-        (encodable(video),) for each in part.sources for source in each for video in source.videos
+_TEXTS: Final[Mapping[str, Callable[[_NetworkPart], Iterable[Names]]]] = {
+    "motion": lambda scope: ((motion,) for motion in scope.motions),
+    "source": lambda scope: ((name,) for sources in scope.sources for name in source_names(sources)),
+    "video": lambda scope: (
+        (encodable(video),) for sources in scope.sources for source in sources for video in source.videos
     ),
-    "label": lambda part: ((node.label,) for node in part.objects),
-    "state": lambda part: ((state,) for node in part.objects for state in node.states),
-    "ingredient": lambda part: ((item,) for node in part.objects for item in node.ingredients),
-    "located": lambda part: (tuple(relation) for node in part.objects for relation in node.relations),
-    "utensil": lambda part: ((label,) for label in part.utensils),
+    "label": lambda scope: ((node.label,) for node in scope.objects),
+    "state": lambda scope: ((state,) for node in scope.objects for state in node.states),
+    "ingredient": lambda scope: ((item,) for node in scope.objects for item in node.ingredients),
+    "located": lambda scope: (tuple(relation) for node in scope.objects for relation in node.relations),
+    "utensil": lambda scope: ((label,) for label in scope.utensils),
 }
 
 
 def misplaced(columns: Columns, values: Mapping[int, Value]) -> int | None:
-    """Return the place of a value that no fact can have: a text for a number, or anything but a text for one.
+    """Return the position of a value of the wrong type: a text for a number, or no text for a text.
 
-    ``None`` where there is no such place.
+    ``None`` where there is no such position.
     """
-    for place, value in values.items():
-        if not isinstance(value, str if place in columns.texts else int):
-            return place
+    for position, value in values.items():
+        if not isinstance(value, str if position in columns.texts else int):
+            return position
     return None
 
 
 class FactValues:
-    """The facts of a question about the whole network, whatever of it the goals can need.
+    """Facts about the whole network of a question, not only about the part that goals can need.
 
-    Of a store it is the part that was read; where that does not match, units and nodes of the rest are read
-    one by one, up to a limit beyond which a name counts as known.
+    Of a store, the part in memory is searched first, and then all others of its units and nodes, one by one,
+    up to a limit beyond which a name counts as known.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -106,7 +108,7 @@ class FactValues:
         self._lookups_left = _MAX_LOOKUPS
 
     def matches(self, name: str, columns: Columns, values: Mapping[int, Value]) -> bool:
-        """Whether some fact has these values, by place; texts have to be in one fact together."""
+        """Whether some fact has these values, by position; texts have to be in one fact together."""
         if misplaced(columns, values) is not None:
             return False
         network = self._problem.network
@@ -114,37 +116,45 @@ class FactValues:
             (len(network), network.unit_numbers, columns.units),
             (len(network.objects), network.object_numbers, columns.objects),
         ):
-            if not numbers and any(values[place] not in range(size) for place in places if place in values):
+            if not numbers and any(
+                values[position] not in range(size) for position in places if position in values
+            ):
                 return False
-        wanted = {number: values[place] for number, place in enumerate(columns.texts) if place in values}
+        wanted = {
+            number: values[position] for number, position in enumerate(columns.texts) if position in values
+        }
         if not wanted or self._has(name, wanted, network):
             return True
         return bool(network.object_numbers) and self._may_have_beyond(name, wanted)
 
     def nearest(self, name: str, columns: Columns, words: Mapping[int, str]) -> dict[int, str] | None:
-        """Return the texts of a fact, by place, that are spelt most like some words.
+        """Return the texts of the fact, by position, whose spelling is most similar to some words.
 
-        ``None`` where none is near, and after so many that more suggestions would only take time.
+        ``None`` where no text is similar, and once ``_MAX_LOOKUPS`` suggestions were sought.
         """
         self._lookups_left -= 1
         if self._lookups_left < 0:
             return None
-        wanted = {number: words[place] for number, place in enumerate(columns.texts) if place in words}
-        networks = {id(each): each for each in (self._problem.network, self._whole) if each is not None}
+        wanted = {
+            number: words[position] for number, position in enumerate(columns.texts) if position in words
+        }
+        networks = {
+            id(network): network for network in (self._problem.network, self._whole) if network is not None
+        }
         spelt: dict[str, Names] = {}
         for network in networks.values():
             for row in self._rows(name, network):
                 spelt.setdefault("\n".join(row[number] for number in wanted), row)
         word = "\n".join(wanted.values())
-        found = [word] if word in spelt else near_labels(word, sorted(spelt), 1)
-        if not found:
+        matches = [word] if word in spelt else near_labels(word, sorted(spelt), 1)
+        if not matches:
             return None
-        return {columns.texts[number]: spelt[found[0]][number] for number in wanted}
+        return {columns.texts[number]: spelt[matches[0]][number] for number in wanted}
 
     def _rows(self, name: str, network: Network) -> Iterable[Names]:
-        limit = _MAX_READ if _is_read_one_by_one(network) else None
+        limit = _MAX_NODES_READ if _is_read_one_by_one(network) else None
         sources, objects = islice(network.sources, limit), islice(network.objects, limit)
-        return _TEXTS[name](_Part(network.different_motions, sources, objects, self._problem.utensils))
+        return _TEXTS[name](_NetworkPart(network.different_motions, sources, objects, self._problem.utensils))
 
     def _has(self, name: str, wanted: Mapping[int, Value], network: Network) -> bool:
         return any(
@@ -153,7 +163,7 @@ class FactValues:
 
     @property
     def _whole(self) -> Network | None:
-        """The whole network of a store, ``None`` where nobody knows it."""
+        """The whole network of a store, ``None`` where it is unknown."""
         origin = self._problem.origin
         return None if origin is None else origin.whole_network
 
@@ -161,21 +171,21 @@ class FactValues:
         whole = self._whole
         if whole is None or self._has(name, wanted, whole):
             return True
-        is_cut = _is_read_one_by_one(whole) and max(len(whole), len(whole.objects)) > _MAX_READ
+        is_cut = _is_read_one_by_one(whole) and max(len(whole), len(whole.objects)) > _MAX_NODES_READ
         return is_cut and name not in {"motion", "utensil"}
 
 
 def unknown_text(facts: Sequence[str], word: str, meant: str | None) -> str:
-    """Return a message about a name that nothing has in facts, with the one that may be meant."""
+    """Return a message about a name that occurs in no fact, with the similar name that may be meant."""
     text = f"nothing in this network has the {' or '.join(facts)} {quote(word)}"
     return text if meant is None else f"{text}; did you mean {quote(meant)}?"
 
 
 def nearest_text(facts: Sequence[str], word: str, values: FactValues) -> str | None:
-    """Return the text of some facts that is spelt most like a word, ``None`` where none is near."""
-    known = [values.nearest(fact, COLUMNS[fact, 2], {1: word}) for fact in facts]
-    found = near_labels(word, sorted({each[1] for each in known if each is not None}), 1)
-    return found[0] if found else None
+    """Return the text of some facts that is most similar to a word, ``None`` where no text is similar."""
+    nearest = [values.nearest(fact, COLUMNS[fact, 2], {1: word}) for fact in facts]
+    best = near_labels(word, sorted({match[1] for match in nearest if match is not None}), 1)
+    return best[0] if best else None
 
 
 def has_text(facts: Sequence[str], word: str, values: FactValues) -> bool:

@@ -1,4 +1,4 @@
-"""Flat bodies, answered for the units of one problem: only those units are looked at that are asked about."""
+"""Evaluation of flat rule bodies over the units of one problem, lazily: only for units that are queried."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
@@ -14,19 +14,19 @@ from foon_asp.problem import Problem
 from foon_asp.rules.clause import Signature, compared
 from foon_asp.rules.flat_body import (
     NUMBER,
-    Asking,
+    AtLeastOne,
     Compare,
     Constant,
     Counted,
+    Disjunct,
     Fact,
     Item,
+    LinearBound,
     Listed,
     Never,
-    Row,
     Table,
     Term,
     Variable,
-    Way,
     bound_by,
 )
 
@@ -36,7 +36,7 @@ _Answer = tuple[Any, ...]
 
 
 class FlatAnswers:
-    """Answers flat bodies for a problem."""
+    """Evaluator of flat bodies over one problem, compiled to chains of Python functions."""
 
     def __init__(
         self,
@@ -45,24 +45,28 @@ class FlatAnswers:
         size: int,
         prices: Mapping[int, int],
     ) -> None:
-        """Look at a problem, with the tables that bodies look at and the number of their variables.
+        """Evaluate the tables that bodies read.
 
-        ``prices`` are those of units, in hundredths.
+        ``size`` is the number of variables, ``prices`` are in hundredths, by unit.
         """
         self._problem = problem
-        self._said = _said(problem, prices)
+        self._fact_readers = _fact_readers(problem, prices)
         self._values: _Values = [None] * size
         self._tables: dict[Signature, frozenset[_Answer]] = {}
         for signature, table in tables.items():
             self._tables[signature] = frozenset(self._table(table))
 
-    def any_holds(self, ways: Iterable[Way]) -> bool:
-        """Whether some way holds that takes no unit."""
-        return any(self._step(way.items, (), _yes)(self._values) for way in ways)
+    def any_holds(self, disjuncts: Iterable[Disjunct]) -> bool:
+        """Whether some disjunct without a unit holds."""
+        return any(self._step(disjunct.items, (), _success)(self._values) for disjunct in disjuncts)
 
-    def removed(self, ways: Iterable[Way]) -> Callable[[int], bool]:
-        """Return a test of units: whether some way holds that takes the unit."""
-        tests = [(way.unit, self._step(way.items, (way.unit,), _yes)) for way in ways if way.unit is not None]
+    def removed(self, disjuncts: Iterable[Disjunct]) -> Callable[[int], bool]:
+        """Return a test of units: whether some disjunct holds of the unit."""
+        tests = [
+            (disjunct.unit, self._step(disjunct.items, (disjunct.unit,), _success))
+            for disjunct in disjuncts
+            if disjunct.unit is not None
+        ]
         values = self._values
 
         def is_removed(unit: int) -> bool:
@@ -74,61 +78,75 @@ class FlatAnswers:
 
         return is_removed
 
-    def weight(self, row: Row) -> Callable[[int], int]:
-        """Return a function for how much one execution of a unit adds to the sum of a row."""
-        values, found = self._values, set[_Answer]()
+    def weight(self, bound: LinearBound) -> Callable[[int], int]:
+        """Return the weight function of a linear bound: of a unit, for one execution."""
+        values, contributions = self._values, set[_Answer]()
         steps = [
-            (way.unit, self._step(way.items, (way.unit,), self._noting([term], found)))
-            for way, term in row.terms
-            if way.unit is not None
+            (
+                disjunct.unit,
+                self._step(disjunct.items, (disjunct.unit,), self._collecting([term], contributions)),
+            )
+            for disjunct, term in bound.terms
+            if disjunct.unit is not None
         ]
 
         def weight(unit: int) -> int:
-            found.clear()
+            contributions.clear()
             for variable, step in steps:
                 values[variable] = unit
                 step(values)
-            return sum(number for (number,) in found if isinstance(number, int))
+            return sum(number for (number,) in contributions if isinstance(number, int))
 
         return weight
 
-    def asked(self, asking: Asking) -> Iterator[frozenset[int] | None]:
-        """Return the sets of units that a rule asks for one of; ``None`` for those that it has without."""
-        values = self._values
-        found: list[_Values] = []
-        bound = bound_by(asking.when.items)
+    def required_sets(self, at_least_one: AtLeastOne) -> Iterator[frozenset[int] | None]:
+        """Return the sets of units of each of which a tree has to have one.
 
-        def note(values: _Values) -> bool:
-            found.append(list(values))
+        ``None`` stands for a set that facts satisfy without a unit.
+        """
+        values = self._values
+        matches: list[_Values] = []
+        bound = bound_by(at_least_one.when.items)
+
+        def collect(values: _Values) -> bool:
+            matches.append(list(values))
             return False
 
-        self._step(asking.when.items, (), note)(values)
-        for each in found:
-            values[:] = each
-            if any(self._step(way.items, bound, _yes)(values) for way in asking.helping if way.unit is None):
+        self._step(at_least_one.when.items, (), collect)(values)
+        for match in matches:
+            values[:] = match
+            if any(
+                self._step(disjunct.items, bound, _success)(values)
+                for disjunct in at_least_one.helpers
+                if disjunct.unit is None
+            ):
                 yield None
             else:
-                helping = (self._units(way, bound) for way in asking.helping if way.unit is not None)
-                yield frozenset().union(*helping)
+                unit_sets = (
+                    self._units(disjunct, bound)
+                    for disjunct in at_least_one.helpers
+                    if disjunct.unit is not None
+                )
+                yield frozenset().union(*unit_sets)
 
-    def _units(self, way: Way, bound: Collection[Variable]) -> set[int]:
-        """Return the units of which a way holds."""
-        assert way.unit is not None
-        return self._true_of(way.unit, self._candidates(way, bound), way.items, bound)
+    def _units(self, disjunct: Disjunct, bound: Collection[Variable]) -> set[int]:
+        """Return the units of which a disjunct holds."""
+        assert disjunct.unit is not None
+        return self._satisfying(disjunct.unit, self._candidates(disjunct, bound), disjunct.items, bound)
 
-    def _candidates(self, way: Way, bound: Collection[Variable]) -> Iterable[int]:
-        """Return some units, among them all of which a way holds, faster than by a look at each."""
+    def _candidates(self, disjunct: Disjunct, bound: Collection[Variable]) -> Iterable[int]:
+        """Return a superset of the units of which a disjunct holds, by an index where one fits."""
         network = self._problem.network
-        sides: dict[str, Sequence[tuple[int, ...]]] = {
+        objects_of: dict[str, Sequence[tuple[int, ...]]] = {
             "input": network.inputs,
             "needs": self._problem.needs,
             "output": network.outputs,
             "gives": self._problem.gives,
         }
-        known = set(bound) if way.unit is None else {*bound, way.unit}
-        for place, item in enumerate(way.items):
-            if not isinstance(item, Fact) or item.terms[0] != way.unit:
-                known |= bound_by([item])
+        bound_so_far = set(bound) if disjunct.unit is None else {*bound, disjunct.unit}
+        for position, item in enumerate(disjunct.items):
+            if not isinstance(item, Fact) or item.terms[0] != disjunct.unit:
+                bound_so_far |= bound_by([item])
                 continue
             name, term = item.signature[0], item.terms[-1]
             if item.signature == NUMBER and isinstance(term, Constant):
@@ -136,20 +154,24 @@ class FlatAnswers:
                 return [] if unit is None else [unit]
             if name == "motion" and (isinstance(term, Constant) or term in bound):
                 motion = self._read(term)(self._values)
-                return [unit for unit, each in enumerate(network.motions) if each == motion]
-            after = way.items[place + 1 :]
-            if not isinstance(term, Variable) or term in known:
+                return [unit for unit, name in enumerate(network.motions) if name == motion]
+            after = disjunct.items[position + 1 :]
+            if not isinstance(term, Variable) or term in bound_so_far:
                 continue
-            if name in sides and _is_apart(after, known):
-                objects = self._true_of(term, self._likely(term, after), after)
+            if name in objects_of and _is_apart(after, bound_so_far):
+                objects = self._satisfying(term, self._indexed_nodes(term, after), after)
                 if name in {"output", "gives"}:
                     return sorted({unit for o in objects for unit in network.producers[o]})
-                return [unit for unit, side in enumerate(sides[name]) if not objects.isdisjoint(side)]
-            known |= bound_by([item])
+                return [
+                    unit
+                    for unit, unit_objects in enumerate(objects_of[name])
+                    if not objects.isdisjoint(unit_objects)
+                ]
+            bound_so_far |= bound_by([item])
         return range(len(network))
 
-    def _likely(self, variable: Variable, items: Sequence[Item]) -> Iterable[int]:
-        """Give some object nodes, among them all of which items hold: by a label or ingredient they name."""
+    def _indexed_nodes(self, variable: Variable, items: Sequence[Item]) -> Iterable[int]:
+        """Return a superset of the object nodes of which items hold, by the label or ingredient they name."""
         network = self._problem.network
         for item in items:
             if isinstance(item, Fact) and item.terms[0] == variable:
@@ -160,49 +182,49 @@ class FlatAnswers:
                         return network.by_ingredient.get(name, ())
         return range(len(network.objects))
 
-    def _true_of(
+    def _satisfying(
         self, variable: Variable, among: Iterable[int], items: Sequence[Item], bound: Iterable[Variable] = ()
     ) -> set[int]:
-        """Return those of which items hold."""
-        values, test = self._values, self._step(items, (*bound, variable), _yes)
-        found = set()
-        for each in among:
-            values[variable] = each
+        """Return the candidates of which items hold."""
+        values, test = self._values, self._step(items, (*bound, variable), _success)
+        members = set()
+        for candidate in among:
+            values[variable] = candidate
             if test(values):
-                found.add(each)
-        return found
+                members.add(candidate)
+        return members
 
     def _table(self, table: Table) -> set[_Answer]:
-        found: set[_Answer] = set()
-        for way, head in table.rows:
-            self._step(way.items, (), self._noting(head, found))(self._values)
-        return found
+        rows: set[_Answer] = set()
+        for disjunct, head in table.rows:
+            self._step(disjunct.items, (), self._collecting(head, rows))(self._values)
+        return rows
 
     def _step(self, items: Sequence[Item], bound: Iterable[Variable], then: _Step) -> _Step:
-        """Make a function that looks for values with which items hold, and ``then`` does."""
-        known = set(bound)
+        """Return a function that searches for values under which the items and ``then`` hold."""
+        bound_so_far = set(bound)
         before = []
         for item in items:
-            before.append(frozenset(known))
-            known.update(bound_by([item]))
-        pure = then is _yes
-        for place, so_far in reversed(list(enumerate(before))):
-            item = items[place]
+            before.append(frozenset(bound_so_far))
+            bound_so_far.update(bound_by([item]))
+        pure = then is _success
+        for position, so_far in reversed(list(enumerate(before))):
+            item = items[position]
             leads_to = item.terms[-1] if isinstance(item, Fact) and len(item.terms) > 1 else None
             if (
                 pure
                 and isinstance(leads_to, Variable)
                 and bound_by([item]) - so_far == {leads_to}
-                and _is_apart(items[place + 1 :], so_far)
+                and _is_apart(items[position + 1 :], so_far)
             ):
                 then = _remembered(leads_to, then)
-            then = self._one(item, so_far, then)
+            then = self._item_step(item, so_far, then)
         return then
 
-    def _one(self, item: Item, bound: frozenset[Variable], then: _Step) -> _Step:
+    def _item_step(self, item: Item, bound: frozenset[Variable], then: _Step) -> _Step:
         if isinstance(item, Never):
-            inner = [self._step(way.items, item.given, _yes) for way in item.ways]
-            return lambda values: not any(each(values) for each in inner) and then(values)
+            inner = [self._step(disjunct.items, item.bound, _success) for disjunct in item.disjuncts]
+            return lambda values: not any(step(values) for step in inner) and then(values)
         if isinstance(item, Counted):
             return self._counted(item, then)
         if isinstance(item, Compare):
@@ -213,74 +235,77 @@ class FlatAnswers:
 
     def _counted(self, item: Counted, then: _Step) -> _Step:
         seen: set[_Answer] = set()
-        steps = [self._step(way.items, item.given, self._noting(terms, seen)) for way, terms in item.rows]
+        steps = [
+            self._step(disjunct.items, item.bound, self._collecting(terms, seen))
+            for disjunct, terms in item.rows
+        ]
         guards = [(operator, self._read(term)) for operator, term in item.guards]
         fixed = all(isinstance(term, Constant) for _, term in item.guards)
-        known: dict[int, bool] = {}  # of counts, where nothing else decides
+        verdicts: dict[int, bool] = {}  # by count, where all guards are constants
 
         def step(values: _Values) -> bool:
             seen.clear()
-            for each in steps:
-                each(values)
-            holds = known.get(len(seen))
+            for row_step in steps:
+                row_step(values)
+            holds = verdicts.get(len(seen))
             if holds is None:
                 number = Number(len(seen))
                 holds = all(compared(number, operator, _symbol(read(values))) for operator, read in guards)
                 if fixed:
-                    known[len(seen)] = holds
+                    verdicts[len(seen)] = holds
             return holds is not item.negated and then(values)
 
         return step
 
-    def _noting(self, terms: Sequence[Term], found: set[_Answer]) -> _Step:
-        """Make a function that notes the values of terms, and goes on."""
+    def _collecting(self, terms: Sequence[Term], rows: set[_Answer]) -> _Step:
+        """Return a step that adds the values of terms to ``rows`` and fails, so that the search goes on."""
         reads = list(map(self._read, terms))
 
-        def note(values: _Values) -> bool:
-            found.add(tuple(read(values) for read in reads))
+        def collect(values: _Values) -> bool:
+            rows.add(tuple(read(values) for read in reads))
             return False
 
-        return note
+        return collect
 
     def _compare(self, item: Compare, bound: frozenset[Variable], then: _Step) -> _Step:
-        for one, other in ((item.left, item.right), (item.right, item.left)):
+        for one, other in ((item.first, item.second), (item.second, item.first)):
             if isinstance(one, Variable) and one not in bound:
                 return self._equal(one, bound, self._read(other), then)
-        left, right = self._read(item.left), self._read(item.right)
+        first, second = self._read(item.first), self._read(item.second)
         if item.comparison is ComparisonOperator.Equal:
-            return lambda values: left(values) == right(values) and then(values)
+            return lambda values: first(values) == second(values) and then(values)
         if item.comparison is ComparisonOperator.NotEqual:
-            return lambda values: left(values) != right(values) and then(values)
+            return lambda values: first(values) != second(values) and then(values)
         operator = item.comparison
         return lambda values: (
-            compared(_symbol(left(values)), operator, _symbol(right(values))) and then(values)
+            compared(_symbol(first(values)), operator, _symbol(second(values))) and then(values)
         )
 
     def _fact(self, item: Fact, bound: frozenset[Variable], then: _Step) -> _Step:
-        """Look for a fact: what is said of its first term."""
+        """Return a step that searches the facts about the first term of an item."""
         name, of = item.signature[0], self._read(item.terms[0])
         if name == "goal":
             return self._match(item.terms, bound, [(goal,) for goal in self._problem.goals], then)
-        if name in self._said.tests:
-            holds = self._said.tests[name]
+        if name in self._fact_readers.tests:
+            holds = self._fact_readers.tests[name]
             return lambda values: holds(of(values)) and then(values)
-        if name in self._said.once:
-            said = self._said.once[name]
-            return self._equal(item.terms[1], bound, lambda values: said(of(values)), then)
-        said_often = self._said.often[name]
+        if name in self._fact_readers.once:
+            value_of = self._fact_readers.once[name]
+            return self._equal(item.terms[1], bound, lambda values: value_of(of(values)), then)
+        values_of = self._fact_readers.often[name]
         term = item.terms[1]
         if len(item.terms) > 2:
             rows = item.terms[1:]
-            return lambda values: self._match(rows, bound, said_often(of(values)), then)(values)
+            return lambda values: self._match(rows, bound, values_of(of(values)), then)(values)
         if isinstance(term, Variable) and term not in bound:
-            return _each(term, lambda values: said_often(of(values)), then)
+            return _for_each_value(term, lambda values: values_of(of(values)), then)
         wanted = self._read(term)
-        return lambda values: wanted(values) in said_often(of(values)) and then(values)
+        return lambda values: wanted(values) in values_of(of(values)) and then(values)
 
     def _equal(
         self, term: Term, bound: Collection[Variable], read: Callable[[_Values], Any], then: _Step
     ) -> _Step:
-        """Hold a term against what is read, or give it that value."""
+        """Return a step that compares a term with what ``read`` returns, or binds the term to it."""
         if isinstance(term, Constant):
             constant = term.value
             return lambda values: read(values) == constant and then(values)
@@ -296,7 +321,7 @@ class FlatAnswers:
     def _match(
         self, terms: Sequence[Term], bound: Collection[Variable], rows: Collection[_Answer], then: _Step
     ) -> _Step:
-        """Look for a row that terms agree with."""
+        """Return a step that searches for a row that unifies with the terms."""
         reads = list(map(self._read, terms))
         if all(isinstance(term, Constant) or term in bound for term in terms):
             if len(terms) == 1:
@@ -307,11 +332,11 @@ class FlatAnswers:
         def step(values: _Values) -> bool:
             for row in rows:
                 met: set[Term] = set()
-                for place, (term, value) in enumerate(zip(terms, row, strict=True)):
+                for position, (term, value) in enumerate(zip(terms, row, strict=True)):
                     if isinstance(term, Variable) and term not in bound and term not in met:
                         met.add(term)
                         values[term] = value
-                    elif reads[place](values) != value:
+                    elif reads[position](values) != value:
                         break
                 else:
                     if then(values):
@@ -321,22 +346,25 @@ class FlatAnswers:
         return step
 
     def _read(self, term: Term) -> Callable[[_Values], Any]:
-        """Make a function that gives the value of a term."""
+        """Return a function that returns the value of a term."""
         if isinstance(term, Constant):
             constant = term.value
             return lambda _: constant
         return itemgetter(term)
 
 
-class _Said(NamedTuple):
-    """What facts say of a unit, an object node or a label: once, often, or that it is so."""
+class _FactReaders(NamedTuple):
+    """Readers of facts about a unit, an object node or a label, by predicate.
+
+    ``once`` return the one value, ``often`` several values, ``tests`` whether the fact exists.
+    """
 
     once: dict[str, Callable[[int], Any]]
     often: dict[str, Callable[[int], Collection[Any]]]
     tests: dict[str, Callable[[Any], bool]]
 
 
-def _said(problem: Problem, prices: Mapping[int, int]) -> _Said:
+def _fact_readers(problem: Problem, prices: Mapping[int, int]) -> _FactReaders:
     network, kitchen, utensils = problem.network, problem.kitchen_seen, problem.utensils
     objects, inputs = network.objects, network.inputs
     seen = problem.as_seen or problem
@@ -354,10 +382,10 @@ def _said(problem: Problem, prices: Mapping[int, int]) -> _Said:
         "needs": problem.needs.__getitem__,
         "gives": problem.gives.__getitem__,
         "state": lambda o: objects[o].states,
-        "ingredient": lambda o: [item for each in objects[o].contents for item in each.ingredients],
-        "located": lambda o: [tuple(each) for each in objects[o].relations],
+        "ingredient": lambda o: [item for content in objects[o].contents for item in content.ingredients],
+        "located": lambda o: [tuple(relation) for relation in objects[o].relations],
         "source": lambda unit: source_names(network.sources[unit]),
-        "video": lambda unit: [written(each) for s in network.sources[unit] for each in s.videos],
+        "video": lambda unit: [written(video) for s in network.sources[unit] for video in s.videos],
         "rate": lambda _: (),
         "price": lambda unit: (prices[unit],) if unit in prices else (),
     }
@@ -369,10 +397,10 @@ def _said(problem: Problem, prices: Mapping[int, int]) -> _Said:
         "kitchen": kitchen.__contains__,
         "utensil": utensils.__contains__,
     }
-    return _Said(once, often, tests)
+    return _FactReaders(once, often, tests)
 
 
-def _each(variable: Variable, read: Callable[[_Values], Iterable[Any]], then: _Step) -> _Step:
+def _for_each_value(variable: Variable, read: Callable[[_Values], Iterable[Any]], then: _Step) -> _Step:
     def step(values: _Values) -> bool:
         for value in read(values):
             values[variable] = value
@@ -383,32 +411,32 @@ def _each(variable: Variable, read: Callable[[_Values], Iterable[Any]], then: _S
     return step
 
 
-def _is_apart(items: Sequence[Item], known: Collection[Variable]) -> bool:
-    """Whether items, one at least, are about no variable that is known before them."""
-    used = bound_by(items).union(*(item.given for item in items if isinstance(item, Never | Counted)))
-    return bool(items) and used.isdisjoint(known)
+def _is_apart(items: Sequence[Item], bound: Collection[Variable]) -> bool:
+    """Whether there are items, and none of them shares a variable with ``bound``."""
+    used = bound_by(items).union(*(item.bound for item in items if isinstance(item, Never | Counted)))
+    return bool(items) and used.isdisjoint(bound)
 
 
 def _remembered(variable: Variable, then: _Step) -> _Step:
-    """Do what comes next once for each value of a variable on which alone it depends."""
-    known: dict[Any, bool] = {}
+    """Return ``then``, memoized by the value of the only variable that it depends on."""
+    verdicts: dict[Any, bool] = {}
 
     def step(values: _Values) -> bool:
         value = values[variable]
-        holds = known.get(value)
+        holds = verdicts.get(value)
         if holds is None:
-            holds = known[value] = then(values)
+            holds = verdicts[value] = then(values)
         return holds
 
     return step
 
 
-def _yes(_: _Values) -> bool:
+def _success(_: _Values) -> bool:
     return True
 
 
 def _symbol(value: Any) -> Symbol:
-    """Return a value as clingo compares it; raises :class:`UserError` for a name that it does not take."""
+    """Return a value as a symbol; raises :class:`UserError` for a text that clingo does not take."""
     if isinstance(value, Symbol):
         return value
     if isinstance(value, str):

@@ -1,7 +1,7 @@
-"""Flat bodies: rules that are understood, as questions about one unit of the tree at a time.
+"""Flat rule bodies: rules compiled to queries about one unit of the tree at a time, without clingo.
 
-A body is flat if auxiliary predicates are unfolded, and what is left are facts, texts and whole numbers,
-comparisons, counts of facts, and bodies that must not hold. A rule with flat bodies removes units, asks for
+A body is flat if, once its auxiliary predicates are unfolded, it consists of facts, texts and whole numbers,
+comparisons, counts of facts, and negated bodies. A rule with flat bodies removes units, asks for
 one unit of a set, or bounds a sum over units. Everything else (arithmetic, intervals, sums within a body,
 recursion, variables that nothing binds, two units that together break a rule) is left to the search.
 """
@@ -18,10 +18,10 @@ from foon_asp.rules.clause import (
     Aggregate,
     Clause,
     Conditional,
+    Conjunct,
     Constants,
     Element,
     Literal,
-    Part,
     Signature,
     Strange,
     Test,
@@ -35,15 +35,15 @@ from foon_asp.rules.dependence import AVAILABLE, TIMES, USE, Dependence, Depends
 from foon_asp.rules.fact_subject import SUBJECTS, Subject, Subjects
 from foon_asp.rules.locality import Locality
 
-_OFTEN = {"input", "output", "needs", "gives", "state", "ingredient", "located", "source", "video"}
-_READ = _OFTEN | {"motion", "label", "inputs", "ingredients", "rate", "price"}
+_SEVERAL_VALUES = {"input", "output", "needs", "gives", "state", "ingredient", "located", "source", "video"}
+_READ = _SEVERAL_VALUES | {"motion", "label", "inputs", "ingredients", "rate", "price"}
 _READ |= {"unit", "object", "kitchen", "utensil", "goal"}
-_MOST = 256  # ways in which a body can hold that are followed
+_MAX_WAYS = 256  # disjuncts of one body; with more, the rule is left to the search
 _ONE_EXECUTION = {USE, TIMES}
-NUMBER: Final = ("_number", 2)  # of a unit: what ``use(17)`` says
+NUMBER: Final = ("_number", 2)  # of a unit: its public number, as in ``use(17)``
 _SUBJECTS = {**SUBJECTS, NUMBER: Subjects({0: Subject.UNIT}, {})}
 
-# What a forbidden comparison leaves: whether that is at least or at most the number, and how far from it.
+# By forbidden comparison: whether the bound that remains is a lower one, and its offset from the number.
 _ALLOWED = {
     ComparisonOperator.GreaterThan: (False, 0),
     ComparisonOperator.GreaterEqual: (False, -1),
@@ -53,7 +53,7 @@ _ALLOWED = {
 
 
 class NotFlatError(Exception):
-    """A rule is not understood, and left to the search."""
+    """A rule whose body is not flat, so that it is left to the search."""
 
 
 class Variable(int):
@@ -61,7 +61,7 @@ class Variable(int):
 
 
 class Constant(NamedTuple):
-    """A value that stands in a rule: a text, a whole number, or any other symbol as it is."""
+    """A constant of a rule: a text, a whole number, or any other symbol unchanged."""
 
     value: str | int | Symbol
 
@@ -70,87 +70,93 @@ Term = Variable | Constant
 
 
 class Fact(NamedTuple):
-    """That a fact is there."""
+    """A positive literal over a predicate of facts."""
 
     signature: Signature
     terms: tuple[Term, ...]
 
 
 class Listed(NamedTuple):
-    """That a row is in the table of a helper predicate."""
+    """A positive literal over an auxiliary predicate that is a :class:`Table`."""
 
     signature: Signature
     terms: tuple[Term, ...]
 
 
 class Compare(NamedTuple):
-    """That two terms compare in a way."""
+    """A comparison of two terms."""
 
     comparison: ComparisonOperator
-    left: Term
-    right: Term
+    first: Term
+    second: Term
 
 
 class Never(NamedTuple):
-    """That none of some ways holds; the variables ``given`` have their values before."""
+    """A negated disjunction: no disjunct holds, once the variables in ``bound`` have their values."""
 
-    ways: "tuple[Way, ...]"
-    given: frozenset[Variable]
+    disjuncts: "tuple[Disjunct, ...]"
+    bound: frozenset[Variable]
 
 
 class Counted(NamedTuple):
-    """That as many rows as some ways give to their terms compare with all of some terms, or do not."""
+    """A ``#count``: the number of different rows that the disjuncts derive, compared with each guard.
 
-    rows: "tuple[tuple[Way, tuple[Term, ...]], ...]"
+    ``negated`` inverts it; the variables in ``bound`` have their values before.
+    """
+
+    rows: "tuple[tuple[Disjunct, tuple[Term, ...]], ...]"
     guards: tuple[tuple[ComparisonOperator, Term], ...]
     negated: bool
-    given: frozenset[Variable]
+    bound: frozenset[Variable]
 
 
 Item = Fact | Listed | Compare | Never | Counted
 
 
-class Way(NamedTuple):
-    """A way in which a body can hold, and the variable of the unit of the tree that it takes, if any."""
+class Disjunct(NamedTuple):
+    """A conjunction of items under which a body holds.
+
+    ``unit`` is the variable of its one ``use(U)``, ``None`` where it has none.
+    """
 
     items: tuple[Item, ...]
     unit: Variable | None = None
 
 
 class Table(NamedTuple):
-    """A helper predicate that is derived from goals and other tables alone.
+    """An auxiliary predicate that is derived from goals and other tables alone.
 
-    ``rows`` are the ways in which it holds, each with the terms of its head; ``subjects`` say what its
+    ``rows`` are the disjuncts of its rules, each with the terms of its head; ``subjects`` say what its
     arguments stand for.
     """
 
-    rows: tuple[tuple[Way, tuple[Term, ...]], ...]
+    rows: tuple[tuple[Disjunct, tuple[Term, ...]], ...]
     subjects: tuple[Subject, ...]
 
 
-class Asking(NamedTuple):
-    """A requiring rule: wherever ``when`` holds, it asks for a unit that one of ``helping`` is true of."""
+class AtLeastOne(NamedTuple):
+    """An at-least-one constraint: wherever ``when`` holds, the tree has a unit of one of ``helpers``."""
 
-    when: Way
-    helping: tuple[Way, ...]
+    when: Disjunct
+    helpers: tuple[Disjunct, ...]
 
 
-class Row(NamedTuple):
-    """A rule that bounds a sum over units: its ``terms`` are at most ``bound`` together, or ``at_least``.
+class LinearBound(NamedTuple):
+    """A linear bound of a rule: its ``terms`` sum up to at most ``bound``, or ``at_least``.
 
-    A term is a way that takes a unit, with what one execution of that unit counts; equal numbers that several
-    ways give a unit count once. If it says what is ``used``, a unit counts once however often it is executed.
-    ``each`` says that the bound is for each unit by itself.
+    A term is a disjunct with a unit and the weight of one execution of that unit; equal weights that several
+    disjuncts give a unit count once. With ``used``, a unit counts once however often it is executed. With
+    ``per_unit``, the bound holds for each unit by itself.
     """
 
-    terms: tuple[tuple[Way, Term], ...]
+    terms: tuple[tuple[Disjunct, Term], ...]
     bound: int
     at_least: bool = False
     used: bool = False
-    each: bool = False
+    per_unit: bool = False
 
 
-_Subjects = dict[Variable, Subject]  # LABEL for whatever is no id
+_Subjects = dict[Variable, Subject]  # LABEL stands for everything that is no id
 _OPPOSITE = {
     ComparisonOperator.Equal: ComparisonOperator.NotEqual,
     ComparisonOperator.NotEqual: ComparisonOperator.Equal,
@@ -162,10 +168,10 @@ _OPPOSITE = {
 
 
 class FlatBodies:
-    """Makes bodies of a program flat; raises :class:`NotFlatError` for those that are left to the search.
+    """Compiler of rule bodies to flat ones; raises :class:`NotFlatError` for bodies left to the search.
 
-    The items of a way are in an order in which each variable has its value before it is needed. ``tables``
-    are the auxiliary predicates that they look at, ``size`` is above the number of each variable.
+    The items of a disjunct are in an order in which each variable has its value before it is read. ``tables``
+    are the auxiliary predicates that they read, ``size`` is the number of variables.
     """
 
     def __init__(
@@ -177,125 +183,146 @@ class FlatBodies:
             if clause.head is not None:
                 self._rules.setdefault(clause.head.signature, []).append(clause)
         self.tables: dict[Signature, Table] = {}
-        self._open: list[Signature] = []  # that are being looked into
+        self._unfolding: list[Signature] = []  # predicates that are being unfolded, to find recursion
         self.size = 0
 
-    def ways(self, clause: Clause) -> tuple[Way, ...]:
-        """Return the ways in which the body of a rule holds."""
-        return tuple(self._sorted(way, frozenset(), {}) for way in _Scope(self, clause).ways(clause.body))
+    def disjuncts(self, clause: Clause) -> tuple[Disjunct, ...]:
+        """Return the body of a rule as a disjunction."""
+        return tuple(
+            self._sorted(disjunct, frozenset(), {})
+            for disjunct in _Scope(self, clause).disjuncts(clause.body)
+        )
 
-    def askings(self, clause: Clause) -> tuple[Asking, ...]:
-        """Return what a rule asks for that requires one unit of a set, or of each of several sets."""
+    def at_least_ones(self, clause: Clause) -> tuple[AtLeastOne, ...]:
+        """Return the at-least-one constraints that a requiring rule stands for."""
         scope = _Scope(self, clause)
-        deciding = [part for part in clause.body if self._dependence.of_part(part) is not Depends.NOT]
-        askings = []
-        for way in scope.ways([part for part in clause.body if part not in deciding]):
+        deciding = [
+            conjunct for conjunct in clause.body if self._dependence.of_conjunct(conjunct) is not Depends.NOT
+        ]
+        at_least_ones = []
+        for disjunct in scope.disjuncts([conjunct for conjunct in clause.body if conjunct not in deciding]):
             subjects: _Subjects = {}
-            when = self._sorted(way, frozenset(), subjects)
-            known = frozenset(subjects)
-            helping = [
-                self._sorted(each, known, dict(subjects)) for part in deciding for each in scope.helping(part)
+            when = self._sorted(disjunct, frozenset(), subjects)
+            bound = frozenset(subjects)
+            helpers = [
+                self._sorted(alternative, bound, dict(subjects))
+                for conjunct in deciding
+                for alternative in scope.helpers(conjunct)
             ]
-            askings.append(Asking(when, tuple(helping)))
-        return tuple(askings)
+            at_least_ones.append(AtLeastOne(when, tuple(helpers)))
+        return tuple(at_least_ones)
 
-    def row(self, clause: Clause) -> Row:
-        """Return the sum over units that a rule bounds: ``#sum { N,U : times(U,N) } > 9`` and the like."""
+    def linear_bound(self, clause: Clause) -> LinearBound:
+        """Return the linear bound of a rule such as ``:- #sum { N,U : times(U,N) } > 9``."""
         scope = _Scope(self, clause)
-        counts = [part for part in clause.body if isinstance(part, Aggregate)]
-        if not counts:
-            return self._row_of_each(scope, clause.body)
-        if len(clause.body) > 1 or counts[0].negations or len(counts[0].guards) != 1:
+        aggregates = [conjunct for conjunct in clause.body if isinstance(conjunct, Aggregate)]
+        if not aggregates:
+            return self._unit_bound(scope, clause.body)
+        if len(clause.body) > 1 or aggregates[0].negations or len(aggregates[0].guards) != 1:
             raise NotFlatError
-        at_least, bound = self._allowed(counts[0].guards[0].comparison, counts[0].guards[0].term)
-        terms = tuple(term for each in counts[0].elements for term in self._terms(scope, counts[0], each))
+        at_least, bound = self._allowed(aggregates[0].guards[0].comparison, aggregates[0].guards[0].term)
+        terms = tuple(
+            term for element in aggregates[0].elements for term in self._terms(scope, aggregates[0], element)
+        )
         deciding = {
             literal.signature
-            for element in counts[0].elements
+            for element in aggregates[0].elements
             for literal in element.condition
             if isinstance(literal, Literal) and literal.signature in _ONE_EXECUTION
         }
         if len(deciding) != 1:
             raise NotFlatError
-        return Row(terms, bound, at_least, deciding == {USE})
+        return LinearBound(terms, bound, at_least, deciding == {USE})
 
-    def _row_of_each(self, scope: "_Scope", body: Sequence[Part]) -> Row:
-        """Return the row of ``:- times(U,N), N > 2, ...``."""
-        for part in body:
-            if not isinstance(part, Test) or part.ast.sign or part.ast.atom.ast_type != ASTType.Comparison:
+    def _unit_bound(self, scope: "_Scope", body: Sequence[Conjunct]) -> LinearBound:
+        """Return the bound per unit of ``:- times(U,N), N > 2, ...``."""
+        for conjunct in body:
+            if (
+                not isinstance(conjunct, Test)
+                or conjunct.ast.sign
+                or conjunct.ast.atom.ast_type != ASTType.Comparison
+            ):
                 continue
-            count, guards = part.ast.atom.term, part.ast.atom.guards
-            condition = tuple(each for each in body if each is not part)
-            times = [each for each in condition if isinstance(each, Literal) and each.signature == TIMES]
+            count, guards = conjunct.ast.atom.term, conjunct.ast.atom.guards
+            condition = tuple(other for other in body if other is not conjunct)
+            times = [other for other in condition if isinstance(other, Literal) and other.signature == TIMES]
             if len(guards) != 1 or len(times) != 1 or times[0].arguments[1] != count:
                 continue
             at_least, bound = self._allowed(guards[0].comparison, guards[0].term)
             if not at_least:
                 element = Element((count, times[0].arguments[0]), condition)
-                return Row(tuple(self._terms(scope, None, element)), bound, each=True)
+                return LinearBound(tuple(self._terms(scope, None, element)), bound, per_unit=True)
         raise NotFlatError
 
     def _allowed(self, comparison: int, term: AST) -> tuple[bool, int]:
-        """Return what is left if a comparison with a number is forbidden: whether at least, and how much."""
-        number, sides = value(term, self.constants), _ALLOWED.get(ComparisonOperator(comparison))
-        if number is None or number.type is not SymbolType.Number or sides is None:
+        """Return the bound that forbids a comparison: whether it is a lower one, and its number."""
+        number, allowed = value(term, self.constants), _ALLOWED.get(ComparisonOperator(comparison))
+        if number is None or number.type is not SymbolType.Number or allowed is None:
             raise NotFlatError
-        return sides[0], number.number + sides[1]
+        return allowed[0], number.number + allowed[1]
 
-    def _terms(self, scope: "_Scope", counts: Aggregate | None, element: Element) -> list[tuple[Way, Term]]:
-        """Return the terms of a row that one element of a sum or a count stands for."""
+    def _terms(
+        self, scope: "_Scope", counts: Aggregate | None, element: Element
+    ) -> list[tuple[Disjunct, Term]]:
+        """Return the terms, each with its weight, that one element of a sum or a count stands for."""
         is_count = counts is not None and counts.function is AggregateFunction.Count
         is_sum = counts is None or counts.function is AggregateFunction.Sum
         if not (is_count and len(element.terms) == 1) and not (is_sum and len(element.terms) == 2):
             raise NotFlatError
-        found = []
-        for way, weight in scope.summands(element):
+        terms = []
+        for disjunct, weight in scope.summands(element):
             subjects: _Subjects = {}
-            found.append((self._sorted(way, frozenset(), subjects), weight))
+            terms.append((self._sorted(disjunct, frozenset(), subjects), weight))
             if isinstance(weight, Variable) and subjects.get(weight) is not Subject.LABEL:
                 raise NotFlatError
-        return found
+        return terms
 
     def variable(self) -> Variable:
-        """Return a variable that is nowhere yet."""
+        """Return a fresh variable."""
         self.size += 1
         return Variable(self.size - 1)
 
-    def of_atom(self, signature: Signature, terms: tuple[Term, ...]) -> list[Way]:
-        """Return the ways in which an atom holds, their items in any order."""
+    def of_atom(self, signature: Signature, terms: tuple[Term, ...]) -> list[Disjunct]:
+        """Return an atom as a disjunction, with the items in any order."""
         if signature == USE:
             if isinstance(terms[0], Variable):
-                return [Way((), terms[0])]
+                return [Disjunct((), terms[0])]
             unit = self.variable()
-            return [Way((Fact(NUMBER, (unit, *terms)),), unit)]
+            return [Disjunct((Fact(NUMBER, (unit, *terms)),), unit)]
         if signature == AVAILABLE:
             unit = self.variable()
-            return [Way((Fact(("kitchen", 1), terms),)), Way((Fact(("gives", 2), (unit, *terms)),), unit)]
+            return [
+                Disjunct((Fact(("kitchen", 1), terms),)),
+                Disjunct((Fact(("gives", 2), (unit, *terms)),), unit),
+            ]
         if signature in SUBJECTS:
             if signature[0] not in _READ:
                 raise NotFlatError
-            return [Way((Fact(signature, terms),))]
-        if signature in self._open:
+            return [Disjunct((Fact(signature, terms),))]
+        if signature in self._unfolding:
             raise NotFlatError
-        self._open.append(signature)
+        self._unfolding.append(signature)
         try:
             if self._is_table(signature):
-                return [Way((Listed(signature, terms),))]
-            ways: list[Way] = []
+                return [Disjunct((Listed(signature, terms),))]
+            disjuncts: list[Disjunct] = []
             for clause in self._rules.get(signature, ()):
                 scope = _Scope(self, clause)
                 assert clause.head is not None
-                equal = scope.called(terms, clause.head.arguments)
-                ways += [way._replace(items=(*equal, *way.items)) for way in scope.ways(clause.body)]
-            return ways
+                equations = scope.unified(terms, clause.head.arguments)
+                disjuncts += [
+                    disjunct._replace(items=(*equations, *disjunct.items))
+                    for disjunct in scope.disjuncts(clause.body)
+                ]
+            return disjuncts
         finally:
-            self._open.pop()
+            self._unfolding.pop()
 
     def _is_table(self, signature: Signature) -> bool:
-        """Whether a predicate is a table; makes it one if it is met first."""
+        """Whether a predicate is a table; adds it to ``tables`` at its first use."""
         if signature not in self.tables:
-            depends = self._dependence.of(signature) is not Depends.NOT
-            doubtful = depends or signature in self._dependence.doubts
+            depends_on_tree = self._dependence.of(signature) is not Depends.NOT
+            doubtful = depends_on_tree or signature in self._dependence.doubts
             if signature not in self._rules or doubtful or not self._locality.closed(signature):
                 return False
             rows = []
@@ -304,9 +331,9 @@ class FlatBodies:
                 assert clause.head is not None
                 scope = _Scope(self, clause)
                 head = tuple(map(scope.term, clause.head.arguments))
-                for way in scope.ways(clause.body):
+                for disjunct in scope.disjuncts(clause.body):
                     subjects: _Subjects = {}
-                    rows.append((self._sorted(way, frozenset(), subjects), head))
+                    rows.append((self._sorted(disjunct, frozenset(), subjects), head))
                     if not subjects.keys() >= set(_variables(head)):
                         raise NotFlatError
                     kinds.add(tuple(_subject(term, subjects) for term in head))
@@ -316,38 +343,42 @@ class FlatBodies:
             self.tables[signature] = Table(tuple(rows), kinds.pop() if kinds else any_)
         return True
 
-    def _sorted(self, way: Way, known: frozenset[Variable], subjects: _Subjects) -> Way:
-        """Put the items of a way in order; ``subjects`` are filled with those of its variables."""
-        bound = set(known)
-        if way.unit is not None:
-            if way.unit in bound:
-                raise NotFlatError  # one unit that something else says, by its number
-            bound.add(way.unit)
-            subjects[way.unit] = Subject.UNIT
-        self._find_subjects(way.items, subjects)
-        left, items = list(way.items), list[Item]()
-        while left:
+    def _sorted(self, disjunct: Disjunct, bound_before: frozenset[Variable], subjects: _Subjects) -> Disjunct:
+        """Return a disjunct with its items in the order of evaluation; adds its variables to ``subjects``."""
+        bound = set(bound_before)
+        if disjunct.unit is not None:
+            if disjunct.unit in bound:
+                raise NotFlatError  # a unit that another literal determines, by its number
+            bound.add(disjunct.unit)
+            subjects[disjunct.unit] = Subject.UNIT
+        self._find_subjects(disjunct.items, subjects)
+        remaining, items = list(disjunct.items), list[Item]()
+        while remaining:
             ready = [
-                (cost, place) for place, item in enumerate(left) if (cost := self._cost(item, bound)) >= 0
+                (cost, position)
+                for position, item in enumerate(remaining)
+                if (cost := self._cost(item, bound)) >= 0
             ]
             if not ready:
                 raise NotFlatError
-            item = left.pop(min(ready)[1])
+            item = remaining.pop(min(ready)[1])
             if isinstance(item, Never):
-                inner = (self._sorted(each, item.given, dict(subjects)) for each in item.ways)
-                item = item._replace(ways=tuple(inner))
+                inner = (self._sorted(inner_way, item.bound, dict(subjects)) for inner_way in item.disjuncts)
+                item = item._replace(disjuncts=tuple(inner))
             elif isinstance(item, Counted):
-                rows = ((self._sorted(each, item.given, dict(subjects)), row) for each, row in item.rows)
+                rows = (
+                    (self._sorted(inner_way, item.bound, dict(subjects)), row) for inner_way, row in item.rows
+                )
                 item = item._replace(rows=tuple(rows))
             else:
                 bound.update(_variables(_terms(item)))
             items.append(item)
-        return way._replace(items=tuple(items))
+        return disjunct._replace(items=tuple(items))
 
     def _cost(self, item: Item, bound: set[Variable]) -> int:
-        """Say how soon an item should be looked at, negative where values that it needs are not there yet."""
+        """Return the rank of an item in the order of evaluation, negative while its inputs are unbound."""
         if isinstance(item, Never | Counted):
-            return 3 if item.given <= bound else -1
+            return 3 if item.bound <= bound else -1
         free = [variable not in bound for variable in _variables(_terms(item))]
         if isinstance(item, Compare):
             binds = sum(free) == 1 and item.comparison is ComparisonOperator.Equal
@@ -355,14 +386,14 @@ class FlatBodies:
         if isinstance(item, Listed):
             return 10 if any(free) else 1
         about = _SUBJECTS[item.signature].about
-        if not bound.issuperset(_variables(item.terms[place] for place in about)):
+        if not bound.issuperset(_variables(item.terms[position] for position in about)):
             return -1
         if item.signature == ("goal", 1):
             return 20 if any(free) else 0
-        return (5 if any(free) else 1) if item.signature[0] in _OFTEN else 0
+        return (5 if any(free) else 1) if item.signature[0] in _SEVERAL_VALUES else 0
 
     def _find_subjects(self, items: Iterable[Item], subjects: _Subjects) -> None:
-        """Find out what variables stand for; raises where one stands for two things."""
+        """Add to ``subjects`` what variables stand for; raises where one variable stands for two kinds."""
         before = -1
         while before != len(subjects):
             before = len(subjects)
@@ -370,19 +401,19 @@ class FlatBodies:
                 if isinstance(item, Fact):
                     facts = _SUBJECTS[item.signature]
                     of = {**facts.about, **facts.leads_to}
-                    for place, term in enumerate(item.terms):
-                        _set_subject(term, of.get(place, Subject.LABEL), subjects)
+                    for position, term in enumerate(item.terms):
+                        _set_subject(term, of.get(position, Subject.LABEL), subjects)
                 elif isinstance(item, Listed):
                     for term, subject in zip(item.terms, self.tables[item.signature].subjects, strict=True):
                         _set_subject(term, subject, subjects)
                 elif isinstance(item, Compare):
-                    for one, other in ((item.left, item.right), (item.right, item.left)):
+                    for one, other in ((item.first, item.second), (item.second, item.first)):
                         if isinstance(one, Constant) or one in subjects:
                             _set_subject(other, _subject(one, subjects), subjects)
         if any(
             isinstance(item, Compare)
             and item.comparison not in {ComparisonOperator.Equal, ComparisonOperator.NotEqual}
-            and any(_subject(term, subjects) is not Subject.LABEL for term in (item.left, item.right))
+            and any(_subject(term, subjects) is not Subject.LABEL for term in (item.first, item.second))
             for item in items
         ):
             raise NotFlatError
@@ -394,58 +425,58 @@ class _Scope:
     def __init__(self, bodies: FlatBodies, clause: Clause) -> None:
         self._bodies, self._constants = bodies, bodies.constants
         self._named: dict[str, Term] = {}
-        # those that a rule has as a whole; others are of their condition alone
+        # global variables; all others are local to their condition
         self._whole = {
             name
-            for part in (clause.head, *clause.body)
-            if part is not None
-            for name in global_variables(part)
+            for conjunct in (clause.head, *clause.body)
+            if conjunct is not None
+            for name in global_variables(conjunct)
         }
         if not self._is_safe(clause.body):
             raise NotFlatError  # clingo says which variable nothing binds
 
-    def _is_safe(self, body: Sequence[Part]) -> bool:
-        """Whether all variables are surely bound: by atoms that are not negated, or by what they equal."""
+    def _is_safe(self, body: Sequence[Conjunct]) -> bool:
+        """Whether the rule is safe: positive atoms or equations bind each of its variables."""
         bound = {
             name
-            for part in body
-            if isinstance(part, Literal) and part.positive
-            for name in global_variables(part)
+            for conjunct in body
+            if isinstance(conjunct, Literal) and conjunct.positive
+            for name in global_variables(conjunct)
         }
         before = -1
         while before != len(bound):
             before = len(bound)
-            for part in body:
-                if isinstance(part, Test) and (names := _equal(part)) and len(names - bound) == 1:
+            for conjunct in body:
+                if isinstance(conjunct, Test) and (names := _equal(conjunct)) and len(names - bound) == 1:
                     bound |= names
-        inner: list[tuple[Iterable[str], tuple[Part, ...]]] = []  # names that conditions have to bind
-        for part in body:
-            if isinstance(part, Conditional):
-                inner.append((global_variables(part.literal), part.condition))
-            elif isinstance(part, Aggregate):
-                inner += [(variables(*element.terms), element.condition) for element in part.elements]
+        inner: list[tuple[Iterable[str], tuple[Conjunct, ...]]] = []  # names that conditions have to bind
+        for conjunct in body:
+            if isinstance(conjunct, Conditional):
+                inner.append((global_variables(conjunct.literal), conjunct.condition))
+            elif isinstance(conjunct, Aggregate):
+                inner += [(variables(*element.terms), element.condition) for element in conjunct.elements]
         return bound >= self._whole and all(
             self._whole.union(
                 name
-                for each in condition
-                if isinstance(each, Literal) and each.positive
-                for name in global_variables(each)
-            ).issuperset((*names, *(name for each in condition for name in global_variables(each))))
+                for conjunct in condition
+                if isinstance(conjunct, Literal) and conjunct.positive
+                for name in global_variables(conjunct)
+            ).issuperset((*names, *(name for conjunct in condition for name in global_variables(conjunct))))
             for names, condition in inner
         )
 
-    def called(self, terms: Sequence[Term], head: Sequence[AST]) -> list[Item]:
-        """Return the variables of a head the terms of an atom; gives what has to be equal besides."""
-        equal: list[Item] = []
+    def unified(self, terms: Sequence[Term], head: Sequence[AST]) -> list[Item]:
+        """Unify the head of a rule with the terms of an atom; return the equations that remain."""
+        equations: list[Item] = []
         for term, argument in zip(terms, head, strict=True):
             if argument.ast_type == ASTType.Variable and argument.name not in self._named:
                 self._named[argument.name] = term
             else:
-                equal.append(Compare(ComparisonOperator.Equal, self.term(argument), term))
-        return equal
+                equations.append(Compare(ComparisonOperator.Equal, self.term(argument), term))
+        return equations
 
     def term(self, node: AST) -> Term:
-        """Return a variable or a value."""
+        """Return a term of clingo as a variable or a constant."""
         if node.ast_type == ASTType.Variable:
             if node.name == "_":
                 return self._bodies.variable()
@@ -459,107 +490,115 @@ class _Scope:
             return Constant(symbol.number)
         return Constant(symbol.string if symbol.type is SymbolType.String else symbol)
 
-    def ways(self, parts: Iterable[Part]) -> list[Way]:
-        """Return the ways in which parts of a body hold together."""
-        each = [self._of_part(part) for part in parts]
-        found: list[Way] = []
-        for chosen in product(*each):
-            units = [way.unit for way in chosen if way.unit is not None]
-            if len(units) > 1 or len(found) == _MOST:
+    def disjuncts(self, conjuncts: Iterable[Conjunct]) -> list[Disjunct]:
+        """Return a conjunction as a disjunction of conjunctions (disjunctive normal form)."""
+        alternatives = [self._of_conjunct(conjunct) for conjunct in conjuncts]
+        bodies: list[Disjunct] = []
+        for combination in product(*alternatives):
+            units = [disjunct.unit for disjunct in combination if disjunct.unit is not None]
+            if len(units) > 1 or len(bodies) == _MAX_WAYS:
                 raise NotFlatError
-            items = tuple(item for way in chosen for item in way.items)
-            found.append(Way(items, units[0] if units else None))
-        return found
+            items = tuple(item for disjunct in combination for item in disjunct.items)
+            bodies.append(Disjunct(items, units[0] if units else None))
+        return bodies
 
-    def helping(self, part: Part) -> list[Way]:
-        """Return the ways in which a unit keeps a part of a requiring rule from holding."""
-        if isinstance(part, Aggregate):
-            if not _counts_none(part, self._constants):
+    def helpers(self, conjunct: Conjunct) -> list[Disjunct]:
+        """Return the disjuncts whose units make a conjunct of a requiring rule false."""
+        if isinstance(conjunct, Aggregate):
+            if not _counts_none(conjunct, self._constants):
                 raise NotFlatError
-            return [way for each in part.elements for way in self._within().ways(each.condition)]
-        literal, condition = (part.literal, part.condition) if isinstance(part, Conditional) else (part, ())
+            return [
+                disjunct
+                for element in conjunct.elements
+                for disjunct in self._inner_scope().disjuncts(element.condition)
+            ]
+        literal, condition = (
+            (conjunct.literal, conjunct.condition) if isinstance(conjunct, Conditional) else (conjunct, ())
+        )
         if not isinstance(literal, Literal) or literal.negations != 1:
             raise NotFlatError
-        return self._within().ways((literal._replace(negations=0), *condition))
+        return self._inner_scope().disjuncts((literal._replace(negations=0), *condition))
 
-    def summands(self, element: Element) -> list[tuple[Way, Term]]:
-        """Return the ways in which units count in an element of a sum, each with what one execution counts.
+    def summands(self, element: Element) -> list[tuple[Disjunct, Term]]:
+        """Return the disjuncts of an element of a sum, each with the weight of one execution of its unit.
 
-        That is as many times as much for several executions: how many there are stands nowhere else.
+        Several executions weigh as many times as much, since the condition reads their number nowhere else.
         """
-        within = self._within()
+        scope = self._inner_scope()
         executions = [
-            part
-            for part in element.condition
-            if isinstance(part, Literal) and part.positive and part.signature in _ONE_EXECUTION
+            conjunct
+            for conjunct in element.condition
+            if isinstance(conjunct, Literal) and conjunct.positive and conjunct.signature in _ONE_EXECUTION
         ]
         if len(executions) != 1:
             raise NotFlatError
-        unit, *count = map(within.term, executions[0].arguments)
-        *product, last = (within.term(each) for term in element.terms for each in factors(term))
-        for each in count:
-            if each not in product or product.count(each) > 1:
+        unit, *count = map(scope.term, executions[0].arguments)
+        *product, last = (scope.term(factor) for term in element.terms for factor in factors(term))
+        for factor in count:
+            if factor not in product or product.count(factor) > 1:
                 raise NotFlatError
-            product.remove(each)
+            product.remove(factor)
         if len(product) > 1 or last != unit:
             raise NotFlatError
-        ways = within.ways(element.condition)
-        for way in ways:
-            uses = [item for item in way.items for each in count if each in set(_mentioned(item))]
-            if way.unit != unit or len(uses) != len(count):
+        disjuncts = scope.disjuncts(element.condition)
+        for disjunct in disjuncts:
+            uses = [item for item in disjunct.items for factor in count if factor in set(_mentioned(item))]
+            if disjunct.unit != unit or len(uses) != len(count):
                 raise NotFlatError
-        return [(way, product[0] if product else Constant(1)) for way in ways]
+        return [(disjunct, product[0] if product else Constant(1)) for disjunct in disjuncts]
 
-    def _of_part(self, part: Part) -> list[Way]:
-        if isinstance(part, Literal):
-            ways = self._atom(part)
-            for _ in range(part.negations):
-                ways = [_never(ways, self._having(part))]
-            return ways
-        if isinstance(part, Test):
-            return self._test(part, against=False)
-        if isinstance(part, Conditional) and not isinstance(part.literal, Strange):
-            # nowhere does the condition hold without the literal
-            within = self._within()
-            if isinstance(part.literal, Test):
-                against = within._test(part.literal, against=True)
-            elif part.literal.negations == 1:
-                against = within._atom(part.literal)
+    def _of_conjunct(self, conjunct: Conjunct) -> list[Disjunct]:
+        if isinstance(conjunct, Literal):
+            disjuncts = self._atom(conjunct)
+            for _ in range(conjunct.negations):
+                disjuncts = [_never(disjuncts, self._literal_variables(conjunct))]
+            return disjuncts
+        if isinstance(conjunct, Test):
+            return self._test(conjunct, against=False)
+        if isinstance(conjunct, Conditional) and not isinstance(conjunct.literal, Strange):
+            # the negation: somewhere the condition holds, and the literal does not
+            scope = self._inner_scope()
+            if isinstance(conjunct.literal, Test):
+                against = scope._test(conjunct.literal, against=True)
+            elif conjunct.literal.negations == 1:
+                against = scope._atom(conjunct.literal)
             else:
-                against = [_never(within._atom(part.literal), within._having(part.literal))]
+                against = [_never(scope._atom(conjunct.literal), scope._literal_variables(conjunct.literal))]
             inner = [
-                Way((*one.items, *other.items))
-                for one in within.ways(part.condition)
+                Disjunct((*one.items, *other.items))
+                for one in scope.disjuncts(conjunct.condition)
                 for other in against
                 if one.unit is None and other.unit is None
             ]
-            return [_never(inner, self._given((part.literal, *part.condition)))]
-        if isinstance(part, Aggregate) and part.function is AggregateFunction.Count:
-            return [Way((self._counted(part),))]
+            return [_never(inner, self._outer_variables((conjunct.literal, *conjunct.condition)))]
+        if isinstance(conjunct, Aggregate) and conjunct.function is AggregateFunction.Count:
+            return [Disjunct((self._counted(conjunct),))]
         raise NotFlatError
 
-    def _counted(self, part: Aggregate) -> Counted:
+    def _counted(self, aggregate: Aggregate) -> Counted:
         rows = []
-        for element in part.elements:
-            within = self._within()
-            terms = tuple(map(within.term, element.terms))
-            for way in within.ways(element.condition):
-                if way.unit is not None or not terms:  # without terms it counts atoms
+        for element in aggregate.elements:
+            scope = self._inner_scope()
+            terms = tuple(map(scope.term, element.terms))
+            for disjunct in scope.disjuncts(element.condition):
+                if disjunct.unit is not None or not terms:  # without terms it counts atoms
                     raise NotFlatError
-                rows.append((way, terms))
-        guards = tuple((guard.comparison, self.term(guard.term)) for guard in part.guards)
-        given = self._given((part, *(each for element in part.elements for each in element.condition)))
-        return Counted(tuple(rows), guards, part.negations == 1, given)
+                rows.append((disjunct, terms))
+        guards = tuple((guard.comparison, self.term(guard.term)) for guard in aggregate.guards)
+        outer = self._outer_variables(
+            (aggregate, *(inner for element in aggregate.elements for inner in element.condition))
+        )
+        return Counted(tuple(rows), guards, aggregate.negations == 1, outer)
 
-    def _atom(self, literal: Literal) -> list[Way]:
+    def _atom(self, literal: Literal) -> list[Disjunct]:
         if literal.signature[0].startswith("-"):
             raise NotFlatError
         return self._bodies.of_atom(literal.signature, tuple(map(self.term, literal.arguments)))
 
-    def _test(self, test: Test, against: bool) -> list[Way]:
-        """Return the ways in which a comparison holds, or does not."""
+    def _test(self, test: Test, against: bool) -> list[Disjunct]:
+        """Return a comparison, or ``against`` it its negation, as a disjunction."""
         if test.holds is not None:
-            return [Way(())] if test.holds != against else []
+            return [Disjunct(())] if test.holds != against else []
         comparison = test.ast.atom
         terms = [self.term(term) for term in (comparison.term, *(g.term for g in comparison.guards))]
         operators = [ComparisonOperator(guard.comparison) for guard in comparison.guards]
@@ -568,33 +607,37 @@ class _Scope:
                 raise NotFlatError
             operators = [_OPPOSITE[operators[0]]]
         pairs = zip(operators, terms, terms[1:], strict=False)
-        return [Way(tuple(Compare(*each) for each in pairs))]
+        return [Disjunct(tuple(Compare(*pair) for pair in pairs))]
 
-    def _within(self) -> "_Scope":
-        """Return the variables within a condition: those of the whole rule, and others of its own."""
+    def _inner_scope(self) -> "_Scope":
+        """Return the scope of a condition: the global variables of the rule, and fresh local ones."""
         for name in self._whole - self._named.keys():
             self._named[name] = self._bodies.variable()
         scope = copy(self)
         scope._named = {name: self._named[name] for name in self._named.keys() & self._whole}
         return scope
 
-    def _having(self, literal: Literal) -> frozenset[Variable]:
-        """Return the variables of a literal that gives none of them a value."""
+    def _literal_variables(self, literal: Literal) -> frozenset[Variable]:
+        """Return the variables of a negated literal, which binds none of them."""
         return frozenset(_variables(self._named[name] for name in global_variables(literal)))
 
-    def _given(self, parts: Iterable[Part]) -> frozenset[Variable]:
-        """Return the variables of the whole rule that parts of it have."""
-        names = {name for part in parts for name in global_variables(part)} & self._named.keys() & self._whole
+    def _outer_variables(self, conjuncts: Iterable[Conjunct]) -> frozenset[Variable]:
+        """Return the global variables of the rule that occur in conjuncts."""
+        names = (
+            {name for conjunct in conjuncts for name in global_variables(conjunct)}
+            & self._named.keys()
+            & self._whole
+        )
         return frozenset(_variables(self._named[name] for name in names))
 
 
 def bound_by(items: Iterable[Item]) -> set[Variable]:
-    """Return the variables that have their values once items hold."""
+    """Return the variables that items bind."""
     return {variable for item in items for variable in _variables(_terms(item))}
 
 
 def _equal(test: Test) -> set[str]:
-    """Return the variables of a comparison that gives a variable the value of another, or of a constant."""
+    """Return the variables of an equation; none for another comparison."""
     if test.ast.sign or test.ast.atom.ast_type != ASTType.Comparison or len(test.ast.atom.guards) != 1:
         return set()
     is_equal = test.ast.atom.guards[0].comparison == ComparisonOperator.Equal
@@ -602,26 +645,26 @@ def _equal(test: Test) -> set[str]:
 
 
 def _mentioned(item: Item) -> Iterable[Variable]:
-    """Return the variables of an item whose values it shares with others."""
-    return item.given if isinstance(item, Never | Counted) else _variables(_terms(item))
+    """Return the variables that an item shares with other items."""
+    return item.bound if isinstance(item, Never | Counted) else _variables(_terms(item))
 
 
 def _counts_none(aggregate: Aggregate, constants: Constants) -> bool:
-    """Whether an aggregate says no more than that nothing is counted."""
+    """Whether a ``#count`` holds exactly where its count is 0."""
     if aggregate.function is not AggregateFunction.Count or len(aggregate.guards) != 1:
         return False
     bound = value(aggregate.guards[0].term, constants)
     if bound is None or bound.type is not SymbolType.Number:
         return False
     compares = [compared(Number(n), aggregate.guards[0].comparison, bound) for n in (0, 1, 2**31 - 1)]
-    says = [not each for each in compares] if aggregate.negations == 1 else compares
-    return says == [True, False, False]
+    expected = [not holds for holds in compares] if aggregate.negations == 1 else compares
+    return expected == [True, False, False]
 
 
 def _terms(item: Item) -> tuple[Term, ...]:
     if isinstance(item, Fact | Listed):
         return item.terms
-    return (item.left, item.right) if isinstance(item, Compare) else ()
+    return (item.first, item.second) if isinstance(item, Compare) else ()
 
 
 def _variables(terms: Iterable[Term]) -> list[Variable]:
@@ -640,8 +683,8 @@ def _set_subject(term: Term, subject: Subject, subjects: _Subjects) -> None:
         raise NotFlatError
 
 
-def _never(ways: Iterable[Way], given: frozenset[Variable]) -> Way:
-    ways = tuple(ways)
-    if any(way.unit is not None for way in ways):
+def _never(disjuncts: Iterable[Disjunct], bound: frozenset[Variable]) -> Disjunct:
+    disjuncts = tuple(disjuncts)
+    if any(disjunct.unit is not None for disjunct in disjuncts):
         raise NotFlatError
-    return Way((Never(ways, given),))
+    return Disjunct((Never(disjuncts, bound),))

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 
 class Limit(NamedTuple):
-    """That units, times their weights, add up to ``bound`` at most, or ``at_least``.
+    """A linear constraint on executions: their weights sum up to ``bound`` at most, or ``at_least``.
 
-    Each execution of a unit counts; if it says what is ``used``, a unit counts once.
+    ``weights`` are by unit. Each execution of a unit counts; with ``used``, a unit counts once.
     """
 
     weights: Mapping[int, int]

@@ -1,10 +1,10 @@
-"""Which rules see no further than the tree: its units, their object nodes, the goals.
+"""Locality of rules: whether they read facts about the tree alone, its units, object nodes and goals.
 
-A rule is local if what it says of a tree stays the same when facts of units outside the tree, and of object
-nodes that only those have, are left out. So every fact that it looks at has to be about something that is
-known to be the tree's: ``use(U)`` leads to a unit of it, ``input(U,O)`` from there to an object node,
-``label(O,L)`` to a label, and ``goal(O)`` to a goal, which is always there. A helper predicate may be about
-its arguments: ``tainted(O) :- label(O,"nut").`` sees no further than what it is asked about.
+A rule is local if its truth for a tree stays the same without the facts of units outside the tree and of
+object nodes that only such units have. So every fact that it reads has to be about a subject that is known to
+be in the tree: ``use(U)`` leads to a unit of it, ``input(U,O)`` from there to an object node, ``label(O,L)``
+to a label, and ``goal(O)`` to a goal, which is always there. An auxiliary predicate may be about its
+arguments: ``tainted(O) :- label(O,"nut").`` reads facts about O alone.
 """
 
 from collections import defaultdict
@@ -14,23 +14,23 @@ from typing import NamedTuple
 from clingo.ast import AST, ASTType
 
 from foon_asp.network import Source
-from foon_asp.rules.clause import Aggregate, Clause, Conditional, Literal, Part, Signature, Strange
+from foon_asp.rules.clause import Aggregate, Clause, Conditional, Conjunct, Literal, Signature, Strange
 from foon_asp.rules.dependence import Dependence
 from foon_asp.rules.fact_subject import DECISIONS, SUBJECTS, Subject
 
 _FACTS = {**SUBJECTS, **DECISIONS}
-_Known = dict[str, set[Subject]]  # what terms are known to be, of the tree
+_TreeTerms = dict[str, set[Subject]]  # by term: what it is known to stand for in the tree
 
 
 class Further(NamedTuple):
-    """What a rule sees beyond the tree, and where that stands."""
+    """The reason why a rule is not local, and its place."""
 
     reason: str
     source: Source
 
 
 class Locality:
-    """What each rule of a program sees beyond the tree."""
+    """Locality of each rule of a program, as a fixpoint over its auxiliary predicates."""
 
     def __init__(self, program: Sequence[Clause], dependence: Dependence) -> None:
         self._dependence = dependence
@@ -39,31 +39,32 @@ class Locality:
             for head in clause.heads:
                 self._rules[head.signature].append(clause)
         self._leads_to = self._find_leads()
-        # what the arguments of a helper have to be for it to see no further, and those that do see further
+        # of auxiliary predicates: what their arguments have to be in the tree, and which are not local at all
         self._about: dict[Signature, dict[int, Subject]] = {signature: {} for signature in self._rules}
         self._further: dict[Signature, Further] = {}
         self._find_abouts(program)
 
     def further(self, clause: Clause) -> Further | None:
-        """Return what a rule that stands by itself sees beyond the tree, ``None`` where it is local."""
+        """Return why a rule is not local, ``None`` where it is."""
         if any(atom.signature[0].startswith("-") for atom in clause.heads):
             return Further("an atom with a minus rules out the one without, wherever that is", clause.source)
-        known = self._known(clause.body)
-        lacking = self._lacking(clause.body, known, clause.source)
+        tree_terms = self._tree_terms(clause.body)
+        lacking = self._lacking(clause.body, tree_terms, clause.source)
         for atom, condition in clause.others:
             lacking = lacking or self._lacking(
-                (atom, *condition), self._known(condition, known), clause.source
+                (atom, *condition), self._tree_terms(condition, tree_terms), clause.source
             )
         return lacking.further if lacking else None
 
     def closed(self, signature: Signature) -> bool:
-        """Whether a helper predicate has the same atoms whatever is beyond the tree."""
+        """Whether an auxiliary predicate has the same atoms whatever is beyond the tree."""
         return signature in self._about and signature not in self._further and not self._about[signature]
 
     def _find_leads(self) -> dict[Signature, dict[int, set[Subject]]]:
-        """Find out which arguments of helper predicates are always of the tree."""
+        """Return the arguments of auxiliary predicates that are always in the tree, by position."""
         leads = {
-            signature: {place: set(Subject) for place in range(signature[1])} for signature in self._rules
+            signature: {position: set(Subject) for position in range(signature[1])}
+            for signature in self._rules
         }
         self._leads_to = leads
         changed = True
@@ -74,15 +75,15 @@ class Locality:
                     for atom, condition in ((clause.head, ()), *clause.others):
                         if atom is None or atom.signature != signature:
                             continue
-                        known = self._known(condition, self._known(clause.body))
-                        for place, term in enumerate(atom.arguments):
-                            still = leads[signature][place] & known.get(str(term), set())
-                            changed |= still != leads[signature][place]
-                            leads[signature][place] = still
+                        tree_terms = self._tree_terms(condition, self._tree_terms(clause.body))
+                        for position, term in enumerate(atom.arguments):
+                            subjects = leads[signature][position] & tree_terms.get(str(term), set())
+                            changed |= subjects != leads[signature][position]
+                            leads[signature][position] = subjects
         return leads
 
     def _find_abouts(self, program: Sequence[Clause]) -> None:
-        """Find out what arguments of helper predicates have to be, so that they see no further."""
+        """Find the subjects that arguments of auxiliary predicates need for their rules to be local."""
         changed = True
         while changed:
             changed = False
@@ -92,28 +93,28 @@ class Locality:
                 heads = clause.heads
                 loops = any(head.signature in self._dependence.loops for head in heads)
                 if not clause.plain or loops:
-                    found = self.further(clause)
-                    if found is None and any(self._about[head.signature] for head in heads):
-                        found = Further(
+                    further = self.further(clause)
+                    if further is None and any(self._about[head.signature] for head in heads):
+                        further = Further(
                             "it is left open of object nodes or units beyond the tree", clause.source
                         )
-                    for head in heads if found else ():
-                        assert found
-                        changed |= self._see(head.signature, found)
+                    for head in heads if further else ():
+                        assert further
+                        changed |= self._mark_further(head.signature, further)
                 else:
                     assert clause.head is not None
                     changed |= self._find_about(clause, clause.head)
 
     def _find_about(self, clause: Clause, head: Literal) -> bool:
-        """Ask for more of the arguments of a rule's head, where its body needs it; says whether it did."""
+        """Add what the body of a rule needs to the conditions on its head; return whether any is new."""
         changed = False
         while head.signature not in self._further:
             about = self._about[head.signature]
-            known: _Known = {}
-            for place, subject in about.items():
-                if _simple(head.arguments[place]):
-                    known.setdefault(str(head.arguments[place]), set()).add(subject)
-            lacking = self._lacking(clause.body, self._known(clause.body, known), clause.source)
+            tree_terms: _TreeTerms = {}
+            for position, subject in about.items():
+                if _simple(head.arguments[position]):
+                    tree_terms.setdefault(str(head.arguments[position]), set()).add(subject)
+            lacking = self._lacking(clause.body, self._tree_terms(clause.body, tree_terms), clause.source)
             if lacking is None:
                 return changed
             changed = True
@@ -121,72 +122,79 @@ class Locality:
             if places and places[0] not in about:
                 about[places[0]] = lacking.subject
             else:
-                self._see(head.signature, lacking.further)
+                self._mark_further(head.signature, lacking.further)
         return changed
 
-    def _see(self, signature: Signature, further: Further) -> bool:
+    def _mark_further(self, signature: Signature, further: Further) -> bool:
         if signature in self._further:
             return False
         self._further[signature] = further
         return True
 
-    def _known(self, parts: Iterable[Part], known: Mapping[str, set[Subject]] | None = None) -> _Known:
-        """Find the terms that are of the tree wherever parts of a body hold."""
-        positive = [part for part in parts if isinstance(part, Literal) and part.positive]
-        found = {term: set(subjects) for term, subjects in (known or {}).items()}
+    def _tree_terms(
+        self, conjuncts: Iterable[Conjunct], before: Mapping[str, set[Subject]] | None = None
+    ) -> _TreeTerms:
+        """Return the terms that are in the tree wherever conjuncts hold, with those known ``before``."""
+        positive = [literal for literal in conjuncts if isinstance(literal, Literal) and literal.positive]
+        tree_terms = {term: set(subjects) for term, subjects in (before or {}).items()}
         changed = True
         while changed:
             changed = False
-            for part in positive:
-                for place, subject in self._led(part, found):
-                    term = part.arguments[place]
-                    if _simple(term) and subject not in found.setdefault(str(term), set()):
-                        found[str(term)].add(subject)
+            for literal in positive:
+                for position, subject in self._led(literal, tree_terms):
+                    term = literal.arguments[position]
+                    if _simple(term) and subject not in tree_terms.setdefault(str(term), set()):
+                        tree_terms[str(term)].add(subject)
                         changed = True
-        return found
+        return tree_terms
 
-    def _led(self, literal: Literal, known: _Known) -> list[tuple[int, Subject]]:
+    def _led(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
         if literal.signature in self._leads_to:
             leads = self._leads_to[literal.signature]
-            return [(place, subject) for place, subjects in leads.items() for subject in subjects]
+            return [(position, subject) for position, subjects in leads.items() for subject in subjects]
         facts = _FACTS.get(literal.signature)
         if facts is None or not all(
-            subject in known.get(str(literal.arguments[place]), ()) for place, subject in facts.about.items()
+            subject in tree_terms.get(str(literal.arguments[position]), ())
+            for position, subject in facts.about.items()
         ):
             return []
         return list(facts.leads_to.items())
 
-    def _lacking(self, parts: Iterable[Part], known: _Known, source: Source) -> "_Lacking | None":
-        """Return the first thing that has to be of the tree, and is not known to be."""
-        for part in parts:
-            found = self._lacking_in(part, known, source)
-            if found:
-                return found
+    def _lacking(
+        self, conjuncts: Iterable[Conjunct], tree_terms: _TreeTerms, source: Source
+    ) -> "_Lacking | None":
+        """Return the first term that has to be in the tree and is not known to be, ``None`` where all are."""
+        for conjunct in conjuncts:
+            lacking = self._lacking_in(conjunct, tree_terms, source)
+            if lacking:
+                return lacking
         return None
 
-    def _lacking_in(self, part: Part, known: _Known, source: Source) -> "_Lacking | None":
-        if isinstance(part, Literal):
-            return self._lacking_of(part, known, source)
-        if isinstance(part, Conditional):
+    def _lacking_in(self, conjunct: Conjunct, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
+        if isinstance(conjunct, Literal):
+            return self._lacking_of(conjunct, tree_terms, source)
+        if isinstance(conjunct, Conditional):
             # it matters only where its condition holds and its literal does not
-            against = part.literal
+            against = conjunct.literal
             if isinstance(against, Literal) and against.negations == 1:
                 against = against._replace(negations=0)
-                met = self._known((against, *part.condition), known)
+                met = self._tree_terms((against, *conjunct.condition), tree_terms)
             else:
-                met = self._known(part.condition, known)
-            return self._lacking((part.literal, *part.condition), met, source)
-        if isinstance(part, Aggregate):
-            for element in part.elements:
-                met = self._known(element.condition, known)
-                found = self._lacking(element.condition, met, source)
-                if found:
-                    return found
-        if isinstance(part, Strange):
-            return _Lacking("", Subject.UNIT, Further(f"{part.text} is nothing that is looked into", source))
+                met = self._tree_terms(conjunct.condition, tree_terms)
+            return self._lacking((conjunct.literal, *conjunct.condition), met, source)
+        if isinstance(conjunct, Aggregate):
+            for element in conjunct.elements:
+                met = self._tree_terms(element.condition, tree_terms)
+                lacking = self._lacking(element.condition, met, source)
+                if lacking:
+                    return lacking
+        if isinstance(conjunct, Strange):
+            return _Lacking(
+                "", Subject.UNIT, Further(f"{conjunct.text} is nothing that is looked into", source)
+            )
         return None
 
-    def _lacking_of(self, literal: Literal, known: _Known, source: Source) -> "_Lacking | None":
+    def _lacking_of(self, literal: Literal, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
         signature = literal.signature
         if signature in self._further:
             return _Lacking("", Subject.UNIT, self._further[signature])
@@ -197,16 +205,19 @@ class Locality:
         else:
             doubt = self._dependence.doubt((literal,))
             return _Lacking("", Subject.UNIT, Further(doubt.reason, source)) if doubt else None
-        for place, subject in about.items():
-            term = literal.arguments[place]
-            if subject not in known.get(str(term), ()):
+        for position, subject in about.items():
+            term = literal.arguments[position]
+            if subject not in tree_terms.get(str(term), ()):
                 reason = f"{_atom(literal)} is about {_ARTICLES[subject]} that the tree need not have"
                 return _Lacking(str(term) if _simple(term) else "", subject, Further(reason, source))
         return None
 
 
 class _Lacking(NamedTuple):
-    """A term that has to be of the tree, empty where none would do, and what is seen if it is not."""
+    """A term that has to be in the tree for a rule to be local, and the reason if it is not.
+
+    The term is empty where no term would make the rule local.
+    """
 
     term: str
     subject: Subject
@@ -217,7 +228,7 @@ _ARTICLES = {Subject.UNIT: "a unit", Subject.OBJECT: "an object node", Subject.L
 
 
 def _simple(term: AST) -> bool:
-    """Whether a term stands for the same wherever it is in a rule."""
+    """Whether a term has one value in all of a rule: a constant, or a variable that is not anonymous."""
     return term.ast_type == ASTType.SymbolicTerm or (term.ast_type == ASTType.Variable and term.name != "_")
 
 

@@ -1,4 +1,4 @@
-"""Measures of the user's own: rules for what each unit costs, and what clingo makes of them."""
+"""User measures: rules for the cost of each unit, and their evaluation by clingo."""
 
 import hashlib
 import re
@@ -33,7 +33,7 @@ _LARGE = 1_500_000  # letters that clingo grounds in a fraction of a second
 
 @dataclass(frozen=True)
 class Measure:
-    """Rules of the user's for what each unit costs by one objective, whose name is that of the measure.
+    """User rules for the cost of each unit by one objective, whose name is that of the measure.
 
     ``place`` says where the rules are from: the path of a file, or words for a text. A file may hold several
     measures.
@@ -49,7 +49,7 @@ class Measure:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[Cost]:
-        """Return what each unit of a problem costs, worked out once for a network, up to a deadline.
+        """Return the cost of each unit of a problem, by id; evaluated once for a network, up to a deadline.
 
         Raises :class:`InputError` for rules that give a unit two costs, or one that is no number from 0.
         """
@@ -64,18 +64,19 @@ class Measure:
             key += [frozenset(seen.rates.items()), frozenset(seen.own_rates.items())]
         if not rules.reads.isdisjoint(("needs", "gives", "utensil")):
             key += [problem.containers, problem.utensils]
-        known = _known.setdefault(problem.network, {})
-        if tuple(key) not in known:
-            known[tuple(key)] = _Evaluation(self, rules, problem, deadline or Deadline()).costs()
-        return known[tuple(key)]
+        costs_by_key = _costs_by_network.setdefault(problem.network, {})
+        if tuple(key) not in costs_by_key:
+            costs_by_key[tuple(key)] = _Evaluation(self, rules, problem, deadline or Deadline()).costs()
+        return costs_by_key[tuple(key)]
 
 
 def wrong_cost(
     measure: Measure, problem: Problem, stated: Mapping[int, Fraction], deadline: Deadline
 ) -> str | None:
-    """Say which unit does not cost what is stated by a measure; ``None`` where all do, and none less than 0.
+    """Return a message about the first unit whose cost is not the stated one; ``None`` if all are right.
 
-    Each unit is looked at by itself, whatever others are like it. Raises as :meth:`Measure.costs` does.
+    ``stated`` has costs by unit. Each of these units is evaluated by itself. Raises as
+    :meth:`Measure.costs` does.
     """
     from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
@@ -83,43 +84,43 @@ def wrong_cost(
     rules = read_rules(measure.text, measure.place)
     if measure.name not in rules.names:
         return f"the rules say nothing of {measure.name}"
-    alone = _Evaluation(measure, rules, problem, deadline).found(stated)
+    alone = _Evaluation(measure, rules, problem, deadline).cost_by_number(stated)
     for unit, cost in stated.items():
-        for found in (everything[unit], alone.get(problem.network.unit_number(unit), 0)):
-            if found != cost:
-                return f"unit {unit} costs {found} by the rules of {measure.name}, and not {cost}"
+        for rule_cost in (everything[unit], alone.get(problem.network.unit_number(unit), 0)):
+            if rule_cost != cost:
+                return f"unit {unit} costs {rule_cost} by the rules of {measure.name}, and not {cost}"
     return None
 
 
-# By network, of each measure and what else it depends on.
-_known: WeakKeyDictionary[Network, dict[Hashable, Sequence[Cost]]] = WeakKeyDictionary()
+# By network: costs by measure and all else that they depend on.
+_costs_by_network: WeakKeyDictionary[Network, dict[Hashable, Sequence[Cost]]] = WeakKeyDictionary()
 
 
 class _Evaluation:
-    """The rules of a measure, asked what the units of a problem cost."""
+    """Evaluation of a measure over the units of a problem."""
 
     def __init__(self, measure: Measure, rules: "MeasureRules", problem: Problem, deadline: Deadline) -> None:
         self._measure, self._rules, self._problem, self._deadline = measure, rules, problem, deadline
         self._number = problem.network.unit_number
 
     def costs(self) -> Sequence[Cost]:
-        """Return what each unit costs; of units with the same facts, one is looked at."""
+        """Return the cost of each unit, by id; of units with the same facts, one is evaluated."""
         units = range(len(self._problem.network))
         alike = self._alike()
         if alike is None:
-            found = self.found(units)
-            return [found.get(self._number(unit), 0) for unit in units]
+            cost_by_number = self.cost_by_number(units)
+            return [cost_by_number.get(self._number(unit), 0) for unit in units]
         first: dict[Hashable, int] = {}
         for unit, key in enumerate(alike):
             first.setdefault(key, unit)
-        found = self.found(first.values())
-        by_key = {key: found.get(self._number(unit), 0) for key, unit in first.items()}
+        cost_by_number = self.cost_by_number(first.values())
+        by_key = {key: cost_by_number.get(self._number(unit), 0) for key, unit in first.items()}
         return list(map(by_key.__getitem__, alike))
 
     def _alike(self) -> Sequence[Hashable] | None:
-        """Return for each unit a key that is the same for those whose facts are, but for numbers.
+        """Return a key for each unit, equal for units with facts equal up to numbers of units and nodes.
 
-        ``None`` where numbers count, or facts that are not known here.
+        ``None`` where rules read these numbers, or facts without a key.
         """
         if not self._rules.nameless:
             return None
@@ -137,26 +138,26 @@ class _Evaluation:
         }
         reads = self._rules.reads
         nodes = reads.intersection(OBJECT_FACTS)
-        sides = {
+        objects_of = {
             "input": network.inputs,
             "output": network.outputs,
             "needs": problem.needs,
             "gives": problem.gives,
         }
-        if not reads <= looks.keys() | OBJECT_FACTS | sides.keys():
+        if not reads <= looks.keys() | OBJECT_FACTS | objects_of.keys():
             return None
         columns = [tuple(looks[name]()) for name in sorted(reads & looks.keys())]
-        if nodes or not reads.isdisjoint(sides):
+        if nodes or not reads.isdisjoint(objects_of):
             numbers: dict[Hashable, int] = {}
-            said = (tuple(object_facts(node, nodes)) for node in objects)
-            kinds = [numbers.setdefault(each, len(numbers)) for each in said]
-            chosen = [sides[name] for name in sorted(reads & sides.keys())]
+            fact_rows = (tuple(object_facts(node, nodes)) for node in objects)
+            kinds = [numbers.setdefault(facts, len(numbers)) for facts in fact_rows]
+            chosen = [objects_of[name] for name in sorted(reads & objects_of.keys())]
             columns.append(tuple(_shape(network, unit, chosen, kinds) for unit in range(len(network))))
         columns = [column for column in columns if column]
         return list(zip(*columns, strict=True)) if columns else [()] * len(network)
 
-    def found(self, units: Iterable[int]) -> dict[int, Cost]:
-        """Return what units cost, by number, as far as rules say something."""
+    def cost_by_number(self, units: Iterable[int]) -> dict[int, Cost]:
+        """Return costs by public number, for the units with a cost by the rules."""
         by_number = {self._number(unit): unit for unit in units}
         values: dict[int, Cost] = {}
         for world, name, number, value in self._derived(by_number.values(), self._rules.statements):
@@ -171,7 +172,7 @@ class _Evaluation:
     def _derived(
         self, units: Iterable[int], statements: Iterable["Statement"]
     ) -> Sequence[tuple["Value", ...]]:
-        """Let clingo derive costs of units; raises :class:`InputError` for what it would leave out."""
+        """Derive costs of units with clingo; raises :class:`InputError` for instances that it drops."""
         from foon_asp.encoding.encoding import fault  # noqa: PLC0415 (takes clingo along)
         from foon_asp.grounding import derived  # noqa: PLC0415
         from foon_asp.rules.measure_rules import COST, WORLD  # noqa: PLC0415
@@ -194,13 +195,15 @@ class _Evaluation:
             raise self._placed(fault(refused.messages, refused.otherwise), statements) from None
 
     def _placed(self, error: UserError, statements: Sequence["Statement"]) -> UserError:
-        """Say of an error in what clingo was given where it is in the rules."""
+        """Return an error in the text for clingo with its place in the rules."""
         if not isinstance(error, InputError):
             return UserError(f"{self._measure.place}: {error}")
         return InputError(
             [
-                self._remark(each.code, each.message, statements[each.source.line - 1].source)
-                for each in error.diagnostics
+                self._remark(
+                    diagnostic.code, diagnostic.message, statements[diagnostic.source.line - 1].source
+                )
+                for diagnostic in error.diagnostics
             ]
         )
 
@@ -211,21 +214,21 @@ class _Evaluation:
         return located(Severity.ERROR, code, message, source, [stated])
 
     def _refuse(self, unit: int) -> None:
-        """Raise :class:`InputError` for a unit whose cost is none, or two, naming the rules that say so."""
+        """Raise :class:`InputError` for a unit with an invalid cost or several, naming their rules."""
         from foon_asp.rules.measure_rules import BEYOND  # noqa: PLC0415 (takes clingo along)
 
         network, number = self._problem.network, self._number(unit)
         who = f"the unit {network.motions[unit]!r} ({number}, {network.sources[unit][0]})"
-        said: dict[tuple[Value, Value], Source] = {}
+        stated: dict[tuple[Value, Value], Source] = {}
         statements = self._rules.statements
-        for rule in (each for each in statements if each.is_cost):
-            alone = [each for each in statements if each is rule or not each.is_cost]
+        for rule in (statement for statement in statements if statement.is_cost):
+            alone = [statement for statement in statements if statement is rule or not statement.is_cost]
             for _, name, subject, value in self._derived([unit], alone):
                 if name == (self._measure.name,):
-                    said.setdefault((subject, value), rule.source)
-        large = {each: source for each, source in said.items() if _text(each[1]) == BEYOND}
+                    stated.setdefault((subject, value), rule.source)
+        large = {cost: source for cost, source in stated.items() if _text(cost[1]) == BEYOND}
         errors = []
-        for (subject, value), source in (large or said).items():
+        for (subject, value), source in (large or stated).items():
             if large:
                 what = (
                     f"found a number of more than 32 bits in the cost of {who}, and clingo has none such; "
@@ -242,19 +245,19 @@ class _Evaluation:
 
 
 def _shape(
-    network: Network, unit: int, sides: Sequence[Sequence[Sequence[int]]], kinds: Sequence[int]
+    network: Network, unit: int, object_lists: Sequence[Sequence[Sequence[int]]], kinds: Sequence[int]
 ) -> Hashable:
-    """Return what a unit has on some sides; of object nodes, their kinds and where they are count."""
+    """Return the object nodes of a unit up to renaming: their kinds, and their positions in each list."""
     nodes = dict.fromkeys((*network.inputs[unit], *network.outputs[unit]))
-    places = {o: place for place, o in enumerate(nodes)}
+    positions = {o: position for position, o in enumerate(nodes)}
     return (
         tuple(kinds[o] for o in nodes),
-        *(tuple(places[o] for o in side[unit]) for side in sides),
+        *(tuple(positions[o] for o in objects_of[unit]) for objects_of in object_lists),
     )
 
 
 def _cost(value: "Value") -> Cost | None:
-    """Return an exact number, a whole one as such; ``None`` for what is no number from 0."""
+    """Return an exact cost, as an integer where it is whole; ``None`` for anything but a number from 0."""
     if isinstance(value, int):
         return value if value >= 0 else None
     if not isinstance(value, str) or not _DECIMAL.fullmatch(value):
@@ -269,37 +272,37 @@ def _text(value: "Value") -> str:
     return str(value) if isinstance(value, int) else value.text
 
 
-def read_measures(given: str | PathLike[str] | Iterable[str | PathLike[str]]) -> dict[str, Measure]:
+def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) -> dict[str, Measure]:
     """Read measures by name, from files and from texts; one or several.
 
     A text that has ``:-``, or ends in a full stop, is rules, unless it is an existing path; a path is always
     a path; an empty text is neither. Raises :class:`UserError` for faults in them, and for a name that two of
     them have.
     """
-    given = [given] if isinstance(given, str | PathLike) else list(given)
-    if not given:
+    rules = [rules] if isinstance(rules, str | PathLike) else list(rules)
+    if not rules:
         return {}
-    if any(isinstance(each, str) and not each.strip() for each in given):
+    if any(isinstance(source_text, str) and not source_text.strip() for source_text in rules):
         raise UserError(
             "found an empty text for a measure, expected a file, or rules such as "
             "cost(mine,U,N) :- inputs(U,N)."
         )
     from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
-    found: dict[str, Measure] = {}
+    measures: dict[str, Measure] = {}
     texts = [
-        (each, f"measure {number}")
-        if isinstance(each, str) and _is_rules(each)
-        else (read_plain_text(Path(each)), str(each))
-        for number, each in enumerate(given, 1)
+        (source_text, f"measure {number}")
+        if isinstance(source_text, str) and _is_rules(source_text)
+        else (read_plain_text(Path(source_text)), str(source_text))
+        for number, source_text in enumerate(rules, 1)
     ]
-    for text, place in dict.fromkeys(texts):
-        for name, source in read_rules(text, place).names.items():
-            if name in found:
-                message = f"found the measure {name!r} again, of which {found[name].place} has rules"
+    for text, origin in dict.fromkeys(texts):
+        for name, source in read_rules(text, origin).names.items():
+            if name in measures:
+                message = f"found the measure {name!r} again, of which {measures[name].place} has rules"
                 raise InputError([Diagnostic(Severity.ERROR, "measure-name", message, source)])
-            found[name] = Measure(name, text, place)
-    return found
+            measures[name] = Measure(name, text, origin)
+    return measures
 
 
 def _is_rules(text: str) -> bool:

@@ -1,8 +1,8 @@
-"""Rules of the user's for what units cost, read and checked: they see one unit at a time.
+"""Parser and checker of user measures: rules for the cost of one unit at a time.
 
-Each unit has a world of its own, with the facts about this unit and its object nodes and no others, and what
-a rule says of a unit it says in that unit's world. So what a unit costs can depend on nothing else, be it a
-question, a tree or another unit. In the program for clingo, a predicate ``p`` that depends on facts is
+Each unit has a world of its own, with the facts about this unit and its object nodes and no others, and rules
+are evaluated in each world. So the cost of a unit can depend on nothing else, be it a question, a tree or
+another unit. In the program for clingo, a predicate ``p`` that depends on facts is
 ``_p`` with the world as first argument; tables, which depend on none, stay as they are.
 """
 
@@ -39,8 +39,8 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 COST = ("cost", 3)
 WORLD = "__world"
-BEYOND = "_beyond"  # what a unit costs by rules that calculate with larger numbers than clingo has
-# What a rule cannot read, since it is not about one unit, and why.
+BEYOND = "_beyond"  # the cost of a unit where rules calculate with numbers beyond those of clingo
+# Predicates that a rule cannot read, since they are not about one unit, and the reason.
 _TREE = (
     "differs from tree to tree, and what a unit costs does not: a price for what a tree does is a soft "
     "constraint (--soft), another way to measure trees an edited copy of objectives.lp (--encodings)"
@@ -57,13 +57,13 @@ _REFUSED = {
     ("risk", 2): "is rounded for a question: read rate/2, in millionths",
     COST: "is rounded for a question: read the facts that it is made of",
 }
-_SIDES = frozenset(("input", "output", "needs", "gives"))
+_UNIT_OBJECT_FACTS = frozenset(("input", "output", "needs", "gives"))
 _UNIT, _OBJECT = "unit", "object"
-_FEW = 6  # atoms in a rule, which can be true in many ways together only where they are more
+_MAX_PLAIN_ATOMS = 6  # atoms in a rule; only with more can its instances be many
 
 
 class Statement(NamedTuple):
-    """A statement of the program for clingo, where it comes from, and whether it gives costs."""
+    """A statement of the program for clingo, its source, and whether its head is a cost."""
 
     text: str
     source: Source
@@ -71,12 +71,12 @@ class Statement(NamedTuple):
 
 
 class MeasureRules(NamedTuple):
-    """What rules say, for clingo.
+    """Rules of measures, translated for clingo.
 
-    ``names`` are those of the measures, with the place where each is met first; ``reads`` the predicates of
-    facts that they read. ``nameless`` says that the numbers of units and object nodes do not matter: units
-    with the same facts but for these cost the same. ``plain`` says that nothing in the rules can make their
-    grounding large: no intervals, no two tables joined, and few atoms in a rule.
+    ``names`` are the names of the measures, each with the place of its first occurrence; ``reads`` the
+    predicates of facts that they read. ``nameless`` says that the numbers of units and object nodes do not
+    matter: units with facts equal up to numbers cost the same. ``plain`` says that the grounding cannot be
+    large: no intervals, no two tables joined, and few atoms in a rule.
     """
 
     names: dict[str, Source]
@@ -87,10 +87,10 @@ class MeasureRules(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def read_rules(text: str, place: str) -> MeasureRules:
-    """Read the rules of measures; raises :class:`InputError` for what is no rule over facts about a unit."""
-    check_text(text, place)
-    stated = Stated(place, text)
+def read_rules(text: str, origin: str) -> MeasureRules:
+    """Read the rules of measures; raises :class:`InputError` unless they are over facts about one unit."""
+    check_text(text, origin)
+    stated = Stated(origin, text)
     statements: list[AST] = []
     messages: list[str] = []
     try:
@@ -137,7 +137,9 @@ class _Reader:
             world += "_"
         written = [_World(dependent, world).written(rule, self._source(rule)) for rule in self._rules]
         written += self._beyond(names, dependent, world)
-        constants = [Statement(f"{each}", self._source(each), False) for each in self._constants]
+        constants = [
+            Statement(f"{definition}", self._source(definition), False) for definition in self._constants
+        ]
         return MeasureRules(
             names,
             (*constants, *written),
@@ -149,17 +151,17 @@ class _Reader:
     def _beyond(
         self, names: Iterable[str], dependent: frozenset[Signature], world: str
     ) -> Iterator[Statement]:
-        """Write rules for costs that are none, where numbers are calculated beyond those of clingo."""
-        found: list[AST] = []
+        """Return rules that derive the cost ``BEYOND`` where arithmetic leaves the numbers of clingo."""
+        statements: list[AST] = []
         sources: list[Source] = []
         for name in names:
             for rule, text in beyond(self._rules, f"cost({name},{world},{BEYOND})".format):
-                before = len(found)
-                parse_string(text, found.append)
-                sources += [self._source(rule)] * (len(found) - before)
+                before = len(statements)
+                parse_string(text, statements.append)
+                sources += [self._source(rule)] * (len(statements) - before)
         rules = [
             (rule, source)
-            for rule, source in zip(found, sources, strict=True)
+            for rule, source in zip(statements, sources, strict=True)
             if rule.ast_type is ASTType.Rule
         ]
         writer = _World(dependent, world)
@@ -188,32 +190,34 @@ class _Reader:
                 self._error("owned-predicate", f"found a rule for {name}/{arity}: give it another name", atom)
 
     def _check_atoms(self, atoms: "_Atoms") -> None:
-        for place in atoms.negated:
-            self._error("negation", "found an atom with a minus before it, expected one without", place)
+        for minus in atoms.negated:
+            self._error("negation", "found an atom with a minus before it, expected one without", minus)
         for atom in (*atoms.heads, *atoms.used):
             if atom.name.startswith("_"):
                 message = f"found {atom.name}, but names that begin with '_' are reserved: take another"
                 self._error("reserved-name", message, atom)
-        known = {_signature(atom) for each in self._atoms for atom in each.heads} | self._declared
+        defined = {_signature(atom) for other in self._atoms for atom in other.heads} | self._declared
         readable = {(name, arity) for name, arity in FACT_PREDICATES.items()} - _REFUSED.keys()
         for atom in atoms.used:
             signature = _signature(atom)
             shown = "{}/{}".format(*signature)
             if signature in _REFUSED:
                 self._error("not-of-a-unit", f"found {shown}, which {_REFUSED[signature]}", atom)
-            elif signature not in known | readable and not atom.name.startswith("_"):
-                self._error("undefined-atom", undefined(signature, known | readable), atom)
+            elif signature not in defined | readable and not atom.name.startswith("_"):
+                self._error("undefined-atom", undefined(signature, defined | readable), atom)
 
     def _check_names(self, names: dict[str, Source]) -> None:
-        """Refuse names of ours, for measures and for constants: in the facts they mean something else."""
+        """Refuse reserved names of measures and constants, which have another meaning in the facts."""
         for name, source in names.items():
             if name in PUBLIC_NAMES or name.startswith("_"):
                 message = f"found a measure {name!r}, which is a name of ours: give it another one"
                 self._note("measure-name", message, source)
-        for each in self._constants:
-            if each.name in PUBLIC_NAMES or each.name in names or each.name.startswith("_"):
-                message = f"found #const {each.name}, but that is a name in the facts: give it another one"
-                self._error("taken-constant", message, each)
+        for definition in self._constants:
+            if definition.name in PUBLIC_NAMES or definition.name in names or definition.name.startswith("_"):
+                message = (
+                    f"found #const {definition.name}, but that is a name in the facts: give it another one"
+                )
+                self._error("taken-constant", message, definition)
         if not names and not self._errors:
             raise UserError(
                 f"{self._stated.place}: expected rules for what units cost, such as "
@@ -221,15 +225,15 @@ class _Reader:
             )
 
     def _check_numbers(self) -> None:
-        """Refuse what is compared with numbers and is none, and costs of another form, which say nothing."""
-        for term, message in no_numbers(self._rules, [each.name for each in self._constants]):
+        """Refuse terms that are compared with numbers and never are numbers, and costs of another arity."""
+        for term, message in no_numbers(self._rules, [definition.name for definition in self._constants]):
             self._error("no-number", message, term)
         for atom in (head for atoms in self._atoms for head in atoms.heads):
             if atom.name == COST[0] and _signature(atom) != COST:
                 self._error("head", f"found {atom}, expected a cost such as cost(mine,U,5)", atom)
 
     def _check_loops(self) -> None:
-        """Refuse rules that depend on themselves: what they derive may be endless, or left open."""
+        """Refuse recursive rules, whose atoms may be infinitely many or undefined."""
         graph: dict[Signature, set[Signature]] = {}
         for atoms in self._atoms:
             for head in map(_signature, atoms.heads):
@@ -245,7 +249,7 @@ class _Reader:
             self._error("loop", message, atom)
 
     def _read(self) -> Iterator[Signature]:
-        derived = {_signature(atom) for each in self._atoms for atom in each.heads}
+        derived = {_signature(atom) for other in self._atoms for atom in other.heads}
         for atoms in self._atoms:
             for signature in map(_signature, atoms.used):
                 if FACT_PREDICATES.get(signature[0]) == signature[1] and signature not in derived:
@@ -253,18 +257,22 @@ class _Reader:
 
     def _dependent(self) -> frozenset[Signature]:
         """Return the predicates that depend on facts about units, and costs."""
-        found = {COST, *self._read()} - {("utensil", 1)}
+        dependent = {COST, *self._read()} - {("utensil", 1)}
         before = 0
-        while len(found) > before:
-            before = len(found)
+        while len(dependent) > before:
+            before = len(dependent)
             for atoms in self._atoms:
-                if not found.isdisjoint(map(_signature, atoms.used)):
-                    found.update(map(_signature, atoms.heads))
-        return frozenset(found)
+                if not dependent.isdisjoint(map(_signature, atoms.used)):
+                    dependent.update(map(_signature, atoms.heads))
+        return frozenset(dependent)
 
     def _is_plain(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
         tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
-        return not (atoms.has_interval or atoms.divides) and len(tables) < 2 and len(atoms.used) <= _FEW
+        return (
+            not (atoms.has_interval or atoms.divides)
+            and len(tables) < 2
+            and len(atoms.used) <= _MAX_PLAIN_ATOMS
+        )
 
     def _source(self, at: AST) -> Source:
         begin = at.location.begin
@@ -289,9 +297,9 @@ def _signature(atom: AST) -> Signature:
 
 
 class _Atoms(Transformer):
-    """Goes through a rule and notes its atoms, as the terms that they are, and how its variables are used.
+    """Visitor that collects the atoms of a rule, as terms, and the use of its variables.
 
-    ``compared`` are variables whose values matter, beyond whether two are the same. At -2147483648 / -1 the
+    ``compared`` are variables whose values matter, beyond their equality. At -2147483648 / -1 the
     process of clingo ends, so it matters whether a rule ``divides``.
     """
 
@@ -322,7 +330,7 @@ class _Atoms(Transformer):
             self._terms(symbol.arguments)
 
     def _terms(self, terms: Iterable[AST]) -> None:
-        """Go through terms, of which the variables alone are only ever the same as others or not."""
+        """Visit terms other than variables, which are only tested for equality there."""
         for term in terms:
             if term.ast_type is not ASTType.Variable:
                 self.visit(term)
@@ -355,11 +363,10 @@ class _Atoms(Transformer):
 
 
 def _nameless(rules: Sequence[_Atoms]) -> bool:
-    """Whether rules only ask of units and object nodes whether two are the same.
+    """Whether rules compare units and object nodes for equality only.
 
-    Each place of a predicate where a unit may stand is found, and each where an object node may: from those
-    of the facts, along the variables of each rule. Nothing else may stand there, neither may stand anywhere
-    else, and their variables may not be compared with anything.
+    The argument positions of units and of object nodes are inferred from the facts, along the variables of
+    each rule. No constant and no other kind may stand there, and their variables may not be compared.
     """
     kinds: dict[tuple[Signature, int], str] = {(COST, 1): _UNIT}
     for name, arity in FACT_PREDICATES.items():
@@ -367,7 +374,7 @@ def _nameless(rules: Sequence[_Atoms]) -> bool:
             kinds[(name, arity), 0] = _OBJECT
         elif name != "utensil" and (name, arity) not in _REFUSED:
             kinds[(name, arity), 0] = _UNIT
-        if name in _SIDES:
+        if name in _UNIT_OBJECT_FACTS:
             kinds[(name, arity), 1] = _OBJECT
     before = 0
     while len(kinds) > before:
@@ -376,17 +383,17 @@ def _nameless(rules: Sequence[_Atoms]) -> bool:
             variables: dict[str, str] = {}
             atoms = (*rule.heads, *rule.used)
             for atom in atoms:
-                for place, term in enumerate(atom.arguments):
-                    kind = kinds.get((_signature(atom), place))
+                for position, term in enumerate(atom.arguments):
+                    kind = kinds.get((_signature(atom), position))
                     if kind is None or (term.ast_type is ASTType.Variable and term.name == "_"):
                         continue
                     if term.ast_type is not ASTType.Variable or variables.setdefault(term.name, kind) != kind:
                         return False
             for atom in atoms:
-                for place, term in enumerate(atom.arguments):
+                for position, term in enumerate(atom.arguments):
                     if term.ast_type is ASTType.Variable and term.name in variables:
                         kind = variables[term.name]
-                        if kinds.setdefault((_signature(atom), place), kind) != kind:
+                        if kinds.setdefault((_signature(atom), position), kind) != kind:
                             return False
             if not rule.compared.isdisjoint(variables):
                 return False
@@ -394,7 +401,7 @@ def _nameless(rules: Sequence[_Atoms]) -> bool:
 
 
 class _World(Transformer):
-    """Writes rules so that what depends on facts has a world as its first argument."""
+    """Rewriter that adds a world as first argument to predicates that depend on facts."""
 
     def __init__(self, dependent: frozenset[Signature], world: str) -> None:
         self._dependent, self._world = dependent, world

@@ -1,4 +1,4 @@
-"""Where numbers that rules calculate leave clingo's 32 bits, which it does not say: as rules that find it."""
+"""Overflow checks: rules that derive an atom where arithmetic of other rules silently leaves 32 bits."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -37,28 +37,28 @@ _UNARY = {UnaryOperator.Minus: "neg", UnaryOperator.Absolute: "abs", UnaryOperat
 _LINEAR = {BinaryOperator.Plus, BinaryOperator.Minus, BinaryOperator.Multiplication}
 _SUMS = {AggregateFunction.Sum, AggregateFunction.SumPlus}
 _AGGREGATES = {ASTType.BodyAggregate, ASTType.HeadAggregate}
-_CALCULATES = re.compile(r"[+*/\\^&?~|]|(?<!:)-|#sum")  # what every rule has that calculates, and others
+_CALCULATES = re.compile(r"[+*/\\^&?~|]|(?<!:)-|#sum")  # matches every rule with arithmetic, and some others
 
 Head = Callable[[AST], str]
-"""Gives the head of a rule that holds where a term leaves clingo's numbers."""
+"""Returns the head of a rule that holds where a term overflows."""
 
 
 def number_checks(statements: Iterable[AST]) -> str:
-    """Return rules that derive ``_beyond`` for terms that leave clingo's numbers; nothing where none can."""
+    """Return rules that derive ``_beyond`` for terms that overflow; an empty text where no term can."""
     return "".join(f"{text}\n" for _, text in beyond(statements, _placed))
 
 
 def _placed(term: AST) -> str:
     begin = term.location.begin
-    said = "the sum" if term.ast_type in _AGGREGATES else str(term).removeprefix("(").removesuffix(")")
-    return f"{BEYOND[0]}({quote(begin.filename)},{begin.line},{begin.column},{quote(said)})"
+    shown = "the sum" if term.ast_type in _AGGREGATES else str(term).removeprefix("(").removesuffix(")")
+    return f"{BEYOND[0]}({quote(begin.filename)},{begin.line},{begin.column},{quote(shown)})"
 
 
 def beyond(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
-    """Give rules that hold where something is calculated beyond clingo's numbers, by the statement it is in.
+    """Return rules that hold where a term overflows, each with the statement of the term.
 
-    In the bodies is what binds the variables, and all conditions that calculate nothing. Terms are only
-    calculated again where a value in them is so large that it may matter.
+    Their bodies have the conditions that bind variables, and those without arithmetic. A term is evaluated
+    again only where a value in it is so large that it may overflow.
     """
     for statement in statements:
         if not _CALCULATES.search(str(statement)):
@@ -66,30 +66,33 @@ def beyond(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
         if statement.ast_type == ASTType.Definition:
             yield from ((statement, text) for text in _checks(statement.value, [], head))
         elif statement.ast_type in {ASTType.Rule, ASTType.Minimize}:
-            for each in statement.unpool(condition=True):
-                named = _Naming().visit(each)
-                for place, known in _places(named):
-                    yield from ((statement, text) for text in _checks(place, known, head))
-                for aggregate, elements in _sums(named):
+            for variant in statement.unpool(condition=True):
+                with_names = _Naming().visit(variant)
+                for node, conditions in _terms_with_conditions(with_names):
+                    yield from ((statement, text) for text in _checks(node, conditions, head))
+                for aggregate, elements in _sums(with_names):
                     total = f"#sum {{ {'; '.join(elements)} }} > {LARGEST}"
-                    yield statement, f"{head(aggregate)} :- {_joined([*_known(named.body), total])}."
+                    yield (
+                        statement,
+                        f"{head(aggregate)} :- {_joined([*_conditions(with_names.body), total])}.",
+                    )
 
 
-def _checks(place: AST, known: Sequence[AST], head: Head) -> Iterator[str]:
-    for term in _terms(place):
+def _checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
+    for term in _terms(node):
         leaves: dict[str, AST] = {}
         text = " ".join(_postfix(term, leaves))
         call = f"1 = @_exact({','.join([quote(text), *leaves])})"
-        most = _harmless(term)
-        if most < 0 or any(_has_interval(leaf) for leaf in leaves.values()):
-            yield f"{head(term)} :- {_joined([*known, call])}."
+        limit = _safe_magnitude(term)
+        if limit < 0 or any(_has_interval(leaf) for leaf in leaves.values()):
+            yield f"{head(term)} :- {_joined([*conditions, call])}."
             continue
         numbers = [_number(leaf) for leaf in leaves.values()]
         if None not in numbers and not is_beyond(text, [n for n in numbers if n is not None]):
             continue
-        for leaf, node in leaves.items():
-            if _number(node) is None:
-                yield f"{head(term)} :- {_joined([*known, f'not -{most} <= {leaf} <= {most}', call])}."
+        for leaf, leaf_term in leaves.items():
+            if _number(leaf_term) is None:
+                yield f"{head(term)} :- {_joined([*conditions, f'not -{limit} <= {leaf} <= {limit}', call])}."
 
 
 def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
@@ -105,19 +108,19 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
         yield str(list(leaves).index(str(term)))
 
 
-def _harmless(term: AST) -> int:
-    """Return a number up to which values may be, above and below 0, and nothing leaves clingo's numbers."""
-    return next((most for most in (LARGEST >> n for n in range(32)) if _size(term, most) <= LARGEST), -1)
+def _safe_magnitude(term: AST) -> int:
+    """Return a magnitude up to which values in a term cannot make it overflow, -1 where there is none."""
+    return next((limit for limit in (LARGEST >> n for n in range(32)) if _size(term, limit) <= LARGEST), -1)
 
 
-def _size(term: AST, most: int) -> int:
-    """Say how far from 0 a term can be, and what is in it, where no value in it is farther than ``most``."""
+def _size(term: AST, limit: int) -> int:
+    """Return the greatest magnitude of a term and its subterms if no value in it is beyond ``limit``."""
     if term.ast_type == ASTType.UnaryOperation:
-        return _size(term.argument, most) + int(term.operator_type == UnaryOperator.Negation)
+        return _size(term.argument, limit) + int(term.operator_type == UnaryOperator.Negation)
     if term.ast_type != ASTType.BinaryOperation:
         number = _number(term)
-        return most if number is None else abs(number)
-    a, b = _size(term.left, most), _size(term.right, most)
+        return limit if number is None else abs(number)
+    a, b = _size(term.left, limit), _size(term.right, limit)
     kind = term.operator_type
     if kind == BinaryOperator.Power:
         power = _number(term.right)
@@ -138,115 +141,123 @@ def _has_interval(term: AST) -> bool:
 
 
 def _sums(rule: AST) -> Iterator[tuple[AST, list[str]]]:
-    """Return the sums of a rule, each with its elements, which count above 0 whatever they add."""
-    for part in rule.body if rule.ast_type == ASTType.Minimize else [rule.head, *rule.body]:
-        aggregate = part.atom if part.ast_type == ASTType.Literal else part
+    """Return the sums of a rule, each with its elements rewritten to weigh their magnitudes."""
+    for body_part in rule.body if rule.ast_type == ASTType.Minimize else [rule.head, *rule.body]:
+        aggregate = body_part.atom if body_part.ast_type == ASTType.Literal else body_part
         if aggregate.ast_type not in _AGGREGATES:
             continue
-        if aggregate.function in _SUMS and any(_number(each.terms[0]) != 1 for each in aggregate.elements):
+        if aggregate.function in _SUMS and any(
+            _number(element.terms[0]) != 1 for element in aggregate.elements
+        ):
             yield aggregate, [text for element in aggregate.elements for text in _sizes(element)]
 
 
 def _sizes(element: AST) -> Iterator[str]:
-    """Return an element that adds how far a weight is from 0; nothing for what is no number."""
+    """Return elements that add the magnitude of a weight where it is a number."""
     inner = element.condition
     condition = list(inner.condition) if isinstance(inner, AST) else list(inner)
     weight = "_Weight"
     terms = ",".join([weight, *map(str, element.terms[1:])])
-    for sign, within in (("", f"0 < {weight} <= {LARGEST}"), ("-", f"-{LARGEST} <= {weight} < 0")):
-        known = ", ".join(map(str, [*condition, f"{weight} = {element.terms[0]}", within]))
-        yield f"{sign}{weight},{terms} : {known}"
+    for sign, sign_test in (("", f"0 < {weight} <= {LARGEST}"), ("-", f"-{LARGEST} <= {weight} < 0")):
+        condition_text = ", ".join(map(str, [*condition, f"{weight} = {element.terms[0]}", sign_test]))
+        yield f"{sign}{weight},{terms} : {condition_text}"
 
 
-def _places(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]]:
-    """Return the parts of a statement, each with the conditions that its variables are bound by."""
-    known = _known(statement.body)
+def _terms_with_conditions(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]]:
+    """Return the terms and conjuncts of a statement, each with the conditions that bind its variables."""
+    conditions = _conditions(statement.body)
     if statement.ast_type == ASTType.Minimize:
-        yield from ((term, known) for term in (statement.weight, statement.priority, *statement.terms))
+        yield from ((term, conditions) for term in (statement.weight, statement.priority, *statement.terms))
         outer = list(statement.body)
     else:
         outer = [statement.head, *statement.body]
-    for part in outer:
-        atom = part.atom if part.ast_type == ASTType.Literal else part
+    for conjunct in outer:
+        atom = conjunct.atom if conjunct.ast_type == ASTType.Literal else conjunct
         if atom.ast_type in {ASTType.Aggregate, ASTType.BodyAggregate, ASTType.HeadAggregate}:
             guards = (atom.left_guard, atom.right_guard)
-            yield from ((guard.term, known) for guard in guards if guard is not None)
-            # in a body, what is counted by itself is a condition, too
-            counted = part.ast_type == ASTType.Literal and atom.ast_type == ASTType.Aggregate
+            yield from ((guard.term, conditions) for guard in guards if guard is not None)
+            # in a body, the literals of a count without terms are conditions, too
+            counted = conjunct.ast_type == ASTType.Literal and atom.ast_type == ASTType.Aggregate
             for element in atom.elements:
-                yield from _inner_places(element, known, counted)
+                yield from _element_terms(element, conditions, counted)
         elif atom.ast_type == ASTType.Disjunction:
             for element in atom.elements:
-                yield from _inner_places(element, known)
+                yield from _element_terms(element, conditions)
         elif atom.ast_type == ASTType.ConditionalLiteral:
-            yield from _inner_places(atom, known)
+            yield from _element_terms(atom, conditions)
         else:
-            yield part, _without(part, known)
+            yield conjunct, _without(conjunct, conditions)
 
 
-def _inner_places(
-    element: AST, known: Sequence[AST], counted: bool = False
+def _element_terms(
+    element: AST, conditions: Sequence[AST], counted: bool = False
 ) -> Iterator[tuple[AST, Sequence[AST]]]:
-    """Return the parts of an element of an aggregate, of a choice, or of what holds under a condition."""
+    """Return the terms and literals of an element of an aggregate, a choice or a conditional literal."""
     terms: list[AST] = list(getattr(element, "terms", ()))
     conditional = element if element.ast_type == ASTType.ConditionalLiteral else element.condition
     if isinstance(conditional, AST) and conditional.ast_type == ASTType.ConditionalLiteral:
         terms.append(conditional.literal)
         conditional = [*conditional.condition, *([conditional.literal] if counted else ())]
-    inner = [*known, *_known(conditional)]
-    yield from ((each, _without(each, inner)) for each in dict.fromkeys((*terms, *conditional)))
+    inner = [*conditions, *_conditions(conditional)]
+    yield from ((node, _without(node, inner)) for node in dict.fromkeys((*terms, *conditional)))
 
 
-def _terms(place: AST) -> Iterator[AST]:
-    """Return the terms of a place that calculate, without those that are part of one."""
-    if place.ast_type == ASTType.SymbolicAtom:
-        symbol = place.symbol
+def _terms(node: AST) -> Iterator[AST]:
+    """Return the maximal terms with arithmetic in a node of the syntax tree."""
+    if node.ast_type == ASTType.SymbolicAtom:
+        symbol = node.symbol
         while symbol.ast_type == ASTType.UnaryOperation:  # p with a minus before it
             symbol = symbol.argument
         for argument in symbol.arguments:
             yield from _terms(argument)
         return
-    if place.ast_type in {ASTType.BinaryOperation, ASTType.UnaryOperation}:
+    if node.ast_type in {ASTType.BinaryOperation, ASTType.UnaryOperation}:
         leaves: dict[str, AST] = {}
-        if any(word in _BINARY.values() for word in _postfix(place, leaves)):
-            yield place
+        if any(word in _BINARY.values() for word in _postfix(node, leaves)):
+            yield node
         for leaf in leaves.values():
             yield from _terms(leaf)
         return
-    for key in place.child_keys:
-        child = getattr(place, key)
-        for part in [child] if isinstance(child, AST) else child or ():
-            yield from _terms(part)
+    for key in node.child_keys:
+        child = getattr(node, key)
+        for child_node in [child] if isinstance(child, AST) else child or ():
+            yield from _terms(child_node)
 
 
-def _known(body: Iterable[AST]) -> list[AST]:
-    """Return what binds variables, and what calculates nothing and counts nothing."""
-    return [each for each in body if _binds(each) or not any(map(_calculates, nodes(each)))]
+def _conditions(body: Iterable[AST]) -> list[AST]:
+    """Return the conditions that bind variables, and those without arithmetic and aggregates."""
+    return [
+        condition for condition in body if _binds(condition) or not any(map(_calculates, nodes(condition)))
+    ]
 
 
-def _without(part: AST, known: Sequence[AST]) -> Sequence[AST]:
-    """Leave out a condition where what it calculates is looked at, unless only it gives a variable its value.
+def _without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
+    """Return the conditions without the one whose arithmetic is checked, unless it alone binds a variable.
 
-    Clingo drops an instance in which an equality leaves its numbers, and with it what would find that.
+    Clingo drops an instance in which an equation overflows, and with it the check.
     """
-    others = [each for each in known if each != part]
+    others = [condition for condition in conditions if condition != node]
     bound = _bound(others)
-    inside = {name for term in _terms(part) for name in variables(term)}
-    return [each for each in others if bound.issuperset(variables(each))] if inside <= bound else known
+    inside = {name for term in _terms(node) for name in variables(term)}
+    return (
+        [condition for condition in others if bound.issuperset(variables(condition))]
+        if inside <= bound
+        else conditions
+    )
 
 
 def _bound(conditions: Sequence[AST]) -> set[str]:
-    """Return the variables that get a value: from positive atoms, and from equalities to what has one."""
+    """Return the variables that positive atoms bind, or equations to terms of bound variables."""
     bound: set[str] = set()
     comparisons: list[tuple[AST, AST]] = []
-    for each in filter(_binds, conditions):
-        if each.atom.ast_type != ASTType.Comparison:
-            bound.update(variables(each))
+    for condition in filter(_binds, conditions):
+        if condition.atom.ast_type != ASTType.Comparison:
+            bound.update(variables(condition))
             continue
-        terms = [each.atom.term, *(guard.term for guard in each.atom.guards)]
-        for guard, left, right in zip(each.atom.guards, terms, terms[1:], strict=False):
+        terms = [condition.atom.term, *(guard.term for guard in condition.atom.guards)]
+        for guard, first, second in zip(condition.atom.guards, terms, terms[1:], strict=False):
             if guard.comparison == ComparisonOperator.Equal:
-                comparisons += [(left, right), (right, left)]
+                comparisons += [(first, second), (second, first)]
     before = -1
     while before < len(bound):
         before = len(bound)
@@ -260,24 +271,24 @@ def _bound(conditions: Sequence[AST]) -> set[str]:
 
 
 def _solved_for(term: AST) -> Iterator[str]:
-    """Return the variable for which clingo solves an equality: of ``X``, ``X+1``, ``2*X`` and the like."""
+    """Return the variable for which clingo solves an equation with a linear term such as ``2*X+1``."""
     if term.ast_type == ASTType.Variable:
         yield term.name
     elif term.ast_type == ASTType.BinaryOperation and term.operator_type in _LINEAR:
-        sides = (term.left, term.right)
-        if any(_number(side) is not None for side in sides):
-            yield from (name for side in sides for name in _solved_for(side))
+        operands = (term.left, term.right)
+        if any(_number(operand) is not None for operand in operands):
+            yield from (name for operand in operands for name in _solved_for(operand))
 
 
 def _calculates(node: AST) -> bool:
     return node.ast_type in {ASTType.BinaryOperation, ASTType.Aggregate, ASTType.BodyAggregate}
 
 
-def _binds(part: AST) -> bool:
-    """Whether a condition may give a variable its value."""
-    if part.ast_type != ASTType.Literal or part.sign != Sign.NoSign:
+def _binds(condition: AST) -> bool:
+    """Whether a condition may bind a variable."""
+    if condition.ast_type != ASTType.Literal or condition.sign != Sign.NoSign:
         return False
-    atom, guards = part.atom, []
+    atom, guards = condition.atom, []
     if atom.ast_type == ASTType.Comparison:
         guards = [*atom.guards]
     elif atom.ast_type in {ASTType.BodyAggregate, ASTType.Aggregate}:
@@ -287,24 +298,24 @@ def _binds(part: AST) -> bool:
     return equal or bool(atom.ast_type == ASTType.SymbolicAtom)
 
 
-def _joined(parts: Sequence[AST | str]) -> str:
-    return "; ".join(map(str, parts)) or "#true"
+def _joined(conditions: Sequence[AST | str]) -> str:
+    return "; ".join(map(str, conditions)) or "#true"
 
 
 class _Naming(Transformer):
-    """Gives a name to each ``_`` in a term that calculates, so that it can be asked for."""
+    """Rewriter that names each ``_`` in a term with arithmetic, so that a check can refer to it."""
 
     def __init__(self) -> None:
         self._number = count(1)
-        self._within = False
+        self._in_term = False
 
     def visit_BinaryOperation(self, term: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        before, self._within = self._within, True
+        before, self._in_term = self._in_term, True
         changed = term.update(**self.visit_children(term))
-        self._within = before
+        self._in_term = before
         return changed
 
     def visit_Variable(self, variable: AST) -> AST:  # noqa: N802
-        if self._within and variable.name == "_":
+        if self._in_term and variable.name == "_":
             return variable.update(name=f"_Any{next(self._number)}")
         return variable

@@ -1,4 +1,4 @@
-"""Names in the parameters of ready-made constraints that nothing in the network has."""
+"""Warnings for names in parameters of ready-made constraints that do not occur in the network."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -13,7 +13,7 @@ from foon_asp.rules.ready_made import LISTED
 
 _LABELS: Final = ("label",)
 
-# The facts that each parameter is the text of, one of them; other parameters are numbers.
+# By text parameter: the predicates of facts among whose texts it has to be.
 PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = {
     **dict.fromkeys(("forbidden_motion", "limited_motion", "required_motion", "tied_motion"), MOTIONS),
     **dict.fromkeys(("earlier_motion", "later_motion", "one_motion", "other_motion"), MOTIONS),
@@ -29,19 +29,17 @@ PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = {
 def unknown_parameters(
     constraints: Sequence[Constraint], settings: Sequence[str], values: FactValues
 ) -> Iterator[str]:
-    """Return a warning for each parameter whose name nothing in the network has, with the nearest name."""
+    """Return a warning for each parameter whose name is not in the network, with the most similar name."""
     shared = dict(setting.partition("=")[::2] for setting in settings)
     for constraint in dict.fromkeys(map(find_constraint, constraints)):
         file = constraint.file if isinstance(constraint, LibraryUse) else constraint
         if not isinstance(file, Path) or file.stem not in LIBRARY or not is_own(file):
             continue
-        given = constraint.constants if isinstance(constraint, LibraryUse) else shared
+        values_of = constraint.constants if isinstance(constraint, LibraryUse) else shared
         for value in LIBRARY[file.stem].values:
             parameter = LISTED.get(value, value)
-            word = string_constant(given.get(parameter, "")) if parameter in PARAMETERS else ""
+            word = string_constant(values_of.get(parameter, "")) if parameter in PARAMETERS else ""
             if word and not has_text(PARAMETERS[parameter], word, values):
-                place = (
-                    constraint if isinstance(constraint, LibraryUse) else f"{file.stem}:{parameter}={word}"
-                )
+                use = constraint if isinstance(constraint, LibraryUse) else f"{file.stem}:{parameter}={word}"
                 meant = nearest_text(PARAMETERS[parameter], word, values)
-                yield f"{place}: warning: {unknown_text(PARAMETERS[parameter], word, meant)}"
+                yield f"{use}: warning: {unknown_text(PARAMETERS[parameter], word, meant)}"

@@ -1,7 +1,7 @@
-"""Ready-made constraints understood without clingo.
+"""Ready-made constraints, evaluated without clingo.
 
-Importing clingo, parsing a constraint and asking about a tree takes as long as all the rest of a small
-question. What these constraints say is known: it is what certificates are checked by.
+Importing clingo, parsing a constraint and checking a tree takes as long as all other work of a small
+question. The meaning of these constraints is the one that certificates are checked by.
 """
 
 import re
@@ -22,12 +22,12 @@ from foon_asp.proof.ruled import Ruled
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
 
-# Values that are listed in facts, of a file of the user's as well: the constant that gives one, if one does.
+# Parameters that are listed in facts, of a user file as well: the constant that sets one, empty without one.
 LISTED: Final = {"allergen": "forbidden_ingredient", "allowed": "allowed_source", "heats": ""}
 _PRICE = ("price", 2)
 
-# What they look at beside what ours always do, but for prices. Where clingo is asked about one of them, it is
-# asked about all.
+# Predicates that they read in addition to those of the built-in encodings, without prices. Where clingo
+# checks one of the constraints, it checks all.
 READ: Final = frozenset(
     {("motion", 2), ("input", 2), ("output", 2), ("label", 2), ("ingredient", 2), ("utensil", 1)}
     | {("source", 2), ("video", 2), ("rate", 2)}
@@ -35,41 +35,41 @@ READ: Final = frozenset(
 _HEATS = re.compile(r'heats\("([^"\\]*)"\)\.')
 _NUMBER = re.compile(r"-?(0|[1-9]\d{0,9})", re.ASCII)
 _TEXT = re.compile(r'("?)([^"\\]+)\1')
-_WITH_REST = {"before", "not_both_motions", *(name for name in LIBRARY if name.startswith("at_most"))}
-_ASKING = "require_"  # how the names of those begin that ask for units
+_WITH_UNSETTLED = {"before", "not_both_motions", *(name for name in LIBRARY if name.startswith("at_most"))}
+_REQUIRING_PREFIX = "require_"  # prefix of the names of constraints that require units
 
 
 class ReadyMade:
-    """Ready-made constraints of one question, by what a certificate says of them.
+    """Ready-made constraints of one question, with the meaning that certificates use.
 
-    They see no further than a tree, and none asks for units that lead to no goal but by sets of which it
-    requires one. ``rest`` says that some do more than to remove and to require units: then a tree that keeps
-    to these still does when units are left out. It does to all of them where they are ``shrinking``.
-    ``constants`` are those of all of them, as terms, and ``files`` are theirs.
+    They are local, and require redundant units only as members of required sets. ``unsettled`` says that some
+    do more than to remove and require units; these are antimonotone: every subtree of a tree that keeps to
+    them does, too. All of them are where they are ``shrinking``. ``constants`` are their constants, as terms,
+    and ``files`` their files.
     """
 
     local: Final = True
-    spare: Final = False
+    redundant: Final = False
 
     def __init__(self, rules: Sequence[Rule], constants: Mapping[str, str], files: Sequence[Path]) -> None:
         self.rules, self.constants, self.files = tuple(rules), constants, tuple(files)
         names = [rule["rule"] for rule in rules]
-        self.rest = not _WITH_REST.isdisjoint(names)
-        self.shrinking = not any(name.startswith(_ASKING) for name in names)
+        self.unsettled = not _WITH_UNSETTLED.isdisjoint(names)
+        self.shrinking = not any(name.startswith(_REQUIRING_PREFIX) for name in names)
         self._last: tuple[Problem, tuple[Meaning, ...], Ruled] | None = None
 
     @property
     def looked_at(self) -> frozenset[tuple[str, int]]:
-        """The facts that they look at, beside what ours always do."""
+        """The predicates that they read, in addition to those of the built-in encodings."""
         return READ | {_PRICE} if "max_price" in self.constants else READ
 
     def fit(self, problem: Problem) -> bool:
-        """Whether they say of a problem what they say to clingo.
+        """Whether their meaning here is that under clingo for a problem.
 
-        That is not known of the rest where they do not see all that is at hand, and of prices that clingo
-        refuses.
+        It may differ for unsettled constraints that do not see all available object nodes, and for prices
+        that clingo refuses.
         """
-        if self.rest and problem.kitchen_seen != problem.kitchen:
+        if self.unsettled and problem.kitchen_seen != problem.kitchen:
             return False
         try:
             if "max_price" in self.constants:
@@ -79,78 +79,82 @@ class ReadyMade:
         return True
 
     def applied(self, problem: Problem) -> Restriction | Contradiction:
-        """Return what is left of a problem under what these remove and require."""
-        meanings, _ = self._said(problem)
+        """Return the units removed from a problem and the sets required, or a contradiction."""
+        meanings, _ = self._meanings(problem)
         # what is needed by a unit of the last set is made by one of the others, as the tree executes
         required = tuple(
             frozenset().union(*(sets[-1] for sets in alternatives))
-            for each in meanings
-            for alternatives in each.wanted
+            for meaning in meanings
+            for alternatives in meaning.wanted
         )
-        if any(each.never for each in meanings) or not all(required):
+        if any(meaning.never for meaning in meanings) or not all(required):
             return Contradiction()
-        removed: frozenset[int] = frozenset().union(*(each.removed for each in meanings))
+        removed: frozenset[int] = frozenset().union(*(meaning.removed for meaning in meanings))
         return Restriction(removed.__contains__, required)
 
     def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
-        """Return how much each unit counts, a whole number, and what those of a tree come to at most."""
-        for each in self._said(problem)[0]:
-            if each.most is not None and all(len(units) == 1 for units, _ in each.things):
-                amounts = {unit: int(amount) for units, amount in each.things for unit in units}
-                yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(each.most)  # type: ignore[misc]
+        """Return linear bounds: of each, the whole weight of a unit, and the greatest sum over a tree."""
+        for rule_meaning in self._meanings(problem)[0]:
+            if rule_meaning.most is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
+                amounts = {unit: int(amount) for units, amount in rule_meaning.things for unit in units}
+                yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(rule_meaning.most)  # type: ignore[misc]
 
     def conflict(self, problem: Problem, units: Units) -> Sequence[Units] | None:
-        """Return sets of units of each of which a tree has one, and no tree that keeps to the rest does.
+        """Return sets that a tree hits, but no tree hits all of that keeps to unsettled constraints.
 
-        ``None`` where it keeps to it; the tree keeps to what is not of the rest.
+        ``None`` where the tree keeps to these; it keeps to all others.
         """
-        for rule, each in zip(self.rules, self._said(problem)[0], strict=True):
-            if each.most is not None:
-                used = [thing for thing in each.things if not units.isdisjoint(thing[0])]
+        for rule, rule_meaning in zip(self.rules, self._meanings(problem)[0], strict=True):
+            if rule_meaning.most is not None:
+                used = [thing for thing in rule_meaning.things if not units.isdisjoint(thing[0])]
                 used.sort(key=lambda thing: -thing[1])
                 sums = accumulate((amount for _, amount in used), initial=Fraction())
-                over = next((place for place, total in enumerate(sums) if total > each.most), None)
+                over = next(
+                    (position for position, total in enumerate(sums) if total > rule_meaning.most), None
+                )
                 if over is not None:
                     return [members for members, _ in used[:over]]
-            if each.barred is not None and (early := _too_early(problem, rule, units)):
+            if rule_meaning.barred is not None and (early := _too_early(problem, rule, units)):
                 return [Units({unit}) for unit in sorted(early)]
         return None
 
     def barred(self, problem: Problem, without: Units) -> Units:
-        """Return units that no tree has that keeps to them all and has none of some others."""
-        meanings, _ = self._said(problem)
-        return Units().union(*(each.barred(Units(), without) for each in meanings if each.barred))
+        """Return units that are in no tree that keeps to all constraints and has no unit of ``without``."""
+        meanings, _ = self._meanings(problem)
+        return Units().union(
+            *(rule_meaning.barred(Units(), without) for rule_meaning in meanings if rule_meaning.barred)
+        )
 
     def keeps(self, problem: Problem, units: Collection[int]) -> bool:
         """Whether a tree keeps to all of them."""
-        _, ruled = self._said(problem)
+        _, ruled = self._meanings(problem)
         tree = frozenset(units)
         return ruled.fault(tree, frozenset(range(len(problem.network))) - tree) is None
 
-    def _said(self, problem: Problem) -> tuple[tuple[Meaning, ...], Ruled]:
+    def _meanings(self, problem: Problem) -> tuple[tuple[Meaning, ...], Ruled]:
         if self._last is None or self._last[0] is not problem:
-            asked, nodes = question_of(problem), len(problem.network.objects)
-            meanings = tuple(meaning(rule, asked) for rule in self.rules)
+            question, nodes = question_of(problem), len(problem.network.objects)
+            meanings = tuple(meaning(rule, question) for rule in self.rules)
             self._last = problem, meanings, Ruled(meanings, nodes, len(problem.network) + nodes)
         return self._last[1:]
 
 
 def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> ReadyMade | None:
-    """Understand constraints that are all ready-made, unchanged, and asked for once, with all constants set.
+    """Return constraints that are all ready-made, unchanged, and used once, with all constants set.
 
-    ``settings`` set constants as ``NAME=VALUE`` for those that have none of their own. ``None`` for any other
-    constraints, and for values that need a closer look.
+    ``settings`` set constants as ``NAME=VALUE`` of constraints without constants of their own. ``None`` for
+    any other constraints, and for values that are no plain texts or numbers.
     """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     files: list[Path] = []
     uses: list[tuple[str, dict[str, str]]] = []
     with suppress(UserError):
-        for each in dict.fromkeys(map(find_constraint, constraints)):
-            file = each.file if isinstance(each, LibraryUse) else each
+        for constraint in dict.fromkeys(map(find_constraint, constraints)):
+            file = constraint.file if isinstance(constraint, LibraryUse) else constraint
             if not isinstance(file, Path) or file.stem not in LIBRARY or not is_own(file):
                 return None
             files.append(file)
-            uses.append((file.stem, each.constants if isinstance(each, LibraryUse) else shared))
+            uses.append((file.stem, constraint.constants if isinstance(constraint, LibraryUse) else shared))
         rules = _values(uses, shared)
         return None if rules is None or len(set(files)) < len(files) else ReadyMade(*rules, files)
     return None
@@ -162,41 +166,41 @@ def _values(
     """Return constraints with their values, and all constants as terms; ``None`` where one is not plain."""
     facts: dict[str, set[str]] = {name: set() for name in LISTED}
     constants: dict[str, str] = {}
-    taken: set[str] = set()
+    used_names: set[str] = set()
     rules: list[dict[str, Any]] = []
-    for name, given in uses:
+    for name, constants_given in uses:
         rule: dict[str, Any] = {"rule": name}
         read = {LISTED.get(value, value): (value, kind) for value, kind in LIBRARY[name].values.items()}
         read.pop("", None)
-        if given is not shared and given.keys() != read.keys():
+        if constants_given is not shared and constants_given.keys() != read.keys():
             return None
         for constant, (value, kind) in read.items():
-            written = given.get(constant, "")
-            found = _NUMBER.fullmatch(written) if kind is int else _TEXT.fullmatch(written)
-            if found is None or not written.isprintable() or (kind is int and abs(int(written)) > LARGEST):
+            written = constants_given.get(constant, "")
+            match = _NUMBER.fullmatch(written) if kind is int else _TEXT.fullmatch(written)
+            if match is None or not written.isprintable() or (kind is int and abs(int(written)) > LARGEST):
                 return None
-            taken.update({constant} if given is shared else ())
-            constants[constant] = written if kind is int else f'"{found[2]}"'
+            used_names.update({constant} if constants_given is shared else ())
+            constants[constant] = written if kind is int else f'"{match[2]}"'
             if kind is list:
-                facts[value].add(found[2])
+                facts[value].add(match[2])
             else:
-                rule[value] = int(written) if kind is int else found[2]
+                rule[value] = int(written) if kind is int else match[2]
         rules.append(rule)
     if any("heats" in LIBRARY[name].values for name, _ in uses):
         lines = (encodings_folder() / "constraints" / "never_heated.lp").read_text("utf-8").splitlines()
-        said = "\n".join(line for line in lines if not line.startswith("%"))
-        facts["heats"].update(_HEATS.findall(said))
+        facts_text = "\n".join(line for line in lines if not line.startswith("%"))
+        facts["heats"].update(_HEATS.findall(facts_text))
     for rule in rules:  # what one use lists, the others read
         rule.update(
             (value, sorted(facts[value])) for value, k in LIBRARY[rule["rule"]].values.items() if k is list
         )
-    return (rules, constants) if shared.keys() <= taken else None
+    return (rules, constants) if shared.keys() <= used_names else None
 
 
 def _too_early(problem: Problem, rule: Rule, units: Units) -> Units:
-    """Give a unit of a tree with the later motion that runs without the earlier one, and all it builds upon.
+    """Return a unit with the later motion that can execute without the earlier one, and all units it needs.
 
-    None where there is no such unit.
+    Empty where the tree has no such unit.
     """
     motions, needs, gives, kitchen = problem.network.motions, problem.needs, problem.gives, problem.kitchen
     maker: dict[int, int] = {}
@@ -204,9 +208,9 @@ def _too_early(problem: Problem, rule: Rule, units: Units) -> Units:
     while ready := [unit for unit in waiting if all(o in maker or o in kitchen for o in needs[unit])]:
         for unit in ready:
             if motions[unit] == rule["later_motion"]:
-                found = follow(needs[unit], maker, needs, kitchen)
-                assert found is not None
-                return Units(found | {unit})
+                built_upon = follow(needs[unit], maker, needs, kitchen)
+                assert built_upon is not None
+                return Units(built_upon | {unit})
         for unit in ready:
             for o in gives[unit]:
                 maker.setdefault(o, unit)
@@ -215,7 +219,7 @@ def _too_early(problem: Problem, rule: Rule, units: Units) -> Units:
 
 
 def question_of(problem: Problem) -> Question:
-    """Return what constraints look at of a problem."""
+    """Return the view of a problem that constraints read."""
     seen = problem.as_seen or problem
     return Question(
         problem.network,

@@ -1,9 +1,9 @@
-"""What rules do to the trees of one question, and how far they see: read from clingo's syntax tree.
+"""Kind and locality of the rules of one question, inferred from clingo's syntax tree.
 
-All rules of a question are looked at together, since a rule in another file may change what one does. Where
-anything is in doubt, a rule is ``OTHER``; docs/writing-constraints.md says what that means for the user.
-What is said here of a rule serves to cut the search: the search itself asks clingo for every rule that is not
-known to remove units or to ask for one of a set.
+All rules of a question are analysed together, since a rule in another file may change the effect of one. A
+rule whose effect is in doubt is ``OTHER``; docs/writing-constraints.md explains the consequences. The kinds
+serve to cut the search: clingo itself enforces every rule that is not known to remove units or to require one
+of a set.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -18,32 +18,32 @@ from foon_asp.network import Source
 from foon_asp.rules.clause import (
     Aggregate,
     Clause,
+    Conjunct,
     Constants,
     Literal,
-    Part,
     Signature,
     Test,
     clauses,
     constant_values,
     literals,
-    place,
     plain_value,
+    source_of,
     value,
 )
 from foon_asp.rules.dependence import Dependence, Depends, Doubt
 from foon_asp.rules.fact_values import COLUMNS, misplaced
-from foon_asp.rules.flat_body import Asking, FlatBodies, NotFlatError, Row, Way
+from foon_asp.rules.flat_body import AtLeastOne, Disjunct, FlatBodies, LinearBound, NotFlatError
 from foon_asp.rules.locality import Locality
 
 
 class Kind(StrEnum):
-    """What a rule does.
+    """The effect of a rule on the set of trees.
 
-    ``FACT``: there is no decision in it: it holds for every tree, or for none. ``DELETING``: a tree keeps to
-    it as long as it has none of some units, which are known without clingo. ``SHRINKING``: if a tree keeps to
-    it, so does every tree whose units are a subset. ``REQUIRING``: if a tree keeps to it, so does every tree
-    whose units are a superset. ``OTHER``: none of these is known. ``HELPER``: it derives what other rules
-    look at, and rules nothing out by itself.
+    ``FACT``: it is independent of the tree, and allows every tree or none. ``DELETING``: it excludes the
+    trees with one of certain units, which are known without clingo. ``SHRINKING``: it is antimonotone: if it
+    allows a tree, it allows every subset. ``REQUIRING``: it is monotone: if it allows a tree, it allows every
+    superset. ``OTHER``: its kind is unknown. ``HELPER``: it derives an auxiliary predicate, and excludes
+    nothing by itself.
     """
 
     FACT = "fact"
@@ -54,7 +54,7 @@ class Kind(StrEnum):
     HELPER = "helper"
 
 
-# Statements that are no rules, and change nothing in which trees there are.
+# Statements other than rules that do not change the set of trees.
 _WITHOUT_EFFECT = {
     ASTType.Comment,
     ASTType.Defined,
@@ -66,19 +66,18 @@ _WITHOUT_EFFECT = {
 
 _NEVER = "a condition in it never holds"
 
-# What our encoding of a tree says of a predicate that rules may look at, where items do not run out.
+# A rule of the built-in encoding whose predicate user rules may read, where items do not run out.
 _IMPLIED = "times(U,1) :- use(U)."
 
 
 class Rule(NamedTuple):
-    """A rule of one question, and what it does.
+    """A rule of one question, with its kind and locality.
 
-    ``reason`` says why nothing more is known where its kind is ``OTHER``, and why it has no effect where it
-    has none; ``reason_source`` where that stands. ``further`` says what it sees beyond the tree, at
-    ``further_source``: if that is empty, the rule is local, and what it says of a tree stays the same when
-    facts of units outside the tree, and of object nodes that only those have, are left out. A ``HELPER`` is
-    always local: what it sees counts for the rules that use it. ``one_of`` says that a requiring rule asks
-    for one unit of a set, or of each of several sets, which are known without clingo.
+    ``reason`` says why its kind is ``OTHER``, or why it has no effect, at ``reason_source``; else empty.
+    ``further`` says what it reads beyond the tree, at ``further_source``. If it is empty, the rule is local:
+    its truth for a tree stays the same without the facts of units outside the tree and of object nodes that
+    only those have. A ``HELPER`` is always local: its facts count for the rules that use it. ``one_of`` says
+    that a requiring rule is an at-least-one constraint over one or several sets, known without clingo.
     """
 
     source: Source
@@ -91,54 +90,58 @@ class Rule(NamedTuple):
 
     @property
     def local(self) -> bool:
-        """Whether it sees no further than the tree."""
+        """Whether it reads facts about the tree alone."""
         return not self.further
 
     @property
     def without_effect(self) -> bool:
-        """Whether it says nothing of any tree, since a condition in it never holds."""
+        """Whether it allows every tree, since a condition in it never holds."""
         return bool(self.reason) and self.kind is not Kind.OTHER
 
 
 class Analysis:
-    """The rules of one question, taken apart, with what each does.
+    """The rules of one question as clauses, each with its kind.
 
-    ``rules`` are in the order of the files, ``live`` the clauses that can have an effect: those with a
-    condition that never holds are not among them. By the place of a rule in ``rules``, ``of_rule`` has its
-    live clauses, ``removals`` the ways in which a unit breaks it, ``askings`` what it asks for one unit of,
-    and ``rows`` the sum that it bounds. A rule with removals or askings says nothing else.
+    ``rules`` are in the order of the files, ``live`` the clauses that can have an effect: clauses with a
+    condition that never holds are excluded. By the index of a rule in ``rules``, ``of_rule`` has its live
+    clauses, ``removals`` the disjuncts under which a unit breaks it, ``at_least_ones`` its at-least-one
+    constraints, and ``linear_bounds`` the bound that it states. A rule with removals or at-least-one
+    constraints states nothing else.
     """
 
     def __init__(
         self, statements: Iterable[AST], settings: Sequence[str], varied: Collection[Signature] = ()
     ) -> None:
-        """Look at parsed statements.
+        """Analyse parsed statements.
 
         ``settings`` are the constants that are set, as ``name=value`` for clingo.
         """
         statements = tuple(statements)
-        self.definitions = [each for each in statements if each.ast_type == ASTType.Definition]
+        self.definitions = [statement for statement in statements if statement.ast_type == ASTType.Definition]
         self.constants: Constants = constant_values(self.definitions, settings)
-        self.statements = [each for each in statements if each.ast_type not in _WITHOUT_EFFECT]
-        taken = [
-            list(clauses(each, number, self.constants)) if each.ast_type == ASTType.Rule else []
-            for number, each in enumerate(self.statements)
+        self.statements = [statement for statement in statements if statement.ast_type not in _WITHOUT_EFFECT]
+        clauses_by_rule = [
+            list(clauses(statement, number, self.constants)) if statement.ast_type == ASTType.Rule else []
+            for number, statement in enumerate(self.statements)
         ]
-        self.of_rule = [[clause for clause in each if self._why_never(clause.body) is None] for each in taken]
-        self.live = [clause for each in (*self.of_rule, _implied()) for clause in each]
+        self.of_rule = [
+            [clause for clause in rule_clauses if self._why_never(clause.body) is None]
+            for rule_clauses in clauses_by_rule
+        ]
+        self.live = [clause for rule_clauses in (*self.of_rule, _implied()) for clause in rule_clauses]
         self.dependence = Dependence(self.live, self.constants, varied)
         self._locality = Locality(self.live, self.dependence)
         self.bodies = FlatBodies(self.live, self.constants, self.dependence, self._locality)
-        self.removals: dict[int, tuple[Way, ...]] = {}
-        self.askings: dict[int, tuple[Asking, ...]] = {}
-        self.rows: dict[int, Row] = {}
+        self.removals: dict[int, tuple[Disjunct, ...]] = {}
+        self.at_least_ones: dict[int, tuple[AtLeastOne, ...]] = {}
+        self.linear_bounds: dict[int, LinearBound] = {}
         self.rules = tuple(
             self._understood(number, self._rule(statement, live))
             for number, (statement, live) in enumerate(zip(self.statements, self.of_rule, strict=True))
         )
 
     def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
-        """Return what a clause does, and why nothing more is known."""
+        """Return the kind of a clause, and why it is ``OTHER``, else ``None``."""
         dependence = self.dependence
         doubt: Doubt | None
         if not clause.plain:
@@ -158,52 +161,61 @@ class Analysis:
             Depends.SHRINKS: Kind.REQUIRING,
             Depends.BOTH: Kind.OTHER,
         }
-        kind = kinds[dependence.of_parts(clause.body)]
+        kind = kinds[dependence.of_body(clause.body)]
         return kind, self._why_both(clause) if kind is Kind.OTHER else None
 
     def reads(self, signature: Signature) -> bool:
-        """Whether some rule looks at a predicate."""
-        return any(each.signature == signature for clause in self.live for each in literals(clause.body))
+        """Whether some rule reads a predicate."""
+        return any(
+            literal.signature == signature for clause in self.live for literal in literals(clause.body)
+        )
 
-    def _why_never(self, body: Iterable[Part]) -> str | None:
+    def _why_never(self, body: Iterable[Conjunct]) -> str | None:
         """Return why a body cannot hold, whatever the facts are; ``None`` where it may."""
-        for part in body:
-            if isinstance(part, Test | Aggregate) and part.holds is False:
+        for conjunct in body:
+            if isinstance(conjunct, Test | Aggregate) and conjunct.holds is False:
                 return _NEVER
-            if isinstance(part, Literal) and part.positive and part.signature in COLUMNS:
-                known = {place: value(each, self.constants) for place, each in enumerate(part.arguments)}
-                values = {place: plain_value(each) for place, each in known.items() if each is not None}
-                wrong = misplaced(COLUMNS[part.signature], values)
-                if wrong is not None:
-                    texts = wrong in COLUMNS[part.signature].texts
+            if isinstance(conjunct, Literal) and conjunct.positive and conjunct.signature in COLUMNS:
+                symbols = {
+                    position: value(argument, self.constants)
+                    for position, argument in enumerate(conjunct.arguments)
+                }
+                values = {
+                    position: plain_value(symbol)
+                    for position, symbol in symbols.items()
+                    if symbol is not None
+                }
+                misfit = misplaced(COLUMNS[conjunct.signature], values)
+                if misfit is not None:
+                    texts = misfit in COLUMNS[conjunct.signature].texts
                     kind = (
-                        f"{part.arguments[wrong]} is no text in quotes"
+                        f"{conjunct.arguments[misfit]} is no text in quotes"
                         if texts
-                        else f"{part.arguments[wrong]} is no number"
+                        else f"{conjunct.arguments[misfit]} is no number"
                     )
-                    return f"{part.text} never holds, since {kind}"
+                    return f"{conjunct.text} never holds, since {kind}"
         return None
 
     def _why_both(self, clause: Clause) -> Doubt:
-        """Return why units may break a rule and mend it."""
-        for part in clause.body:
-            if self.dependence.of_part(part) is Depends.BOTH:
-                return Doubt(f"more units may make `{part.text}` true or false", clause.source)
+        """Return why a rule is neither monotone nor antimonotone."""
+        for conjunct in clause.body:
+            if self.dependence.of_conjunct(conjunct) is Depends.BOTH:
+                return Doubt(f"more units may make `{conjunct.text}` true or false", clause.source)
         return Doubt("more units may break it, and others may mend it", clause.source)
 
     def _rule(self, statement: AST, live: Sequence[Clause]) -> Rule:
-        source = place(statement)
+        source = source_of(statement)
         if statement.ast_type != ASTType.Rule:
             reason = f"{str(statement).split(maxsplit=1)[0]} is nothing that is looked into"
             return Rule(source, Kind.OTHER, reason, source, reason, source)
         if not live:
             idle = list(clauses(statement, 0, self.constants))
-            off = next((why for each in idle if (why := self._why_never(each.body))), _NEVER)
+            off = next((why for clause in idle if (why := self._why_never(clause.body))), _NEVER)
             kind = Kind.FACT if any(clause.constraint for clause in idle) else Kind.HELPER
             return Rule(source, kind, f"{off}, so it has no effect", source)
-        found = [self.kind(clause) for clause in live]
-        kind = _together(kind for kind, _ in found)
-        doubt = next((doubt for _, doubt in found if doubt), None)
+        kinds = [self.kind(clause) for clause in live]
+        kind = _together(kind for kind, _ in kinds)
+        doubt = next((doubt for _, doubt in kinds if doubt), None)
         if kind is Kind.OTHER and doubt is None:
             doubt = Doubt("read in one way it rules units out, in another it requires some", source)
         further = None
@@ -219,33 +231,37 @@ class Analysis:
         )
 
     def _understood(self, number: int, rule: Rule) -> Rule:
-        """Find what a rule says that needs no clingo, and return the rule with a kind that says so."""
+        """Compile a rule to flat bodies where it is flat; return it with the kind that follows."""
         live = self.of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
             return rule
         if rule.kind is not Kind.FACT and len(live) == 1:
             with suppress(NotFlatError):
-                self.rows[number] = self.bodies.row(live[0])
+                self.linear_bounds[number] = self.bodies.linear_bound(live[0])
         with suppress(NotFlatError):
             if rule.kind is Kind.REQUIRING:
-                self.askings[number] = tuple(each for clause in live for each in self.bodies.askings(clause))
+                self.at_least_ones[number] = tuple(
+                    at_least_one for clause in live for at_least_one in self.bodies.at_least_ones(clause)
+                )
                 return rule._replace(one_of=True)
-            self.removals[number] = tuple(way for clause in live for way in self.bodies.ways(clause))
+            self.removals[number] = tuple(
+                disjunct for clause in live for disjunct in self.bodies.disjuncts(clause)
+            )
             return rule._replace(kind=Kind.FACT if rule.kind is Kind.FACT else Kind.DELETING)
         return rule
 
 
 def _together(kinds: Iterable[Kind]) -> Kind:
-    """Return what rules of several kinds do together."""
-    found = set(kinds)
-    if len(found) > 1:
-        found.discard(Kind.FACT)
-    return found.pop() if len(found) == 1 else Kind.OTHER
+    """Return the kind of a conjunction of rules of several kinds."""
+    distinct = set(kinds)
+    if len(distinct) > 1:
+        distinct.discard(Kind.FACT)
+    return distinct.pop() if len(distinct) == 1 else Kind.OTHER
 
 
 @cache
 def _implied() -> list[Clause]:
-    """Return the rules of our encoding that a user's rules can look at."""
+    """Return the rules of the built-in encoding that user rules can read."""
     statements: list[AST] = []
     parse_string(_IMPLIED, statements.append)
     return list(clauses(statements[-1], -1, {}))

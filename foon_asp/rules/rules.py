@@ -1,4 +1,4 @@
-"""The rules of the user and of the library that hold for one question, understood as far as possible."""
+"""The rules added to one question, from the user and the library, analysed without clingo where possible."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -17,7 +17,7 @@ from foon_asp.problem import Contradiction, Having, Problem, Restriction, Trait,
 from foon_asp.rules.clause import Signature, literals, written
 from foon_asp.rules.dependence import TIMES
 from foon_asp.rules.flat_answers import FlatAnswers
-from foon_asp.rules.flat_body import Asking, Constant, Fact, Item, Never, Term, Way
+from foon_asp.rules.flat_body import AtLeastOne, Constant, Disjunct, Fact, Item, Never, Term
 from foon_asp.rules.limit import Limit
 from foon_asp.rules.rule_kind import Analysis, Kind, Rule
 
@@ -30,10 +30,10 @@ _HAVING = {
 }
 
 
-class Told(NamedTuple):
-    """A rule for people: its text, and places in files.
+class ShownRule(NamedTuple):
+    """A rule as it is shown: its text, and places in files.
 
-    ``use`` says how a ready-made constraint was asked for that has constants of its own.
+    ``use`` is the option text of a ready-made constraint with constants of its own, else empty.
     """
 
     rule: Rule
@@ -45,11 +45,11 @@ class Told(NamedTuple):
 
 
 class Together(StrEnum):
-    """What stays of the reductions under some rules.
+    """The reductions that stay valid under rules.
 
-    ``REDUCED``: all of them, since the rules only remove units. ``REQUIRED``: all of them, with what is
-    required as more goals. ``CUT``: what cannot matter for the goals is left out, and what bounds exclude.
-    ``BOUNDED``: only the latter. ``PLAIN``: nothing is left out.
+    ``REDUCED``: all, since the rules only remove units. ``REQUIRED``: all, with the required sets as further
+    goals. ``CUT``: exclusion of units that cannot matter for the goals, or that bounds exclude. ``BOUNDED``:
+    only exclusion by bounds. ``PLAIN``: none.
     """
 
     REDUCED = "reduced"
@@ -62,9 +62,9 @@ class Together(StrEnum):
 class Rules:
     """All rules that are added to one question, taken together.
 
-    ``rules`` has each of them with its kind, in the order of the files. The kinds hold for questions whose
-    facts are what the network, the kitchen and the goals say; where a question derives or varies a predicate
-    of facts, :meth:`varying` gives the kinds for that.
+    ``rules`` has each of them with its kind, in the order of the files. The kinds hold for questions with
+    the facts of the network, the kitchen and the goals; where a question derives or varies a predicate of
+    facts, :meth:`varying` returns the rules with the kinds for that.
     """
 
     def __init__(
@@ -73,9 +73,9 @@ class Rules:
         constants: Sequence[str],
         varied: Collection[Signature] = (),
     ) -> None:
-        """Look at what was read, under constants that are set as ``name=value`` for clingo."""
+        """Analyse encodings, under constants that are set as ``name=value`` for clingo."""
         self._encodings, self._constants = tuple(encodings), tuple(constants)
-        statements = [statement for each in encodings for statement in each.statements]
+        statements = [statement for encoding in encodings for statement in encoding.statements]
         self._analysis = Analysis(statements, self._constants, varied)
         self.rules: tuple[Rule, ...] = self._analysis.rules
 
@@ -84,8 +84,8 @@ class Rules:
         return Rules(self._encodings, self._constants, varied)
 
     @cached_property
-    def told(self) -> tuple["Told", ...]:
-        """The rules for people: of a ready-made constraint with constants of its own, as in its file."""
+    def shown(self) -> tuple["ShownRule", ...]:
+        """The rules as they are shown; those of a ready-made constraint as in its file."""
         texts: dict[int, str] = {}
         uses: dict[str, Stated] = {}
         for encoding in self._encodings:
@@ -97,53 +97,53 @@ class Rules:
             pairs = zip(_saying(encoding.statements), _saying(originals), strict=True)
             texts.update((id(statement), written(original, file)) for statement, original in pairs)
 
-        def found(source: Source | None) -> Source | None:
+        def source_in_file(source: Source | None) -> Source | None:
             use = None if source is None else uses.get(source.file)
             return source if source is None or use is None else source._replace(file=str(use.file))
 
         return tuple(
-            Told(
+            ShownRule(
                 rule,
                 texts[id(statement)],
-                found(rule.source) or rule.source,
+                source_in_file(rule.source) or rule.source,
                 uses[rule.source.file].written if rule.source.file in uses else "",
-                found(rule.reason_source),
-                found(rule.further_source),
+                source_in_file(rule.reason_source),
+                source_in_file(rule.further_source),
             )
             for rule, statement in zip(self.rules, self._analysis.statements, strict=True)
         )
 
     @property
     def shrinking(self) -> bool:
-        """Whether a tree that keeps to the rules still does when units are left out of it."""
+        """Whether all rules are antimonotone: every subtree of a tree that keeps to them does, too."""
         return all(rule.kind in _SHRINKING for rule in self.rules)
 
     @property
     def local(self) -> bool:
-        """Whether no rule sees beyond the tree.
+        """Whether every rule is local.
 
-        Only then may rules be asked about a part of the units.
+        Only then are rules valid for a part of the units.
         """
         return all(rule.local for rule in self.rules)
 
     @property
-    def together(self) -> Together:
-        """What stays of the reductions under these rules."""
-        if not self.rest:
-            return Together.REQUIRED if self._analysis.askings else Together.REDUCED
+    def reductions_kept(self) -> Together:
+        """The reductions that stay valid under these rules."""
+        if not self.unsettled:
+            return Together.REQUIRED if self._analysis.at_least_ones else Together.REDUCED
         if not self.local:
             return Together.PLAIN
-        return Together.BOUNDED if self.spare else Together.CUT
+        return Together.BOUNDED if self.redundant else Together.CUT
 
     @property
-    def spare(self) -> bool:
-        """Whether a tree that keeps to the rest may need units that lead to no goal."""
-        return any(rule.kind not in _SHRINKING for rule in self.rest)
+    def redundant(self) -> bool:
+        """Whether a tree that keeps to all rules may need redundant units, which lead to no goal."""
+        return any(rule.kind not in _SHRINKING for rule in self.unsettled)
 
     @cached_property
-    def rest(self) -> tuple[Rule, ...]:
-        """The rules that :meth:`applied` does not settle, so that clingo is asked about them."""
-        settled = self._analysis.removals.keys() | self._analysis.askings.keys()
+    def unsettled(self) -> tuple[Rule, ...]:
+        """The rules that :meth:`applied` does not settle, so that clingo has to enforce them."""
+        settled = self._analysis.removals.keys() | self._analysis.at_least_ones.keys()
         return tuple(
             rule
             for number, rule in enumerate(self.rules)
@@ -152,75 +152,89 @@ class Rules:
 
     @property
     def wanted(self) -> list[Wanted] | None:
-        """The units that are asked for.
+        """The traits of required units, by at-least-one constraint.
 
-        ``None`` where rules see more than a tree, or do more than to rule units out and to ask for some.
+        ``None`` where rules are not local, or do more than to remove and require units.
         """
-        if not self.local or self.rest:
+        if not self.local or self.unsettled:
             return None
         return [
-            Wanted([tuple(_traits(way)) for way in asking.helping if way.unit is not None], _always(asking))
-            for asking in self._askings
+            Wanted(
+                [tuple(_traits(disjunct)) for disjunct in at_least_one.helpers if disjunct.unit is not None],
+                _always(at_least_one),
+            )
+            for at_least_one in self._at_least_ones
         ]
 
     @property
-    def _askings(self) -> list[Asking]:
-        return [asking for askings in self._analysis.askings.values() for asking in askings]
+    def _at_least_ones(self) -> list[AtLeastOne]:
+        return [
+            at_least_one
+            for at_least_ones in self._analysis.at_least_ones.values()
+            for at_least_one in at_least_ones
+        ]
 
     @property
     def only_limits(self) -> bool:
-        """Whether no rule looks at how often units are executed but to say how often at most."""
-        at_most = {number for number, row in self._analysis.rows.items() if not row.at_least}
+        """Whether no rule reads the number of executions except to bound it from above."""
+        at_most = {number for number, bound in self._analysis.linear_bounds.items() if not bound.at_least}
         others = (
             clause
-            for number, each in enumerate(self._analysis.of_rule)
+            for number, rule_clauses in enumerate(self._analysis.of_rule)
             if number not in at_most
-            for clause in each
+            for clause in rule_clauses
         )
         return all(literal.signature != TIMES for clause in others for literal in literals(clause.body))
 
     def limits(self, problem: Problem) -> list[Limit]:
-        """Return what rules say of how often units are executed, as far as these are limits of sums.
+        """Return the linear limits on executions that rules state.
 
         Raises :class:`UserError` as :meth:`applied` does.
         """
-        if not self._analysis.rows:
+        if not self._analysis.linear_bounds:
             return []
         answers, units = self._answers(problem), sorted(reach(problem).units)
-        found: list[Limit] = []
-        for row in self._analysis.rows.values():
-            weight = answers.weight(row)
+        limits: list[Limit] = []
+        for bound in self._analysis.linear_bounds.values():
+            weight = answers.weight(bound)
             weights = {unit: number for unit in units if (number := weight(unit))}
-            if row.each:
-                found += [Limit({unit: 1}, row.bound) for unit in weights]
+            if bound.per_unit:
+                limits += [Limit({unit: 1}, bound.bound) for unit in weights]
             else:
-                found.append(Limit(weights, row.bound, row.at_least, row.used))
-        return found
+                limits.append(Limit(weights, bound.bound, bound.at_least, bound.used))
+        return limits
 
     def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
-        """Return how much each unit counts in a sum that a rule bounds, and what a tree comes to at most."""
-        rows = [row for row in self._analysis.rows.values() if not (row.each or row.at_least)]
-        if rows:
+        """Return the upper linear bounds of rules: of each, the weight of a unit, and the greatest sum."""
+        linear_bounds = [
+            bound for bound in self._analysis.linear_bounds.values() if not (bound.per_unit or bound.at_least)
+        ]
+        if linear_bounds:
             answers = self._answers(problem)
-            yield from ((cache(answers.weight(row)), row.bound) for row in rows)
+            yield from ((cache(answers.weight(bound)), bound.bound) for bound in linear_bounds)
 
     def applied(self, problem: Problem) -> Restriction | Contradiction:
-        """Return what is left of a problem under the rules that remove units, or ask for one of a set.
+        """Return the restriction of a problem by the rules that remove units or require one of a set.
 
         A tree keeps to these if and only if it has no removed unit, and a unit of each required set. Whether
-        a unit is removed is found when it is asked. Raises :class:`UserError` for prices that rules look at
-        and cannot be told.
+        a unit is removed is evaluated lazily. Raises :class:`UserError` for prices that rules read and that
+        are no whole numbers of hundredths.
         """
         if problem.restriction is not None:
             problem = replace(problem, restriction=None)
         answers = self._answers(problem)
-        ways = [way for each in self._analysis.removals.values() for way in each]
-        if answers.any_holds(way for way in ways if way.unit is None):
+        disjuncts = [disjunct for removals in self._analysis.removals.values() for disjunct in removals]
+        if answers.any_holds(disjunct for disjunct in disjuncts if disjunct.unit is None):
             return Contradiction()
-        required = [units for each in self._askings for units in answers.asked(each) if units is not None]
+        required = [
+            units
+            for at_least_one in self._at_least_ones
+            for units in answers.required_sets(at_least_one)
+            if units is not None
+        ]
         if not all(required):
             return Contradiction()
-        return Restriction(answers.removed(ways), tuple(required))
+        return Restriction(answers.removed(disjuncts), tuple(required))
 
     def _answers(self, problem: Problem) -> FlatAnswers:
         prices = self._prices(problem) if self._analysis.reads(("price", 2)) else {}
@@ -228,7 +242,7 @@ class Rules:
         return FlatAnswers(problem, bodies.tables, bodies.size, prices)
 
     def _prices(self, problem: Problem) -> dict[int, int]:
-        """Give the prices of units as rules see them; raises where those that can be made have none such."""
+        """Return the prices of units in hundredths; raises where units that can be made have none."""
         read = [("price", 2)]
         try:
             return hundredths(problem, range(len(problem.network)), read)
@@ -236,32 +250,32 @@ class Rules:
             return hundredths(problem, reach(problem).units, read)
 
 
-def _facts(way: Way) -> list[Fact]:
-    return [item for item in way.items if isinstance(item, Fact)]
+def _facts(disjunct: Disjunct) -> list[Fact]:
+    return [item for item in disjunct.items if isinstance(item, Fact)]
 
 
-def _always(asking: Asking) -> bool:
-    """Whether a unit is asked for whatever the facts are."""
-    return not asking.when.items and all(way.unit is not None for way in asking.helping)
+def _always(at_least_one: AtLeastOne) -> bool:
+    """Whether a unit is required whatever the facts are."""
+    return not at_least_one.when.items and all(disjunct.unit is not None for disjunct in at_least_one.helpers)
 
 
-def _traits(way: Way) -> Iterator[Trait]:
-    """Return what a unit has of which a way holds, as far as words of the rule say it."""
-    facts = _facts(way)
+def _traits(disjunct: Disjunct) -> Iterator[Trait]:
+    """Return the traits of the units of a disjunct, as far as texts of the rule name them."""
+    facts = _facts(disjunct)
     for (name, _), terms in facts:
-        if terms[0] == way.unit and name in _HAVING:
+        if terms[0] == disjunct.unit and name in _HAVING:
             having, of_node = _HAVING[name], [fact for fact in facts if fact.terms[0] == terms[-1]]
             if having is Having.INPUT and any(
-                _is_never(item, Fact(_KITCHEN, terms[-1:])) for item in way.items
+                _is_never(item, Fact(_KITCHEN, terms[-1:])) for item in disjunct.items
             ):
                 having = Having.MADE
-            said = _text(terms[-1]) if name == "motion" else _named(of_node, {"label", "ingredient"})
-            yield from (Trait(having, word) for word in said)
+            words = _text(terms[-1]) if name == "motion" else _named(of_node, {"label", "ingredient"})
+            yield from (Trait(having, word) for word in words)
 
 
 def _is_never(item: Item, fact: Fact) -> bool:
-    """Whether an item says that a fact is not there, maybe with others."""
-    return isinstance(item, Never) and any(way.items == (fact,) for way in item.ways)
+    """Whether an item excludes a fact."""
+    return isinstance(item, Never) and any(disjunct.items == (fact,) for disjunct in item.disjuncts)
 
 
 def _text(term: Term) -> list[str]:
@@ -269,10 +283,12 @@ def _text(term: Term) -> list[str]:
 
 
 def _named(facts: Iterable[Fact], predicates: Collection[str]) -> list[str]:
-    """Return the texts that facts of some predicates have in a rule."""
+    """Return the constant texts of facts of some predicates."""
     return [word for fact in facts if fact.signature[0] in predicates for word in _text(fact.terms[-1])]
 
 
 def _saying(statements: Iterable[AST]) -> list[AST]:
-    """Return the statements that are in a ready-made constraint whatever its constants are called."""
-    return [each for each in statements if each.ast_type not in {ASTType.Program, ASTType.Comment}]
+    """Return statements without comments and ``#program``, which renaming of constants drops."""
+    return [
+        statement for statement in statements if statement.ast_type not in {ASTType.Program, ASTType.Comment}
+    ]

@@ -1,4 +1,4 @@
-"""What clingo is given for constraints: files, rules, and ready-made constraints under names of their own."""
+"""Texts for clingo of constraints: files, rules, and ready-made constraints with renamed predicates."""
 
 from collections.abc import Collection, Sequence
 from typing import cast
@@ -14,38 +14,38 @@ from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText
 
 
 def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
-    """Return what is loaded for each of some constraints, found before.
+    """Return the file or text that clingo loads for each constraint.
 
     Rules are numbered in their order, and so are ready-made constraints with constants of their own. Raises
     :class:`UserError` for constants that such a constraint has not, and for values that do not fit.
     """
-    found: dict[Constraint, Loaded] = {}
+    loaded_by_constraint: dict[Constraint, Loaded] = {}
     rules = uses = 0
     for constraint in constraints:
-        if constraint in found:
+        if constraint in loaded_by_constraint:
             continue
         if isinstance(constraint, RuleText):
             rules += 1
-            found[constraint] = Stated(f"rule {rules}", constraint.text)
+            loaded_by_constraint[constraint] = Stated(f"rule {rules}", constraint.text)
         elif isinstance(constraint, LibraryUse):
             uses += 1
-            found[constraint] = _renamed(constraint, uses)
+            loaded_by_constraint[constraint] = _renamed(constraint, uses)
         else:
-            found[constraint] = constraint
-    return found
+            loaded_by_constraint[constraint] = constraint
+    return loaded_by_constraint
 
 
 def _renamed(use: LibraryUse, number: int) -> Stated:
-    """Return a ready-made constraint with its constants set, and names of its own for them and its helpers.
+    """Return a ready-made constraint with its constants set, and these and its predicates renamed.
 
     Each statement is on the line on which it begins in the file.
     """
     encoding = read_encoding(use.file)
-    given = use.constants
-    for name in given:
+    values = use.constants
+    for name in values:
         if name not in encoding.constants:
-            known = ", ".join(encoding.constants) or "none"
-            raise UserError(f"{use}: {use.file.stem} has no constant {name!r}; it has {known}")
+            names_known = ", ".join(encoding.constants) or "none"
+            raise UserError(f"{use}: {use.file.stem} has no constant {name!r}; it has {names_known}")
     own = {*encoding.defined, *encoding.declared} - PUBLIC - EXTENDED
     renaming = _Renaming(own, encoding.constants, number)
     statements: list[AST] = []
@@ -54,12 +54,12 @@ def _renamed(use: LibraryUse, number: int) -> Stated:
     for statement in statements:
         if statement.ast_type in {ASTType.Comment, ASTType.Program}:
             continue
-        if statement.ast_type == ASTType.Definition and statement.name in given:
-            default, value = str(statement.value), given[statement.name]
-            said = statement.update(value=_term(constant_value(statement.name, default, value)))
+        if statement.ast_type == ASTType.Definition and statement.name in values:
+            default, value = str(statement.value), values[statement.name]
+            changed = statement.update(value=_term(constant_value(statement.name, default, value)))
         else:
-            said = statement
-        lines.setdefault(statement.location.begin.line, []).append(str(renaming.visit(said)))
+            changed = statement
+        lines.setdefault(statement.location.begin.line, []).append(str(renaming.visit(changed)))
     text = "\n".join(" ".join(lines.get(line, ())) for line in range(1, max(lines, default=0) + 1))
     names = {renaming.name(name): name for name in encoding.constants}
     return Stated(f"use {number}", f"{text}\n", use.file, use.written, tuple(names.items()))
@@ -72,13 +72,13 @@ def _term(text: str) -> AST:
 
 
 class _Renaming(Transformer):
-    """Gives predicates and constants other names, wherever they stand."""
+    """Rewriter that renames predicates and constants."""
 
     def __init__(self, predicates: Collection[Signature], constants: Collection[str], number: int) -> None:
         self._predicates, self._constants, self._number = predicates, constants, number
 
     def name(self, name: str) -> str:
-        """Return the other name, which begins as all names do that are ours."""
+        """Return the new name, which begins with ``_`` as all reserved names do."""
         return f"_{name.lstrip('_')}_{self._number}"
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
@@ -88,7 +88,7 @@ class _Renaming(Transformer):
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation
             return symbol.update(argument=self._symbol(symbol.argument))
         if symbol.ast_type == ASTType.Pool:
-            return symbol.update(arguments=[self._symbol(each) for each in symbol.arguments])
+            return symbol.update(arguments=[self._symbol(argument) for argument in symbol.arguments])
         own = (symbol.name, len(symbol.arguments)) in self._predicates
         name = self.name(symbol.name) if own else symbol.name
         return symbol.update(name=name, arguments=self.visit_sequence(symbol.arguments))

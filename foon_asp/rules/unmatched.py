@@ -1,4 +1,4 @@
-"""Literals over facts that nothing in a network matches because of a constant: slips, and lost quotes."""
+"""Warnings for literals over facts whose constants match nothing in a network: misspellings, lost quotes."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -15,9 +15,9 @@ from foon_asp.rules.clause import (
     Aggregate,
     Clause,
     Conditional,
+    Conjunct,
     Constants,
     Literal,
-    Part,
     Signature,
     Test,
     clauses,
@@ -28,14 +28,14 @@ from foon_asp.rules.clause import (
 from foon_asp.rules.fact_values import COLUMNS, LISTED_FACTS, FactValues, has_text, nearest_text, unknown_text
 from foon_asp.text.diagnostics import Diagnostic, Severity
 
-_MAX_COMBINATIONS = 10_000  # of values that lists give a literal; beyond, it counts as matched
+_MAX_COMBINATIONS = 10_000  # of values of one literal; with more, it counts as matched
 _SHOWN = 3  # values of a list
 
-_Values = Mapping[str, Sequence[Symbol]]  # of variables, where all are known
+_Values = Mapping[str, Sequence[Symbol]]  # by variable, where all values are known
 
 
 class _Unmatched(NamedTuple):
-    """A literal that nothing matches: its rule, the rule's head, its constants, and what to say where."""
+    """A literal that matches no fact: its rule, the rule's head, its constants, the warning and its place."""
 
     clause: int
     head: Signature | None
@@ -49,31 +49,32 @@ def unmatched(
 ) -> Iterator[Diagnostic]:
     """Return a warning for each literal over a fact that its constants keep from matching anything.
 
-    ``theirs`` are the user's files, ``ours`` ready-made constraints beside them, and ``settings`` the
-    constants that are set. A literal is passed over where another rule with the same head has its constants
+    ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the constants
+    that are set. A literal is skipped where another rule with the same head has its constants
     in a literal that matches: a name may be a label or an ingredient.
     """
-    definitions = [statement for each in (*theirs, *ours) for statement in each.definitions]
+    encodings = (*theirs, *ours)
+    definitions = [statement for encoding in encodings for statement in encoding.definitions]
     constants = constant_values(definitions, settings)
     rules = [
-        [list(clauses(rule, 0, constants)) for rule in each.statements if rule.ast_type == ASTType.Rule]
-        for each in (*theirs, *ours)
+        [list(clauses(rule, 0, constants)) for rule in encoding.statements if rule.ast_type == ASTType.Rule]
+        for encoding in encodings
     ]
-    programs = [list(chain.from_iterable(each)) for each in rules]
+    programs = [list(chain.from_iterable(of_file)) for of_file in rules]
     search = _Search(list(chain.from_iterable(programs)), constants, values)
     unlisted = _unlisted(list(chain.from_iterable(programs[: len(theirs)])), constants, values)
     for encoding, program in zip(theirs, programs, strict=False):
-        found = [(each.source, each.message) for each in search.unmatched(program)]
+        warnings = [(literal.source, literal.message) for literal in search.unmatched(program)]
         own = set(map(id, program))
-        found += [(clause.source, text) for clause, text in unlisted if id(clause) in own]
-        for source, message in dict.fromkeys(found):
+        warnings += [(clause.source, text) for clause, text in unlisted if id(clause) in own]
+        for source, message in dict.fromkeys(warnings):
             yield encoding.remark(Severity.WARNING, "unmatched", message, source)
 
 
 class _Search:
-    """A search for literals that nothing matches.
+    """A search for literals that match no fact.
 
-    ``program`` has all rules, of which some say what the values of others may be.
+    ``program`` has all rules, since facts of one file may bind variables of another.
     """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, values: FactValues) -> None:
@@ -81,12 +82,12 @@ class _Search:
         self._lists = self._find_lists(program)
 
     def unmatched(self, program: Sequence[Clause]) -> Iterator[_Unmatched]:
-        """Return the literals of the rules of one file that nothing matches."""
-        found: list[_Unmatched] = []
+        """Return the literals of the rules of one file that match no fact."""
+        candidates: list[_Unmatched] = []
         matched: defaultdict[tuple[Signature | None, frozenset[Symbol]], set[int]] = defaultdict(set)
         for number, clause in enumerate(program):
             head = clause.head.signature if clause.head is not None else None
-            parts = (*clause.body, *(part for _, condition in clause.others for part in condition))
+            parts = (*clause.body, *(conjunct for _, condition in clause.others for conjunct in condition))
             for literal, scope in _literals(parts, ()):
                 rows = self._rows(literal, (*clause.body, *scope))
                 constants = frozenset(symbol for row in rows for symbol in row.values())
@@ -95,52 +96,64 @@ class _Search:
                 elif rows:
                     begin = literal.arguments[next(iter(rows[0]))].location.begin
                     source = Source(begin.filename, begin.line, begin.column)
-                    found.append(_Unmatched(number, head, constants, self._message(literal, rows), source))
-        return (each for each in found if not matched[each.head, each.constants] - {each.clause})
+                    candidates.append(
+                        _Unmatched(number, head, constants, self._message(literal, rows), source)
+                    )
+        return (
+            literal
+            for literal in candidates
+            if not matched[literal.head, literal.constants] - {literal.clause}
+        )
 
-    def _rows(self, literal: Literal, parts: Iterable[Part]) -> Sequence[Mapping[int, Symbol]]:
-        """Return the values that a literal over a fact asks for, by place; none where it asks for none."""
-        known = self._arguments(literal, self._bound(parts)) if literal.signature in COLUMNS else {}
-        combinations = list(islice(product(*known.values()), _MAX_COMBINATIONS + 1)) if known else []
+    def _rows(self, literal: Literal, conjuncts: Iterable[Conjunct]) -> Sequence[Mapping[int, Symbol]]:
+        """Return the combinations of values that a literal over a fact requires, by position."""
+        values_by_position = (
+            self._arguments(literal, self._bound(conjuncts)) if literal.signature in COLUMNS else {}
+        )
+        combinations = (
+            list(islice(product(*values_by_position.values()), _MAX_COMBINATIONS + 1))
+            if values_by_position
+            else []
+        )
         if len(combinations) > _MAX_COMBINATIONS:
             return []
-        return [dict(zip(known, each, strict=True)) for each in combinations]
+        return [dict(zip(values_by_position, combination, strict=True)) for combination in combinations]
 
     def _matches(self, literal: Literal, row: Mapping[int, Symbol]) -> bool:
-        wanted = {place: plain_value(symbol) for place, symbol in row.items()}
+        wanted = {position: plain_value(symbol) for position, symbol in row.items()}
         return self._values.matches(literal.signature[0], COLUMNS[literal.signature], wanted)
 
     def _arguments(self, literal: Literal, bound: _Values) -> dict[int, Sequence[Symbol]]:
-        """Return the values of arguments, by place, where they are known and set."""
-        found: dict[int, Sequence[Symbol]] = {}
-        for place, argument in enumerate(literal.arguments):
+        """Return the possible values of arguments, by position, where they are known and set."""
+        values_by_position: dict[int, Sequence[Symbol]] = {}
+        for position, argument in enumerate(literal.arguments):
             if argument.ast_type == ASTType.Variable:
                 symbols = bound.get(argument.name, ())
             else:
-                known = value(argument, self._constants)
-                symbols = () if known is None else (known,)
+                symbol = value(argument, self._constants)
+                symbols = () if symbol is None else (symbol,)
             if symbols and all(map(_is_set, symbols)):
-                found[place] = symbols
-        return found
+                values_by_position[position] = symbols
+        return values_by_position
 
-    def _bound(self, parts: Iterable[Part]) -> dict[str, Sequence[Symbol]]:
-        """Return the values that equations and lists of facts in a body leave its variables."""
-        found: dict[str, Sequence[Symbol]] = {}
-        for part in parts:
-            if isinstance(part, Test) and (equation := _equation(part.ast)) is not None:
+    def _bound(self, conjuncts: Iterable[Conjunct]) -> dict[str, Sequence[Symbol]]:
+        """Return the possible values of variables under the equations and listed facts of a body."""
+        values: dict[str, Sequence[Symbol]] = {}
+        for conjunct in conjuncts:
+            if isinstance(conjunct, Test) and (equation := _equation(conjunct.ast)) is not None:
                 for one, other in (equation, equation[::-1]):
                     symbol = value(other, self._constants)
                     if one.ast_type == ASTType.Variable and symbol is not None:
-                        found[one.name] = (symbol,)
-            elif isinstance(part, Literal) and part.positive:
-                for place, argument in enumerate(part.arguments):
-                    symbols = self._lists.get((part.signature, place))
+                        values[one.name] = (symbol,)
+            elif isinstance(conjunct, Literal) and conjunct.positive:
+                for position, argument in enumerate(conjunct.arguments):
+                    symbols = self._lists.get((conjunct.signature, position))
                     if symbols and argument.ast_type == ASTType.Variable:
-                        found.setdefault(argument.name, symbols)
-        return found
+                        values.setdefault(argument.name, symbols)
+        return values
 
     def _find_lists(self, program: Sequence[Clause]) -> dict[tuple[Signature, int], Sequence[Symbol]]:
-        """Return the values of predicates that facts alone define, by argument."""
+        """Return the values of predicates that facts alone define, by predicate and position."""
         rows: defaultdict[Signature, list[list[Symbol | None]]] = defaultdict(list)
         derived = {
             head.signature for clause in program if clause.body or not clause.plain for head in clause.heads
@@ -149,55 +162,63 @@ class _Search:
             if clause.head is not None and clause.head.signature not in derived | COLUMNS.keys():
                 row = [value(argument, self._constants) for argument in clause.head.arguments]
                 rows[clause.head.signature].append(row)
-        found: dict[tuple[Signature, int], Sequence[Symbol]] = {}
+        columns: dict[tuple[Signature, int], Sequence[Symbol]] = {}
         for signature, listed in rows.items():
-            for place in range(signature[1]):
-                symbols = [row[place] for row in listed]
+            for position in range(signature[1]):
+                symbols = [row[position] for row in listed]
                 if None not in symbols:
-                    found[signature, place] = [each for each in dict.fromkeys(symbols) if each is not None]
-        return found
+                    columns[signature, position] = [
+                        symbol for symbol in dict.fromkeys(symbols) if symbol is not None
+                    ]
+        return columns
 
     def _message(self, literal: Literal, rows: Sequence[Mapping[int, Symbol]]) -> str:
         name, columns = literal.signature[0], COLUMNS[literal.signature]
         variables = {
-            place: argument.name
-            for place, argument in enumerate(literal.arguments)
+            position: argument.name
+            for position, argument in enumerate(literal.arguments)
             if argument.ast_type == ASTType.Variable
         }
         listed = [
-            f"{variables[place]} = {' or '.join(_few([str(row[place]) for row in rows]))}"
-            for place in rows[0]
-            if place in variables
+            f"{variables[position]} = {' or '.join(_shortened([str(row[position]) for row in rows]))}"
+            for position in rows[0]
+            if position in variables
         ]
-        constant = {place: str(symbol) for place, symbol in rows[0].items() if place not in variables}
+        constant = {
+            position: str(symbol) for position, symbol in rows[0].items() if position not in variables
+        }
         text = f"nothing in this network matches {_text(literal, constant)}"
         text += f" with {' and '.join(listed)}" if listed else ""
-        for place in rows[0]:
-            symbol = rows[0][place]
-            if place in (*columns.units, *columns.objects) and symbol.type is not SymbolType.Number:
-                kind, words = ("unit", "motion(U") if place in columns.units else ("object node", "label(O")
+        for position in rows[0]:
+            symbol = rows[0][position]
+            if position in (*columns.units, *columns.objects) and symbol.type is not SymbolType.Number:
+                kind, words = (
+                    ("unit", "motion(U") if position in columns.units else ("object node", "label(O")
+                )
                 variable = words[-1]
                 return (
                     f"{text}: {variable} is the number of {'a' if kind == 'unit' else 'an'} {kind} there; "
                     f"{words},{quote(_word(symbol))}) says which it is"
                 )
-            if place in (*columns.units, *columns.objects):
-                if not self._values.matches(name, columns, {place: symbol.number}):
-                    return f"{text}: no {'unit' if place in columns.units else 'object node'} has that number"
-            elif place in columns.numbers and symbol.type is not SymbolType.Number:
+            if position in (*columns.units, *columns.objects):
+                if not self._values.matches(name, columns, {position: symbol.number}):
+                    return (
+                        f"{text}: no {'unit' if position in columns.units else 'object node'} has that number"
+                    )
+            elif position in columns.numbers and symbol.type is not SymbolType.Number:
                 return f"{text}: a number stands there"
         for row in rows:
-            texts = {place: _word(symbol) for place, symbol in row.items() if place in columns.texts}
+            texts = {position: _word(symbol) for position, symbol in row.items() if position in columns.texts}
             meant = self._values.nearest(name, columns, texts) if texts else None
             if meant is not None:
-                put = {place: quote(word) for place, word in meant.items()}
-                shown = {place: constant.get(place, "") for place in constant} | put
+                put = {position: quote(word) for position, word in meant.items()}
+                shown = {position: constant.get(position, "") for position in constant} | put
                 return f"{text}; did you mean {_text(literal, shown)}?"
         if any(
-            row[place].type is not SymbolType.String
+            row[position].type is not SymbolType.String
             for row in rows
-            for place in columns.texts
-            if place in row
+            for position in columns.texts
+            if position in row
         ):
             return f"{text}: names are texts, in quotes"
         return text
@@ -206,30 +227,32 @@ class _Search:
 def _unlisted(
     program: Sequence[Clause], constants: Constants, values: FactValues
 ) -> list[tuple[Clause, str]]:
-    """Find facts for a list of ready-made constraints where none of them names what the network has."""
-    said: defaultdict[Signature, list[tuple[Clause, str]]] = defaultdict(list)
+    """Return warnings for listed facts of ready-made constraints where no listed name is in the network."""
+    listed: defaultdict[Signature, list[tuple[Clause, str]]] = defaultdict(list)
     for clause in program:
         if clause.head is not None and clause.head.signature in LISTED_FACTS and not clause.body:
             symbol = value(clause.head.arguments[0], constants)
             if symbol is not None and _is_set(symbol):
-                said[clause.head.signature].append((clause, _word(symbol)))
+                listed[clause.head.signature].append((clause, _word(symbol)))
     return [
         (clause, unknown_text(facts, word, nearest_text(facts, word, values)))
-        for facts, words in ((LISTED_FACTS[signature], each) for signature, each in said.items())
+        for facts, words in ((LISTED_FACTS[signature], named) for signature, named in listed.items())
         if not any(has_text(facts, word, values) for _, word in words)
         for clause, word in words
     ]
 
 
-def _literals(parts: Iterable[Part], scope: tuple[Part, ...]) -> Iterator[tuple[Literal, tuple[Part, ...]]]:
-    """Return the literals in parts of a body, each with the parts that hold only beside it."""
-    for part in parts:
-        if isinstance(part, Literal):
-            yield part, scope
-        elif isinstance(part, Conditional):
-            yield from _literals((part.literal, *part.condition), part.condition)
-        elif isinstance(part, Aggregate):
-            for element in part.elements:
+def _literals(
+    conjuncts: Iterable[Conjunct], scope: tuple[Conjunct, ...]
+) -> Iterator[tuple[Literal, tuple[Conjunct, ...]]]:
+    """Return the literals in conjuncts of a body, each with the other conjuncts of its condition."""
+    for conjunct in conjuncts:
+        if isinstance(conjunct, Literal):
+            yield conjunct, scope
+        elif isinstance(conjunct, Conditional):
+            yield from _literals((conjunct.literal, *conjunct.condition), conjunct.condition)
+        elif isinstance(conjunct, Aggregate):
+            for element in conjunct.elements:
                 yield from _literals(element.condition, element.condition)
 
 
@@ -245,7 +268,7 @@ def _equation(node: AST) -> tuple[AST, AST] | None:
 
 
 def _is_set(symbol: Symbol) -> bool:
-    """Whether a value is none of those that stand for a constant that is not set."""
+    """Whether a value is set: an empty text, ``#inf`` and ``#sup`` stand for an unset constant."""
     unset = symbol.type is SymbolType.String and not symbol.string
     return not unset and symbol.type not in {SymbolType.Infimum, SymbolType.Supremum}
 
@@ -255,11 +278,11 @@ def _word(symbol: Symbol) -> str:
 
 
 def _text(literal: Literal, arguments: Mapping[int, str]) -> str:
-    """Return a literal without its ``not``, with other arguments at places."""
-    shown = [arguments.get(place, str(each)) for place, each in enumerate(literal.arguments)]
+    """Return a literal without its ``not``, with arguments replaced by position."""
+    shown = [arguments.get(position, str(argument)) for position, argument in enumerate(literal.arguments)]
     return f"{literal.signature[0]}({','.join(shown)})"
 
 
-def _few(words: Sequence[str]) -> list[str]:
+def _shortened(words: Sequence[str]) -> list[str]:
     words = list(dict.fromkeys(words))
     return [*words[:_SHOWN], "..."] if len(words) > _SHOWN else words

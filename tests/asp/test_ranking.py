@@ -31,7 +31,7 @@ def ranked_units(problem: Problem, *objectives: Objective, **settings: Any) -> l
     assert not ranked.complete
     found = list(ranked)
     assert found == [(units, problem.costs(units)) for units in units_of(found)]
-    assert (ranked.complete, ranked.known) == (True, [])
+    assert (ranked.complete, ranked.pending) == (True, [])
     return units_of(found)
 
 
@@ -110,8 +110,8 @@ def stopped(problem: Problem, objective: Objective, **settings: Any) -> tuple[li
     ranked = Ranked(problem, [objective], Settings(**settings))
     given = units_of(list(ranked))
     assert not ranked.complete
-    assert ranked.known == [(units, problem.costs(units)) for units in units_of(ranked.known)]
-    return given, units_of(ranked.known)
+    assert ranked.pending == [(units, problem.costs(units)) for units in units_of(ranked.pending)]
+    return given, units_of(ranked.pending)
 
 
 def test_what_was_found_before_a_limit_is_known(monkeypatch: pytest.MonkeyPatch) -> None:

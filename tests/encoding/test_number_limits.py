@@ -14,9 +14,9 @@ import foon_asp
 from foon_asp.asp import Settings, solve
 from foon_asp.grounding.exact import LARGEST
 from foon_asp.grounding.ground_program import GroundProgram
-from foon_asp.grounding.number_checks import PLACE
+from foon_asp.grounding.number_checks import CHECKS_FILE
 from foon_asp.grounding.parsing import parse
-from foon_asp.grounding.run import Heard, ProgramError
+from foon_asp.grounding.run import FoundAnswer, ProgramError
 from foon_asp.grounding.stated import Stated
 from foon_asp.problem import Problem
 from foon_asp.rules.constraint import RuleText
@@ -38,12 +38,12 @@ def checked(rules: str) -> GroundProgram:
     statements: list[AST] = []
     stated = Stated("rule 1", rules)
     parse(stated, statements.append, lambda *_: None)
-    return GroundProgram([stated, Stated(PLACE, number_checks(statements))], "", [])
+    return GroundProgram([stated, Stated(CHECKS_FILE, number_checks(statements))], "", [])
 
 
 def answers(program: GroundProgram, predicate: tuple[str, int]) -> set[frozenset[int]]:
     """Give the numbers that a predicate has in each of all answers."""
-    found: list[Heard] = []
+    found: list[FoundAnswer] = []
     program.search("ignore", [predicate], found.append, lambda _: None)
     return {frozenset(row[0] for row in heard.rows[predicate[0]]) for heard in found}
 

@@ -62,7 +62,7 @@ def asked(seeds: range) -> Iterator[tuple[Problem, list[dict[str, Any]], ReadyMa
                 limit = {"limited_motion": most, "max_uses": motions.count(most) - 1}
                 drawn["at_most_motion"] = {"rule": "at_most_motion", **limit}
             ready = known(problem, settings_of([*drawn.values()]))
-            if ready.rest:
+            if ready.unsettled:
                 yield problem, [*drawn.values()], ready, found
 
 

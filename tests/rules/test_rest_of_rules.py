@@ -184,7 +184,7 @@ def test_units_that_mattered_before_may_be_any(seeds: Sequence[int], monkeypatch
             if seed % 2:
                 patch.setattr(exact_success, "_scale", lambda _: 2)
             for before in (None, known, known):  # and those that mattered in this one
-                outcome = solve(problem, [*map(Objective, names)], settings, known=before)
+                outcome = solve(problem, [*map(Objective, names)], settings, mattered=before)
                 assert outcome.status is (Status.INFEASIBLE if best is None else Status.OPTIMAL), seed
                 met[outcome.status] += 1
                 if outcome.units is not None:
@@ -196,7 +196,7 @@ def test_units_that_mattered_before_may_be_any(seeds: Sequence[int], monkeypatch
 def test_units_that_matter_are_told() -> None:
     known = set[int]()
     for _ in range(2):
-        outcome = solve(LOOSE, (UNITS,), Settings((given_constraint(APART),)), known=known)
+        outcome = solve(LOOSE, (UNITS,), Settings((given_constraint(APART),)), mattered=known)
         assert outcome.costs is not None
         assert outcome.costs.units == 6
         assert known > {2, 4, 12, 13, 14}
