@@ -19,8 +19,8 @@ from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.questions.caller import Caller, asked_by
-from foon_asp.questions.contract import Part, Question, question_of
-from foon_asp.questions.each import Each
+from foon_asp.questions.contract import Question, Role, question_of
+from foon_asp.questions.each_goal import EachGoal
 from foon_asp.questions.index import module_name, question_name
 from foon_asp.questions.posing import no_data, one_problem
 from foon_asp.questions.posing_plan import a_plan, settle_data
@@ -34,9 +34,9 @@ def find_question(verb: str) -> Question:
     return question_of(getattr(module, question_name(verb)))
 
 
-def parameters(question: Question, given: Mapping[str, Any], parts: Part) -> dict[str, Any]:
+def parameters(question: Question, given: Mapping[str, Any], parts: Role) -> dict[str, Any]:
     """Give the values of the options that belong to these parts."""
-    own = (option.name for option in question.options if option.part & parts)
+    own = (option.name for option in question.options if option.role & parts)
     return {name: given[name] for name in own if name in given}
 
 
@@ -57,11 +57,11 @@ def ask(
         if question.pose is not no_data or "time_limit" in {option.name for option in question.options}:
             progress.begin()  # there is a tree to wait for
         with asked_by(who._replace(read_seconds=command.read_seconds)):
-            how = parameters(question, given, Part.QUESTION | Part.COMMAND)
+            how = parameters(question, given, Role.QUESTION | Role.COMMAND)
             found = [question.command(*about, **how) for about in posed]
     if len(found) == 1:
         return found[0]
-    return Each(answers=tuple(found))
+    return EachGoal(answers=tuple(found))
 
 
 def _warn_of_measures(command: "_Command", given: Mapping[str, Any]) -> None:
@@ -83,7 +83,7 @@ def _warn_of_measures(command: "_Command", given: Mapping[str, Any]) -> None:
 
 def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """Pose a question: once, or for each of several goals that were assumed. What is assumed is said."""
-    asked = parameters(question, given, Part.PROBLEM)
+    asked = parameters(question, given, Role.PROBLEM)
     tree = given.get("tree")
     if question.pose is not a_plan and tree is not None and tree.is_file():  # a pipe is read once
         listed = read_answer(tree)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from foon_asp.batch.asked import Asked
+from foon_asp.batch.batch_question import BatchQuestion
 from foon_asp.cli import options
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.comparison.many import makeable
@@ -60,7 +60,7 @@ class BatchData:
         """A question of these data, by which rules for all of them are looked over."""
         return self._datasets[None].problem((0,), "strict")
 
-    def problem(self, asked: Asked) -> Problem:
+    def problem(self, asked: BatchQuestion) -> Problem:
         """Pose a question; what its goals can need of a large store is read when it is looked at."""
         dataset = self._with(asked.kitchen)
         stock, stays = (None if file is None else NamedPath(file) for file in (asked.stock, asked.stays))

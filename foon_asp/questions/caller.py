@@ -42,13 +42,13 @@ def caller() -> Caller:
 
 
 def is_python() -> bool:
-    """Whether it is Python that asks, and no command."""
+    """Whether the caller is Python, and no command."""
     return _CALLER.get() is None
 
 
 @contextlib.contextmanager
 def asked_by(who: Caller) -> Iterator[None]:
-    """Let somebody else ask in a ``with`` block."""
+    """Set the caller inside a ``with`` block."""
     token = _CALLER.set(who)
     try:
         yield

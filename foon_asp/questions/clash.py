@@ -123,34 +123,34 @@ class Clash(Value, frozen=True, kw_only=True):
             yield from note
 
 
-def find_clash(problem: Problem, how: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
-    """Find a smallest clash and the cheapest constraints to drop, of those in some settings.
+def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
+    """Find a smallest clash of the constraints in ``settings`` (smallest MUS), and the cheapest ones to drop.
 
     ``own_weights`` says what it costs to drop a rule of a constraint, 1 where it says nothing. The smallest
     clash is found by implicit hitting sets (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS
     Extraction with Minimal Hitting Set Dualization, CP 2015): a smallest set with one of every correction
     known so far, until it is a clash itself.
     """
-    deadline = how.begun
-    how = how._replace(deadline=deadline)
-    constraints, relaxed = relax(how.constraints, how.constants, soft=False, deadline=deadline)
+    deadline = settings.begun
+    settings = settings._replace(deadline=deadline)
+    constraints, relaxed = relax(settings.constraints, settings.constants, soft=False, deadline=deadline)
     weight_of = {find_constraint(c): weight for c, weight in own_weights.items()}
     by_number = {
-        each.number: WeightedConstraint(**asdict(each.listed), weight=weight_of.get(each.constraint, 1))
-        for each in constraints
+        rule.number: WeightedConstraint(**asdict(rule.listed), weight=weight_of.get(rule.constraint, 1))
+        for rule in constraints
     }
-    weights = {number: each.weight for number, each in by_number.items()}
-    how = how._replace(relaxed=relaxed)
-    program = assemble(how, caller().reporter.warning, problem=problem)
+    weights = {number: constraint.weight for number, constraint in by_number.items()}
+    settings = settings._replace(relaxed=relaxed)
+    program = assemble(settings, caller().reporter.warning, problem=problem)
     blame = (question_encoding("blame.lp"),)
 
-    def clash(**known: Any) -> Clash:
-        return Clash(constraints=tuple(by_number.values()), **known)
+    def clash(**fields: Any) -> Clash:
+        return Clash(constraints=tuple(by_number.values()), **fields)
 
     def those(numbers: Iterable[int]) -> tuple[WeightedConstraint, ...]:
         return tuple(by_number[number] for number in sorted(numbers))
 
-    first = prepare(problem, _OBJECTIVES, how, program)
+    first = prepare(problem, _OBJECTIVES, settings, program)
     if first.stopped:
         return clash(complete=False)
     if first.tree is None:

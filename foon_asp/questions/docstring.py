@@ -14,7 +14,7 @@ _ENTRY = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
 
 
 def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
-    """Return what the docstring of a function says of its parameters, by name."""
+    """Return the entries of the ``Parameters`` section of a docstring, by name."""
     if ask.__doc__ is None:  # python -OO
         return {}
     own = inspect.cleandoc(ask.__doc__).partition("Parameters:\n")[2].partition("\n\n")[0]
@@ -32,7 +32,7 @@ def complete_docstring(
     """
     if ask.__doc__ is None:  # python -OO
         return None
-    known = {"problem": _PROBLEM, **texts, **docstring_entries(ask)}
+    text_of = {"problem": _PROBLEM, **texts, **docstring_entries(ask)}
     written = inspect.cleandoc(ask.__doc__)
     before, heading, after = written.partition("Parameters:\n")
     if heading:
@@ -40,7 +40,7 @@ def complete_docstring(
     else:
         before, heading, after = written.partition("Returns:\n")
         after = heading + after
-    entries = (_entry(name, known[name]) for name in signature.parameters if name in known)
+    entries = (_entry(name, text_of[name]) for name in signature.parameters if name in text_of)
     return f"{before}Parameters:\n{''.join(entries)}\n{after}\n"
 
 

@@ -27,9 +27,9 @@ class Facts(AboutGoals, frozen=True, kw_only=True, tag=schema_name("facts")):
 
 
 def facts_of(
-    problem: Problem, objectives: Sequence[Objective], how: Settings, soft: Mapping[Constraint, int]
+    problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> Facts:
-    """Return what the solver is given for a problem under rules; ``soft`` ones have a weight each."""
-    program = printed_program(problem, objectives, how, soft).text
+    """Return the facts and rules that the solver gets; ``soft`` maps soft constraints to weights."""
+    program = printed_program(problem, objectives, settings, soft).text
     lines = program.rstrip("\n").split("\n")  # a name may hold what other letters end a line
     return Facts(**head_of(problem, objectives), facts=tuple(lines))

@@ -71,12 +71,12 @@ def one_problem(
         named = dataset.each_goal(goals_named) if all_goals else dataset.goals(goals_named)
         if not named:
             raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
-        how = items_of(dataset, items, stock, stays)
-        return (dataset.nearby(tuple(dict.fromkeys(named)), containers, how),)
+        used_up = items_of(dataset, items, stock, stays)
+        return (dataset.nearby(tuple(dict.fromkeys(named)), containers, used_up),)
 
 
 def the_data(command: Command) -> "tuple[Foon]":
-    """Ask about the data as a whole."""
+    """Return the data as the subject of a question."""
     from foon_asp.foon import Foon  # noqa: PLC0415 (for few questions)
 
     return (Foon(command.dataset, "the data"),)
@@ -99,5 +99,5 @@ def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
 
 
 def no_data(command: Command, **named: object) -> tuple[object, ...]:
-    """Ask about something that the question names itself; its command has no options for data."""
+    """Return the values of the question's own options; its command has no options for data."""
     return tuple(named.values())

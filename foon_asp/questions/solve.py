@@ -10,8 +10,8 @@ from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.questions.arguments import Objectives, chosen_objectives, constraint_weights, read, whole
-from foon_asp.questions.contract import TABLES, Kind, Option, Part, not_built, question
-from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.common_options import CommonOptions, settings_of
+from foon_asp.questions.contract import TABLES, Kind, Option, Role, not_built, question
 from foon_asp.questions.options import ITEMS, SOFT, TREE
 from foon_asp.questions.result import Result
 from foon_asp.reduce import Reduction, parse_reductions
@@ -27,7 +27,7 @@ def solve_or_each(
     cross_check: bool = False,
     clingo_options: Sequence[str] = (),
     all_goals: bool = False,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Result:
     """Solve as ``foon-asp solve`` does: all goals by one tree, or each by itself."""
     if not all_goals:
@@ -39,7 +39,7 @@ def solve_or_each(
             certificate=certificate,
             cross_check=cross_check,
             clingo_options=clingo_options,
-            **how,
+            **options,
         )
     from foon_asp.questions.all_goals import solve_all_goals  # noqa: PLC0415
 
@@ -48,7 +48,7 @@ def solve_or_each(
             "--all-goals lists what each goal costs: ask for soft constraints, a certificate or a "
             "cross-check of one goal (--goal)"
         )
-    return solve_all_goals(problem, objectives, **how)
+    return solve_all_goals(problem, objectives, **options)
 
 
 @question(
@@ -58,7 +58,7 @@ def solve_or_each(
         "all_goals",
         "Solve every goal that --goal or the goals file names by itself, under each --objective by itself.",
         Kind.FLAG,
-        Part.PROBLEM | Part.QUESTION,
+        Role.PROBLEM | Role.QUESTION,
         default=False,
     ),
     formats=(*TABLES, "foon", "steps"),
@@ -108,7 +108,7 @@ def solve(
         ),
     ] = (),
     reporter: Reporter | None = None,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Answer:
     """Find the best task tree for the goals of a problem, and prove that no other is better.
 
@@ -147,7 +147,7 @@ def solve(
         ['open', 'turn on', 'fill']
     """
     chosen = chosen_objectives(problem, objectives)
-    settings = settings_of(how)._replace(
+    settings = settings_of(options)._replace(
         reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
     )
     weights = constraint_weights(soft or {})
