@@ -19,21 +19,21 @@ from foon_asp.results.plain import costs_by_name, exact_measures, plain, read_pl
 from foon_asp.results.values import Figure
 
 Figures = dict[str, Figure | None]
-"""What is measured, by the name of the objective."""
+"""Measures by the name of the objective."""
 
 
 class AnswerRow(BatchQuestion, frozen=True, kw_only=True):
-    """An answer: a question, and what came of it.
+    """A question of a batch, and its answer.
 
     Attributes:
-        error: Why there is no tree, if there is none.
-        proof: What proves it.
-        costs: What the tree costs by every objective, null where nothing is known, and its ingredients.
+        error: Why there is no tree, or null.
+        proof: The kind of proof, or null.
+        costs: The costs of the tree by every objective, null if unknown, and its ingredients.
         lower_bound: By objective, the best value that a tree can still have.
         runs_used_up: Whether the tree runs where items are used up; null without a tree, and where that is
             not known.
         units: Unit ids in an order that executes.
-        seconds: How long it took.
+        seconds: The time of the answer.
     """
 
     status: Literal["optimal", "infeasible", "feasible", "unknown", "failed"]
@@ -74,7 +74,7 @@ def answer_row(
         if outcome is None:
             with deadline.watched("reading", late=True):
                 problem = problem.whole if asks_of_all(problem, settings) else problem
-                assert problem.goals  # what they can need is read when it is looked at
+                assert problem.goals  # reads the units that the goals can need
             outcome = solve(problem, objectives, settings)
         row = _answered(question, outcome)
     except LimitError as limit:

@@ -12,9 +12,9 @@ from foon_asp.batch.answer_row import AnswerRow, answer_row, failed_row
 from foon_asp.batch.batch_question import Asker, BatchQuestion, Opener
 from foon_asp.errors import UserError
 
-_PATIENCE = "10s"  # until there has to be an answer from the scheduler
-_TASKS_AHEAD: Final = 2  # on their way for each thread of the cluster, so that none waits for the next
-_QUESTIONS_PER_TASK: Final = 32  # of a task: Dask takes some milliseconds for each task
+_PATIENCE = "10s"  # time limit for an answer from the scheduler
+_TASKS_AHEAD: Final = 2  # tasks queued for each thread of the cluster, so that no thread waits
+_QUESTIONS_PER_TASK: Final = 32  # Dask takes some milliseconds for each task
 _TASK_SECONDS: Final = 0.5  # after which a task begins with no further question
 
 

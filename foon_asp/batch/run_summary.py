@@ -1,4 +1,4 @@
-"""What came of a run of many questions."""
+"""The summary of a batch run."""
 
 import statistics
 from collections import Counter
@@ -11,21 +11,21 @@ from foon_asp.results.document import Document, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.text.json_value import schema_name
 
-_MAX_SHOWN = 3  # errors, of possibly thousands
+_MAX_SHOWN = 3  # errors listed, of possibly thousands
 
 
 class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
-    """What came of a run of many questions.
+    """The summary of a batch run.
 
     Attributes:
-        questions: How many there are.
-        answered_before: How many had an answer from an earlier run.
-        answered: How many were answered by this run.
-        statuses: How many answers there are of each status.
-        proofs: How many answers of this run are proved by what.
-        seconds_median: Of an answer of this run.
-        seconds_worst: The greatest of an answer of this run.
-        seconds: How long the run took.
+        questions: The number of questions.
+        answered_before: The number of questions answered by an earlier run.
+        answered: The number of questions answered by this run.
+        statuses: The number of answers by status.
+        proofs: The number of answers of this run by kind of proof.
+        seconds_median: The median time of an answer of this run.
+        seconds_worst: The greatest time of an answer of this run.
+        seconds: The time of the run.
     """
 
     questions: int

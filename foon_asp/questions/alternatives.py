@@ -34,7 +34,7 @@ from foon_asp.results.values_of import costed_tree, head_of, mention_of, node_of
 from foon_asp.text.json_value import schema_name
 
 _MAX_SHOWN = 20  # trees that are listed one by one for people
-_MAX_PICTURES = 4  # that a notebook shows
+_MAX_PICTURES = 4  # trees drawn in a notebook
 
 
 class Way(Value, frozen=True):
@@ -293,7 +293,7 @@ def _values(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) ->
 def _partings(problem: Problem, trees: Sequence[frozenset[int]]) -> Iterator[Parting]:
     """Yield the nodes where trees part, from the goals back: of all, then of groups that agree so far."""
     groups = [tuple(range(len(trees)))]
-    for group in groups:  # grows on the way
+    for group in groups:  # grows during the loop
         for o, ways in _ways(problem, {index: trees[index] for index in group}):
             mentions = [tuple(mention_of(problem.network, unit) for unit in made) for made in ways]
             places = map(tuple, ways.values())
@@ -309,10 +309,12 @@ def _ways(
     Each node comes with the indices of trees by the units that make it in them.
     """
     queue = list(problem.goals)
-    for o in queue:  # grows on the way
+    for o in queue:  # grows during the loop
         if o in problem.kitchen:
             continue
-        makers = [unit for unit in problem.makers[o] if o not in problem.needs[unit]]  # not handed on
+        makers = [
+            unit for unit in problem.makers[o] if o not in problem.needs[unit]
+        ]  # without units that only hand the node on
         ways: dict[tuple[int, ...], list[int]] = {}
         for index, tree in trees.items():
             ways.setdefault(tuple(unit for unit in makers if unit in tree), []).append(index)
@@ -401,7 +403,7 @@ def _ranked(
         if not worse_than_asked and len(trees) < max_trees:
             trees.append(_Listed(units, costs))
     unproved = len(trees) - settled
-    if settled and worse == 0:  # what is as good as an optimal tree is optimal
+    if settled and worse == 0:  # a tree with the costs of an optimal tree is optimal
         unproved = 0
     return _Pool(tuple(trees), complete, unproved)
 

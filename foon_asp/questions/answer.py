@@ -1,4 +1,4 @@
-"""The best tree for a problem, and what is proved of it."""
+"""The best tree for a problem, and its proof."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
@@ -26,7 +26,7 @@ from foon_asp.results.values_of import head_of, steps_of, used_up_of
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.writer import write_units
 
-if TYPE_CHECKING:  # what a command that prints an answer can do without
+if TYPE_CHECKING:  # slow to import, and not needed to print an answer
     from foon_asp.certificate import Certificate
     from foon_asp.dataset.nearby import Nearby
     from foon_asp.pictures.drawing import Drawing
@@ -84,14 +84,14 @@ class Serving(Value, frozen=True):
 
 
 class EngineCheck(Value, frozen=True):
-    """What came of asking another engine.
+    """The check of an answer by another engine.
 
     Attributes:
-        package: The package of an engine that is not ours, or null.
-        checked: Whether it has checked the answer.
-        agrees_by: The objectives by which it finds the tree best; none where it agrees that there is none.
-        disagrees: In what an engine of another package is wrong, or null.
-        reason: Why it has not checked the answer, or null.
+        package: The package of the engine; null for a built-in one.
+        checked: Whether the engine checked the answer.
+        agrees_by: The objectives by which the engine finds the tree optimal; empty if no tree exists.
+        disagrees: The error in the answer of an engine of another package, or null.
+        reason: Why the engine did not check the answer, or null.
     """
 
     engine: str
@@ -104,12 +104,12 @@ class EngineCheck(Value, frozen=True):
 
 
 class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
-    """The best task tree, and what is proved of it.
+    """The best task tree, and its proof.
 
     Attributes:
         encodings: The folder that replaced the built-in encodings, if any: they then define what is best.
-        status: optimal: proved best; feasible: stopped at a limit with a tree; infeasible: proved that there
-            is none; unknown: stopped without one.
+        status: optimal: proved best; feasible: stopped at a limit with a tree; infeasible: proved that no
+            tree exists; unknown: stopped without a tree.
         stopped: The limit that stopped an unproved answer, and what was being done.
         proof: What proves an optimal or infeasible answer; null for others.
         proof_by_objective: The same by objective, of an optimal answer.
@@ -121,12 +121,12 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         units: The steps of the tree, in an order that executes; null without a tree.
         seconds: The time of each phase.
         penalty: Under soft constraints, the sum of weight times ways over them; null without a tree.
-        soft_constraints: Every constraint that may be broken; none without a tree.
+        soft_constraints: Every constraint that may be broken; empty without a tree.
         goals_alone: Of several goals, the best tree for each by itself.
         sum_of_goals_alone: What these cost by the first objective, added up (success: multiplied); null
             if one has no tree.
         serves: Of several goals, those that each unit is needed for.
-        cross_check: What other engines say, where they are asked.
+        cross_check: The checks by other engines, where they are requested.
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
@@ -262,7 +262,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         return of_status(self.status)
 
     def show(self) -> Iterator[Block]:
-        """Return the goals, the claim, the steps, and notes; without a tree, why there is none."""
+        """Return the goals, the claim, the steps, and notes; without a tree, the reasons."""
         yield from (*self.goal_lines(), *self.findings(), *self.notes)
 
     def findings(self) -> Iterator[Block]:

@@ -50,7 +50,7 @@ class AssistedTree(Value, frozen=True):
 
     @property
     def success(self) -> Fraction | None:
-        """The product of the rates of those who do the units; ``None`` without a tree."""
+        """The success of the tree, with the person's rates for helped units; ``None`` without a tree."""
         return None if self.costs is None else self.costs.success
 
 

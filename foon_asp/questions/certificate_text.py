@@ -10,7 +10,7 @@ from foon_asp.network import counted
 from foon_asp.proof.constraint import Rule
 from foon_asp.proof.verify import trusted
 
-if TYPE_CHECKING:  # these rooms take clingo along, which `verify` has to do without
+if TYPE_CHECKING:  # takes clingo along, which `verify` must not load
     from foon_asp.asp import Outcome
     from foon_asp.certificate import Certificate
 
@@ -86,7 +86,7 @@ def looked_at(content: Mapping[str, Any]) -> str:
         return cuts
     nodes: set[int] = set()
     waiting = list(content["proof"])
-    for case in waiting:  # grows while it is walked through
+    for case in waiting:  # grows during the loop
         nodes.update(o for o, _ in case.get("balance", ()))
         waiting += (case[branch] for branch in ("up_to", "above") if branch in case)
     return f"{cuts}, the balance of {counted(len(nodes), 'node')}"

@@ -1,4 +1,4 @@
-"""Which constraints cannot hold together, and which to drop."""
+"""Clashing constraints: a smallest clash, and the cheapest constraints to drop."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any

@@ -199,7 +199,7 @@ def _options_of(ask: Callable[..., object]) -> Iterator[Option]:
 
 
 def _completed(option: Option, parameter: inspect.Parameter, texts: Mapping[str, str]) -> Option:
-    if option.name:  # one that several questions share, which may have another default
+    if option.name:  # an option shared by questions, whose default may differ
         default = parameter.default if isinstance(parameter.default, str | int) else option.default
         return option._replace(default=(default,) if option.many and isinstance(default, str) else default)
     kind = option.kind

@@ -13,7 +13,7 @@ from foon_asp.problem import Costs, Objective, Problem, levels, reach, relevant
 from foon_asp.problem.root import Root
 
 _SUCCESS = (Objective.SUCCESS,)
-_TINY = Fraction(1, 10**9)  # a rate at which a motion is as good as forbidden, mostly
+_TINY = Fraction(1, 10**9)  # a rate at which a motion is almost forbidden
 
 
 class _Tree(NamedTuple):

@@ -1,4 +1,4 @@
-"""What rules do, one by one, and what that means together."""
+"""The effect of rules, one by one and together."""
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
@@ -38,7 +38,7 @@ _TOGETHER = {
 
 
 class Remark(Value, frozen=True):
-    """What is said of a rule, and the place that it is about."""
+    """A remark on a rule, and its place."""
 
     text: str
     file: str
@@ -46,7 +46,7 @@ class Remark(Value, frozen=True):
 
 
 class ExplainedRule(Value, frozen=True):
-    """A rule, and what it does.
+    """A rule and its effect.
 
     Attributes:
         constraint: How a ready-made constraint was named that has constants of its own; null for others.
@@ -107,7 +107,7 @@ class ExplainedRule(Value, frozen=True):
 
 
 class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules")):
-    """What rules do, and what that means together.
+    """The effect of rules, one by one and together.
 
     Attributes:
         rules: Each rule, in order.

@@ -1,4 +1,4 @@
-"""A question for planners: PDDL, and what its names stand for."""
+"""Export for planners: PDDL, and the map of its names."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -34,12 +34,12 @@ _ITEM_RULES = ("lasting", _MERGED, "used-up")
 
 
 class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("export")):
-    """A planning task in PDDL, and what its names stand for.
+    """A planning task in PDDL, and the map of its names.
 
     Attributes:
         domain_file: The domain, in PDDL: a constant for each object node, an action for each unit.
-        problem_file: The problem, in PDDL: what is at hand, and the goals.
-        name_map: What the names of the planning task stand for.
+        problem_file: The problem, in PDDL: the kitchen, and the goals.
+        name_map: The object nodes and units behind the names of the planning task.
 
     Example:
         >>> exported = foon_asp.export(foon_asp.load().problem("ice"))
@@ -52,7 +52,7 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
     name_map: MapFile = field(name="map")
 
     task = Unserialized[PlanningTask]()
-    """The same as values."""
+    """The planning task as values."""
 
     written = Unserialized[Path | None](None)
     """The folder that the files were written into, if they were."""
@@ -119,7 +119,7 @@ def _posed(
 
 
 def _merged(problem: Problem, items: str | None) -> bool:
-    """Whether copies are merged; raises :class:`UserError` where that is not how the problem was posed."""
+    """Return whether copies are merged; raises :class:`UserError` if the problem was posed otherwise."""
     if items not in {None, *_ITEM_RULES}:
         raise UserError(f"found items={items!r}, expected one of {', '.join(_ITEM_RULES)}")
     if items is not None and (items == "lasting") is not (problem.items is None):

@@ -1,4 +1,4 @@
-"""What the solver is given for a goal, for bare clingo."""
+"""Facts and rules of a problem for bare clingo."""
 
 from collections.abc import Mapping, Sequence
 
@@ -12,7 +12,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Facts(AboutGoals, frozen=True, kw_only=True, tag=schema_name("facts")):
-    """What the solver is given.
+    """The facts and rules that the solver gets.
 
     Attributes:
         facts: Facts of clingo, some on a line, and with soft constraints rules.

@@ -23,7 +23,7 @@ class Flip(NamedTuple):
 
     @property
     def inwards(self) -> Fraction:
-        """The rate at which it is, rounded to a decimal on the side of the given rate."""
+        """The rate of the flip, rounded to a decimal on the side of the given rate."""
         digits = _MIN_DIGITS
         if self.at.rational == self.rate:
             return self.rate

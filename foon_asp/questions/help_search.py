@@ -97,7 +97,9 @@ class PricedHelp:
 
     def _at(self, price: Fraction) -> Outcome:
         if price not in self._outcomes:
-            reporter = Reporter() if self._outcomes else self._reporter  # the others ask something else
+            reporter = (
+                Reporter() if self._outcomes else self._reporter
+            )  # later searches have other objectives or bounds
             self._outcomes[price] = solve(self._at_price(price), _SUCCESS, self._settings, reporter)
         return self._outcomes[price]
 
@@ -129,7 +131,7 @@ class CountedHelp:
         twins = {number(twin): number(unit) for twin, unit in self._originals.items()}
         settings = self._settings._replace(bounded=assisted(twins, max_helped))
         outcome = solve(self._twins, _SUCCESS, settings, self._reporter)
-        self._reporter = Reporter()  # the others ask something else
+        self._reporter = Reporter()  # later searches have other objectives or bounds
         if outcome.units is None:
             return outcome._replace(problem=self._problem)
         units = tuple(self._originals.get(unit, unit) for unit in outcome.units)
@@ -195,7 +197,7 @@ def helped_trees(
             if any_number.status not in _PROVED:
                 break
             reached = wanted is not None and -_key(row)[0] >= wanted
-            # a number that is asked for is answered, since with more help fewer units may do
+            # a requested number is always solved, since more help may need fewer units
             done = (
                 _key(row) == _key(any_number)
                 if max_helped is not None

@@ -1,4 +1,4 @@
-"""What every function takes in Python: a time limit, who hears of progress, and a token that ends it."""
+"""The wrapper of public functions: paths or data for a problem, limits, progress and cancelling."""
 
 import functools
 import inspect
@@ -33,7 +33,7 @@ HELP = {
 
 
 class _Listener(Reporter):
-    """Passes on what is found to a function, and warnings to who asks."""
+    """A reporter that passes progress to a function, and warnings to the caller."""
 
     def __init__(self, tell: OnProgress, warned: Reporter) -> None:
         self._tell, self._warned = tell, warned
@@ -107,7 +107,7 @@ def posed_in_python(
     first = about[0] if about else named.pop(subject, None)
     if first is None:
         raise UserError(f"{name} of what? {name}('eggs.txt'), or {name}(foon_asp.load(), goal='macaroni')")
-    is_whole = subject == "about" and "goal" not in named  # what is asked about is the data
+    is_whole = subject == "about" and "goal" not in named  # the data themselves are the subject
     names = [option for option in _POSING if option in named and option in parameters and not is_whole]
     posing = {option: named.pop(option) for option in names}
     if isinstance(first, Problem) and posing:

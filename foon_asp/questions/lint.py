@@ -1,4 +1,4 @@
-"""What is wrong in FOON files, or doubtful."""
+"""Linting of FOON files: errors and doubtful places."""
 
 import dataclasses
 from collections import Counter
@@ -30,7 +30,7 @@ _MAX_TEXT = 1000  # letters of a line: thousands of findings on one would repeat
 
 
 class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
-    r"""What is wrong in FOON files.
+    r"""The findings of the linter in FOON files.
 
     Attributes:
         files: How many files were linted.
@@ -59,7 +59,7 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
 
     @property
     def ending(self) -> Ending:
-        """How it ended: negative where there are errors or warnings, for which notes do not count."""
+        """``NEGATIVE`` if there are errors or warnings; notes do not count."""
         bad = self.counts[Severity.ERROR] + self.counts[Severity.WARNING]
         return Ending.NEGATIVE if bad else Ending.DONE
 
@@ -149,7 +149,7 @@ def lint(
         select: The codes to report; all by default.
         ignore: Codes to leave out.
         baseline: A file of known findings, which are left out.
-        vocabulary: A file of names that are spelt correctly, in place of ours.
+        vocabulary: A file of names that are spelt correctly, in place of the bundled one.
         contents: The content of files that are not to be read from disk, by path.
 
     Returns:

@@ -39,7 +39,7 @@ from foon_asp.results.values import (
 from foon_asp.results.values_of import costed_tree, head_of
 from foon_asp.text.json_value import schema_name
 
-_MIN_OBJECTIVES, _MAX_OBJECTIVES = 2, 3  # objectives
+_MIN_OBJECTIVES, _MAX_OBJECTIVES = 2, 3
 
 Box = tuple[int | Fraction | None, ...]
 """For each objective but the first, what plans cost less than; ``None`` allows any cost."""
@@ -205,7 +205,7 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
 
 
 class _Point(NamedTuple):
-    """A tree of the front by unit ids in an order that executes, and what it costs."""
+    """A tree of the front by unit ids in an order that executes, and its costs."""
 
     units: tuple[int, ...]
     costs: Costs
@@ -271,14 +271,13 @@ def pareto(
         )
     settings = settings_of(options)
     problem = asked_with(problem, settings)
-    # One objective leads: success, which no sum can bound, if it is there, else one that is a fraction
-    # and may have to be rounded, else the first. Each tree is
-    # the best by the leading objective, then by the others, among those that are better than every tree
-    # before it by one of the others. What would be better than a tree everywhere, or as good and
-    # somewhere better, would be among those too, and come before it: so no tree found is dominated. When
-    # no tree is left, each tree there is was left out first with some tree that is as good as it by the
-    # others, and no worse by the leading objective, by which that tree was the best of those that were
-    # left. So every point of the front is there.
+    # Lexicographic epsilon-constraint method. The leading objective is success, if it is chosen, since no
+    # sum can bound it; else an objective with fractions, which a bound would round; else the first. Each
+    # tree is optimal by the leading objective, then by the others, among the trees that are better than
+    # every tree before by some other objective. A tree that dominates it would be among these, too, and
+    # would come first: so no tree found is dominated. In the end every tree is excluded, each first by a
+    # tree that is as good by the others, and no worse by the leading objective, by which that tree was
+    # optimal among the trees not excluded. So every point of the front is found.
     leading = min(chosen, key=lambda objective: (not multiplies(objective), objective.row.whole))
     order = leading, *(objective for objective in chosen if objective is not leading)
     began = time.monotonic()
@@ -294,7 +293,7 @@ def pareto(
             _require_apart(Postconditions(problem, chosen, settings), point, points)
             points.append(point)
     except KeyboardInterrupt:
-        complete = False  # what was found stands
+        complete = False  # the points found so far are on the front
     points.sort(key=lambda point: point.costs.key(chosen))
     seconds = round(time.monotonic() - began, 6)
     front = Front(
@@ -389,7 +388,7 @@ def _divided(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list[Box]
 
 
 def _require_apart(holds: Postconditions, point: _Point, points: Sequence[_Point]) -> None:
-    """Require that a point of the front is as good as no other, and that no other is as good as it."""
+    """Require that a point of the front neither weakly dominates another point nor is weakly dominated."""
     key = point.costs.key(holds.levels)
     for other in points:
         theirs = other.costs.key(holds.levels)

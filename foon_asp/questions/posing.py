@@ -1,4 +1,4 @@
-"""What a question is about, made of what a command line says and the data it names."""
+"""Posing: from the options and data of a command line to the problem of a question."""
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
@@ -21,7 +21,7 @@ class Command(Protocol):
 
     @property
     def dataset(self) -> Dataset:
-        """The data that it names; read when it is first looked at."""
+        """The data that the command names, read on first access."""
 
     @property
     def level(self) -> int:
@@ -29,10 +29,10 @@ class Command(Protocol):
 
     @property
     def names_data(self) -> bool:
-        """Whether it names a network."""
+        """Whether the command names a network."""
 
     def given(self, option: str) -> bool:
-        """Whether an option, by name, stands in its own words."""
+        """Return whether an option, by name, stands on the command line itself."""
 
     def unnamed_goals(self) -> list[ObjectNode]:
         """Return the goals that are answered one by one where none is named."""

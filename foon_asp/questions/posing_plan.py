@@ -1,4 +1,4 @@
-"""What a file with a tree or plan is about: the data, where none are named, and the goals."""
+"""Posing the problem of a file with a tree or plan: its goals, and its data if none are named."""
 
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path

@@ -32,7 +32,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Removal(StrEnum):
-    """What is left out: a unit of the network, all of one motion, one item of the kitchen, or two."""
+    """The kind of part left out: a unit, all units of a motion, one kitchen item, or two."""
 
     UNIT = "unit"
     MOTION = "motion"
@@ -46,19 +46,19 @@ _TITLES = {
     Removal.ITEM: "without from the kitchen",
     Removal.PAIR: "without both from the kitchen, where each alone can be done without",
 }
-_WIDTH = 8  # of a loss
+_WIDTH = 8  # columns of a loss
 
 
 class Regret(Value, frozen=True):
-    """The best that is left without one part of a question.
+    """The optimum without one part of a problem.
 
     Attributes:
         unit: The unit that is left out, or null.
         motion: The motion all units of which are left out, or null.
         item: The kitchen item that is left out, or null.
         second_item: The other kitchen item of a pair, or null.
-        costs: What the best tree costs then; null where there is no tree.
-        loss: By how much the best tree is then worse, or for success by what share.
+        costs: The costs of the best tree without the part; null without a tree.
+        loss: The loss of the best tree by each objective: a difference, or for success a share.
     """
 
     unit: Mention | None
@@ -71,7 +71,7 @@ class Regret(Value, frozen=True):
 
     @property
     def part(self) -> Removal:
-        """What is left out."""
+        """The kind of the part left out."""
         if self.item is not None:
             return Removal.ITEM if self.second_item is None else Removal.PAIR
         return Removal.MOTION if self.unit is None else Removal.UNIT
@@ -85,7 +85,7 @@ class Regret(Value, frozen=True):
         """Return in a few words how much worse the best tree is by an objective.
 
         Parameters:
-            objective: The objective, one of those asked for.
+            objective: One of the objectives of the question.
             what: The word for a solution, tree or plan.
         """
         if self.status is Status.INFEASIBLE:
@@ -102,7 +102,7 @@ class Regret(Value, frozen=True):
 
 
 class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
-    """What each unit and each item of the best tree is worth.
+    """The regret of each unit and each kitchen item of the best tree.
 
     Attributes:
         regrets: The greatest loss first; empty if there is no tree, or if it was not proved the best.

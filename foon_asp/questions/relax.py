@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class PlannedAction(Value, frozen=True):
-    """An action of a plan, and what it costs."""
+    """An action of a plan, and its cost."""
 
     action: str
     cost: Fraction
@@ -43,19 +43,19 @@ class PlannedAction(Value, frozen=True):
 
 
 class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
-    """The cheapest plan of a planning task without its deletes.
+    """The cheapest plan of the delete relaxation of a planning task.
 
     Attributes:
         task: The name of the file.
-        facts: How many there are.
-        actions: How many can ever run.
+        facts: The number of facts.
+        actions: The number of reachable actions.
         status: optimal: proved that no plan is cheaper, however many actions it has; infeasible: proved that
             there is no plan; feasible and unknown: stopped at a limit with or without one.
         stopped: For feasible and unknown: at which limit, and while doing what.
         certificate: The file with a proof, where one was written.
-        cost: What the plan costs; null where there is none.
-        lower_bound: What no plan costs less than: proved.
-        plan: The actions, in an order that executes where nothing is deleted; null where there is no plan.
+        cost: The cost of the plan; null without a plan.
+        lower_bound: A proved lower bound on the cost of all plans.
+        plan: The actions, in an order that executes if nothing is deleted; null without a plan.
         seconds: The time of each phase.
 
     Example:
@@ -135,7 +135,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
 
     @property
     def claim(self) -> str:
-        """What is proved of the cost, in one line."""
+        """The claim about the cost, in one line."""
         if self.status is Status.INFEASIBLE:
             return "infeasible: proved that there is no plan, even where nothing is deleted"
         if self.cost is None:
@@ -242,7 +242,7 @@ def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
 
 
 class _Enough(Reporter):
-    """Passes on what it hears, and stops the search when the cost of the best plan is proved."""
+    """A reporter that stops the search when the cost of the best plan is proved."""
 
     def __init__(self, reporter: Reporter, objective: Objective, deadline: Deadline) -> None:
         self._reporter, self._objective, self._deadline = reporter, objective, deadline
@@ -256,7 +256,7 @@ class _Enough(Reporter):
         self._compare()
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Record what no plan costs less than."""
+        """Record a lower bound on the cost."""
         self._reporter.bound(objective, bound)
         if objective is self._objective:
             self._least = bound

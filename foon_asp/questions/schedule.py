@@ -70,8 +70,8 @@ class LackingTool(Value, frozen=True):
 
     Attributes:
         tool: A label, or a vessel with what is in it.
-        there: How many there are.
-        needed: How many there have to be, at least (infeasible), or how many are enough (unknown).
+        there: The number available.
+        needed: The least number that a schedule needs (infeasible), or a sufficient one (unknown).
     """
 
     tool: str
@@ -83,14 +83,14 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
     """When the steps of a plan are done, and by whom.
 
     Attributes:
-        status: optimal: proved a shortest schedule; infeasible: proved that there is none; feasible and
-            unknown: stopped at a limit with or without one.
+        status: optimal: proved a shortest schedule; infeasible: proved that no schedule exists; feasible and
+            unknown: stopped at a limit with or without a schedule.
         stopped: The limit that came first, and what was being done; null if none did.
-        makespan: How long it takes, in seconds; null without a schedule.
-        lower_bound: No schedule takes less, in seconds.
-        agents: How many there are.
-        durations: Of each motion of the plan.
-        timetable: The steps of the plan, in its order; none without a schedule.
+        makespan: The makespan in seconds; null without a schedule.
+        lower_bound: A proved lower bound on the makespan, in seconds.
+        agents: The number of agents.
+        durations: The duration of each motion of the plan.
+        timetable: The steps of the plan, in its order; empty without a schedule.
         lacking: Without a schedule, the tools of which there are too few.
 
     Example:

@@ -31,7 +31,7 @@ _NO_TREE: Any = dict.fromkeys(("verdict", "as_listed", "in_any_order", "order", 
 
 
 class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")):
-    """What a search returned for a problem.
+    """The tree that a search returned for a problem.
 
     Attributes:
         search: The name of the search.

@@ -1,4 +1,4 @@
-"""What it would take: the cheapest things to add to the kitchen so that there is a tree."""
+"""Shopping lists: the cheapest items to add to the kitchen so that a tree exists."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -325,7 +325,7 @@ def _priced(problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]])
     prices: dict[int, Fraction] = {}
     for entry in sorted(
         listed, key=lambda entry: not isinstance(entry.name, str)
-    ):  # whole nodes have the last word
+    ):  # entries with whole nodes override labels
         if isinstance(entry.name, str):
             what = "no node for sale has this label"
             objects = [o for o in network.by_label.get(entry.name, ()) if shop.sells(o)]

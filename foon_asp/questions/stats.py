@@ -26,7 +26,7 @@ from foon_asp.results.values_of import node_as, node_of, nodes_of, unit_of
 from foon_asp.text.data_folder import Data
 from foon_asp.text.json_value import schema_name
 
-_MAX_SHOWN = 10
+_MAX_SHOWN = 10  # rows of each list in the text
 
 # Heading, row name, and the figure of one level.
 _ROWS: tuple[tuple[str, str, Callable[[Statistics], object]], ...] = (
@@ -71,7 +71,7 @@ class FileUnits(Value, frozen=True):
 
 
 class StartingNodes(Value, frozen=True):
-    """What is taken to be available where no kitchen is given, at level 3.
+    """The object nodes assumed to be available without a kitchen, at level 3.
 
     Attributes:
         files: How many files of recipes there are.
@@ -100,7 +100,7 @@ class ObjectUnits(Value, frozen=True):
 
 
 class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
-    """What is in a network.
+    """The size of a network at each level.
 
     Attributes:
         units_read: How many units were read, copies included.
@@ -209,7 +209,7 @@ class ExplainedInput(Node, frozen=True, kw_only=True):
 
 
 class ExplainedUnit(Unit, frozen=True):
-    """A unit, with what becomes of its inputs where that is asked."""
+    """A unit, with the fate of its inputs on request."""
 
     inputs: tuple[ExplainedInput, ...]
 

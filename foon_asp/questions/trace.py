@@ -1,4 +1,4 @@
-"""What is in the kitchen after each step of a plan, and how to go on from there."""
+"""The kitchen after each step of a plan, and replanning from there."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -35,14 +35,14 @@ States = tuple[dict[ObjectNode, int], ...]
 
 
 class TracedStep(Value, frozen=True):
-    """What a step does to the kitchen.
+    """The effects of a step on the kitchen.
 
     Attributes:
         step: The number of the step, from 1.
         gone: The copies that it uses up.
         stayed: The copies that it needs and leaves there.
         came: The copies that it makes.
-        there: What is there after the step, but for what never runs out.
+        there: The copies after the step of each consumable object node.
     """
 
     step: int
@@ -54,13 +54,13 @@ class TracedStep(Value, frozen=True):
 
 
 class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
-    """What came and what went at each step of a plan, and how to go on from a step that failed.
+    """The copies added and used up by each step of a plan, and the best way on from a failed step.
 
     Attributes:
         executed: The steps that ran.
         stopped: What stops the plan, if anything does.
         failed: The step that failed, from 1.
-        answer: The best plan from what is there before the step that failed.
+        answer: The best plan from the kitchen before the step that failed.
 
     Example:
         >>> problem = foon_asp.load().problem("ice", items="used-up")

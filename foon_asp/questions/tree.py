@@ -17,7 +17,7 @@ from foon_asp.text.diagnostics import summarize
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_units
 
-if TYPE_CHECKING:  # what a tree that is not drawn can do without
+if TYPE_CHECKING:  # only drawings need it
     from foon_asp.pictures.drawing import Drawing
 
 OTHER_READING = "if what is there can be used again: --items lasting"

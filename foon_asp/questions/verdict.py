@@ -16,7 +16,7 @@ from foon_asp.results.values_of import named_node, used_up_of
 
 
 class Stop(Value, frozen=True):
-    """What stops the steps of a tree.
+    """The obstacle that stops the steps of a tree.
 
     Attributes:
         position: The first step that cannot be done, from 1; null where a goal is missing in the end.

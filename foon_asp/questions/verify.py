@@ -1,4 +1,4 @@
-"""Is a certificate right? Without any solver."""
+"""Verification of certificates without any solver."""
 
 from codecs import BOM_UTF8
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -29,10 +29,10 @@ from foon_asp.results.values_of import goals_of, nodes_of
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.plain_file import read_beginning
 
-if TYPE_CHECKING:  # the solver and the linear programs, which this has to do without
+if TYPE_CHECKING:  # takes the solver and linear programs along, which `verify` must not load
     from foon_asp.certificate import Certificate
 
-_SECONDS = 60.0  # for what clingo checks
+_SECONDS = 60.0  # time limit of each check by clingo
 _NAMED_BY = {
     "network": "--network FILE",
     "kitchen": "--kitchen FILE",
@@ -62,9 +62,9 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         bound: The bound in words, or null.
         costs: What the tree costs by the objectives of the claim; null without a tree.
         rules: The ready-made constraints that the claim is about, with their values.
-        trusted: What is taken on trust, in words: what measures and rules of the user's own say, and digests
-            that a store states.
-        checked: What clingo checked of it.
+        trusted: The assumptions in words: about user-defined measures and rules, and digests that a store
+            states.
+        checked: The assumptions that clingo checked.
         not_covered: The constraints that the claim is not about.
         tree: The units of the tree, by id; null without a tree.
         proved_by: How many cuts the proof has, and of plans the balance of how many nodes.
@@ -106,8 +106,8 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         """Return the verified claim of a certificate about a network.
 
         Parameters:
-            verified: What was verified.
-            network: The network.
+            verified: The verified claim.
+            network: The network of the claim.
             content: The certificate as plain values.
             with_clingo: Whether clingo checked what is otherwise taken on trust.
             starting: The object nodes that can be needed, by id, where no kitchen was given.
@@ -298,8 +298,8 @@ def verify(
 ) -> VerifiedCertificate:
     """Check a certificate against the data it is about, without any solver.
 
-    What units cost by a measure of the user's own is taken on trust, and so is what rules of the user's own
-    say: ``trusted`` says it in words.
+    The costs of units by user-defined measures, and the meaning of user rules, are taken on trust:
+    ``trusted`` names these assumptions.
 
     Parameters:
         data: The data, as loaded, or a problem made from them.
@@ -373,11 +373,11 @@ def _other_part(content: Any, subject: proof.Subject) -> str | None:
 
     It is ``task`` for a certificate about a planning task.
     """
-    with suppress(RecursionError, KeyError, TypeError, AttributeError):  # of what is no certificate
+    with suppress(RecursionError, KeyError, TypeError, AttributeError):  # the content is no certificate
         if content["seal"] == proof.seal(content):
             actual = {"level": subject.network.level, **subject.digests()}
             stated = {**content["digests"], "level": content["level"]}
-            del actual["sources"]  # which only some rules look at
+            del actual["sources"]  # only some rules depend on them
             other = next(
                 (name for name, digest in actual.items() if stated.get(name, digest) != digest), None
             )
@@ -407,7 +407,7 @@ def _check_with_clingo(problem: Problem, verified: proof.Verified) -> None:
 
     for measure in verified.trusted:
         rules = Measure(measure.name, measure.rules, f"the rules of {measure.name}")
-        deadline = Deadline(_SECONDS)  # rules may come from a stranger
+        deadline = Deadline(_SECONDS)  # the rules are untrusted input
         try:
             wrong = wrong_cost(rules, problem, measure.costs, deadline)
         except UserError as error:

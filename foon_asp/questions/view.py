@@ -48,7 +48,7 @@ from foon_asp.results.proof_cases import ProofCases
 from foon_asp.text.json_value import Json
 from foon_asp.whole_file import utf_8, write_whole
 
-_BEST = 5  # trees, the best and those after it
+_BEST = 5  # trees listed as alternatives, the optimal one included
 _MERMAID_PAGE = ".md"
 _SHOWN = (
     *("answer", "searches", "lasting", "without_rules"),
@@ -442,7 +442,7 @@ def pages(
         return {"time_limit": deadline.left, "memory_limit": deadline.memory}
 
     if plans and not ruled:
-        below = Objective.KITCHEN not in chosen  # what a plan makes itself, it need not take
+        below = Objective.KITCHEN not in chosen  # a plan need not take from the kitchen items that it makes
         proof = certified(endless, chosen, settings) if PagePart.PROOF in wanted and below else None
         lasting = answered(endless, chosen, settings) if proof is None else proof
         if below:
@@ -450,7 +450,7 @@ def pages(
                 answer.outcome, lasting.outcome, "where items last"
             )
         if lasting and not answer:
-            proof = None  # of a tree, and there is no plan to hold against it
+            proof = None  # it proves a tree optimal, but there is no plan
         page = structs.replace(page, certified=proof, lasting=lasting)
         yield page
     if ruled:
@@ -461,7 +461,7 @@ def pages(
     if answer.ending is Ending.NEGATIVE:
         explained = why_not(endless, **rules, **remaining_limits())
         if plans and explained.tree_exists:
-            return  # it is what runs out
+            return  # items run out, which why_not does not explain
         helped = (
             None if explained.tree_exists else shopping_list(endless, chosen, **rules, **remaining_limits())
         )

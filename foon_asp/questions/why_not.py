@@ -25,16 +25,16 @@ from foon_asp.results.values import Mention, Node, Unit, Value
 from foon_asp.results.values_of import head_of, mention_of, node_as, node_of, nodes_of, unit_as
 from foon_asp.text.json_value import schema_name
 
-if TYPE_CHECKING:  # clingo, which is needed where rules have a say
+if TYPE_CHECKING:  # takes clingo along, which only rules need
     from foon_asp.questions.clash import Clash
 
 _MAX_ALIKE = 2  # nodes with the same label that are named beside a missing one
 _MAX_OBJECTS = 12  # dead ends that are opened up in the text
 _MAX_OTHERS = 2  # other units that are named beside the first
-_MAX_ROOTS = 8
-_MAX_STEPS = 6  # of a cycle
-_MAX_STOPS = 3
-_MAX_FIX_ITEMS = 4  # that are named in one line
+_MAX_ROOTS = 8  # causes explained in the text
+_MAX_STEPS = 6  # of a cycle in the text
+_MAX_STOPS = 3  # units named in one line
+_MAX_FIX_ITEMS = 4  # named in one line
 
 
 class NearName(Value, frozen=True):

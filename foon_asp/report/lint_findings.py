@@ -16,7 +16,7 @@ from foon_asp.text.diagnostics import Severity
 from foon_asp.text.json_value import Json
 
 _MAX_IN_FULL = 3  # findings of a kind in a file; the lines of the others are named
-_MAX_LINES = 12
+_MAX_LINES = 12  # line numbers listed
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "notice"}
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 

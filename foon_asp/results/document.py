@@ -98,7 +98,7 @@ class AboutGoals(Document, frozen=True, kw_only=True):
         goals: What is to be made.
         containers: Whether a unit needs every input (strict), or takes as given a utensil whose only
             ingredient is an input too (implied).
-        items: Whether what is at hand or was made can be used again (lasting), or is used up (used-up).
+        items: Whether available and made items can be used again (lasting), or are used up (used-up).
         level: What counts of an object node: 3 all, 2 no contents, 1 the label alone.
         objectives: The objectives, the first counting most; units decides last in any case.
         starting_kitchen: Where no kitchen was given, the items that are assumed to be available and can be

@@ -8,9 +8,9 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, multiplies
 from foon_asp.results.plain import nearest_float
 
-_MIN_DIGITS = 4  # of a success, if these tell several apart
-_MAX_DIGITS = 40
-_SUM_DIGITS = 15  # of a sum of costs, if it has no more
+_MIN_DIGITS = 4  # significant digits of a success
+_MAX_DIGITS = 40  # significant digits of a success
+_SUM_DIGITS = 15  # significant digits of a sum of costs
 
 
 def figure_text(objective: Objective, figure: int | Fraction) -> str:

@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 _EXACT = "_exact"
 _NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)
-_DIGITS = 6  # of a figure in Markdown
+_DIGITS = 6  # significant digits of a figure in Markdown
 
 
 def plain(value: object) -> Any:

@@ -26,10 +26,10 @@ class Choice(Value, frozen=True):
 
 
 class WeighedCut(Value, frozen=True):
-    """A cut with its weight by the first objective; the one that nobody crosses has none.
+    """A cut with its weight by the first objective; null for a cut without landmark actions.
 
     Attributes:
-        members: The units that make a node of the cut and need none.
+        members: The landmark actions: units that make a node of the cut and need none.
     """
 
     nodes: tuple[int, ...]
@@ -38,15 +38,15 @@ class WeighedCut(Value, frozen=True):
 
 
 class ProofCase(Value, frozen=True):
-    """A part of a proof without branches.
+    """A leaf of the branching proof.
 
     Attributes:
-        given: What is taken, or left out, in every tree of this case.
-        dear: Every tree of this case has one of these, and costs too much for that. Later cases leave them
-            out.
-        ends: What settles the case.
-        paid: What that costs which is given to be taken.
-        cuts: The cuts that carry weight, or the one that nobody crosses.
+        given: The branching decisions: choices taken or excluded in every tree of this case.
+        dear: Choices with a reduced cost above the cutoff: every tree of this case has at least one, and
+            costs too much. Later cases exclude them.
+        ends: The key of the argument that closes the case.
+        paid: The cost of the choices that are taken.
+        cuts: The cuts that carry weight, or the cut without landmark actions.
     """
 
     given: tuple[Choice, ...]

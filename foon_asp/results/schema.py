@@ -119,7 +119,7 @@ def _hook(kind: type) -> Json:
 def _structs(document: type[Struct]) -> set[type[Struct]]:
     """Return the structs that a document consists of, recursively."""
     kinds, waiting = set[type[Struct]](), [msgspec.inspect.type_info(document)]
-    for info in waiting:  # grows on the way
+    for info in waiting:  # grows during the loop
         if isinstance(info, msgspec.inspect.StructType) and info.cls not in kinds:
             kinds.add(info.cls)
             waiting += (field.type for field in info.fields)

@@ -8,8 +8,8 @@ from typing import NamedTuple
 from foon_asp.escapes import escaped, escaped_lines
 
 STACKED_BELOW = 75  # columns of a terminal: with fewer, a table is stacked
-_MIN_WIDTH = 20  # columns
-_BEGINS = re.compile(r" *(?:\d+  )?")  # how far in a line stands, behind its number if it has one
+_MIN_WIDTH = 20  # columns of folded text, at least
+_BEGINS = re.compile(r" *(?:\d+  )?")  # the indent of a line, including its number
 _COLOURS = {"good": "32", "bad": "31", "dim": "2", "strong": "1"}
 
 
@@ -58,7 +58,7 @@ def rendered(parts: Iterable[Block], width: int | None = None, coloured: bool = 
                 else _aligned(block, width, coloured)
             )
         else:
-            line = block.replace("\n", "\\u000a")  # of a name in it
+            line = block.replace("\n", "\\u000a")  # a name may hold a line end
             lines += _folded(escaped_lines(line) if coloured else line, width)
     return "".join(f"{line.rstrip()}\n" for line in lines)
 

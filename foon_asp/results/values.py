@@ -73,7 +73,7 @@ class Node(Value, frozen=True):
 
 
 class Origin(Value, frozen=True):
-    """Where an input comes from, one of these. Only a list that does not execute has the last two.
+    """The origin of an input: exactly one field is set. Only a list that does not execute has the last two.
 
     Attributes:
         kitchen: It is in the kitchen.
@@ -267,7 +267,7 @@ class Lack(Value, frozen=True):
 
 
 class ListedConstraint(Value, frozen=True):
-    """A rule without a head (``:- ...``) of the user's.
+    """A user rule without a head (``:- ...``).
 
     Attributes:
         number: The number of the rule among all of them, from 1.
@@ -302,7 +302,7 @@ class UsedUpRun(Value, frozen=True):
 
 
 class CostedTree(Value, frozen=True):
-    """A tree and what it costs.
+    """A tree and its costs.
 
     Attributes:
         costs: What the tree costs by every objective.

@@ -1,4 +1,4 @@
-"""What two files have in common: two task trees, or two networks."""
+"""Comparison of two task trees or two networks."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial

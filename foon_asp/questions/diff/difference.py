@@ -1,4 +1,4 @@
-"""What two lists of units have in common, be they task trees or networks."""
+"""Comparison of two lists of units, of task trees or networks."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""What two networks have in common: two annotations of one video, or two versions of a FOON."""
+"""Comparison of two networks: two annotations of one video, or two versions of a FOON."""
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
@@ -13,7 +13,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Agreement(Value, frozen=True):
-    """How much two sets have in common.
+    """The overlap of two sets.
 
     Attributes:
         a: How many the first has.

@@ -1,4 +1,4 @@
-"""What two task trees have in common, what each costs, and where they part."""
+"""Comparison of two task trees: costs, common units, and the nodes where they part."""
 
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
@@ -48,7 +48,7 @@ class Side(Value, frozen=True, kw_only=True):
 
 
 class Making(Value, frozen=True):
-    """Where a tree has an object node from, one of these.
+    """The achiever of an object node in a tree: a unit or the kitchen.
 
     Attributes:
         unit: The unit that makes it first.
@@ -67,7 +67,7 @@ class Making(Value, frozen=True):
 
 
 class Parting(Value, frozen=True):
-    """An object node that both trees come to on the way back from the goals, and get in different ways."""
+    """An object node that both trees need, traced back from the goals, and achieve in different ways."""
 
     object: Node
     a: Making
