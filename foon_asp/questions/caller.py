@@ -1,4 +1,4 @@
-"""Who asks: Python, or a command, which shows progress and started before it read its data."""
+"""The caller of a question: Python, or a command, which shows progress and has a deadline."""
 
 import contextlib
 from collections.abc import Iterator
@@ -19,10 +19,10 @@ class _Warner(Reporter):
 
 
 class Caller(NamedTuple):
-    """Who asks.
+    """The caller of a question: Python or a command.
 
-    ``reporter`` receives warnings and progress. ``deadline`` is that of the whole command. ``read_seconds``
-    is how long reading took, if it is to be shown. ``lenient`` says that lines of trees that are not
+    ``reporter`` receives warnings and progress. ``deadline`` is the deadline of the command. ``read_seconds``
+    is the time of reading, if it is shown. ``lenient`` says that lines of trees that are not
     understood are left out. ``form`` is the format of the result, if one is chosen.
     """
 

@@ -55,13 +55,13 @@ class Role(Flag):
 
 
 class Option(NamedTuple):
-    """One thing that can be chosen, as plain data.
+    """An option of a question, for the command line and Python, as plain data.
 
     In the annotation of a parameter (``Annotated[int, Option(...)]``) the parameter gives the name and the
     default, and the first sentence of its entry in the docstring the help, where the option has none.
 
-    ``name`` is the parameter. ``flags`` are those of the command line, by default ``--name`` with dashes for
-    underscores. A ``positional`` option has no flag and must be given, unless it is ``many``: such an option
+    ``name`` is the parameter. ``flags`` are the flags of the command line, by default ``--name`` with dashes
+    for underscores. A ``positional`` option has no flag and must be given, unless it is ``many``: it
     may be repeated. ``help`` describes the option on the command line and in Python; ``python`` adds what
     only Python accepts. ``choices`` are the values allowed, or a function that lists them, if other packages
     may add some. ``least`` is the smallest number allowed, ``metavar`` the word for the

@@ -27,8 +27,8 @@ def complete_docstring(
     """Return the docstring of a function with a description of each parameter, in their order.
 
     ``texts`` has descriptions by name. The docstring as written has the sections ``Parameters``, ``Returns``,
-    ``Raises`` and ``Example``. What its first section says of a parameter is taken instead of the text; if
-    that section is missing, it is put before ``Returns``.
+    ``Raises`` and ``Example``. An entry of the first section replaces the text of the parameter; a missing
+    section is inserted before ``Returns``.
     """
     if ask.__doc__ is None:  # python -OO
         return None

@@ -27,9 +27,9 @@ class _Tree(NamedTuple):
 class End(NamedTuple):
     """One end of the interval of a rate in which the tree stays optimal, and the best tree beyond.
 
-    ``at`` is where another tree is as good, and beyond it better: ``beyond``, its units by id in an order
-    that executes. Both are ``None`` where no rate on that side makes another tree better. ``proved`` says
-    that this is the end; where it is false a limit came first, and the end may be nearer to the rate.
+    ``at`` is the rate at which another tree is as good, and ``beyond`` its units by id in an order that
+    executes. Both are ``None`` if no rate on that side makes another tree better. ``proved`` is false if
+    a limit came first: the end may then be nearer to the rate.
     """
 
     at: Root | None
@@ -109,8 +109,8 @@ class Envelope:
     def _better(self, motion: str, degree: int, of: Fraction) -> tuple[_Tree | None, bool]:
         """Return a tree that is better at another rate, or ``None``, and whether the answer is proved.
 
-        The rate is a root of this degree of a number. All rates are raised to that degree, which makes it
-        rational and leaves products in the order in which they are.
+        The rate is the root of ``of`` of this degree. All rates are raised to the degree, which makes it
+        rational and keeps the order of products.
         """
         outcome, better = self._compared(_at_rate(self._problem, motion, degree, of))
         proved = outcome.status is Status.OPTIMAL
@@ -121,9 +121,9 @@ class Envelope:
     def _unmoved(self) -> set[str]:
         """Return motions whose rates may rise to 1 with the tree staying optimal, tested many at once.
 
-        If the tree is optimal where all units but its own that have one of these motions never fail, it is so
-        where the rate of one of the motions rises: other trees gain no more by that. If it is not, the
-        motions by which another tree gains are left out.
+        Test: all units of these motions outside the tree never fail. If the tree stays optimal, it also does
+        if the rate of one of the motions rises, since other trees gain no more by that. Otherwise the
+        motions by which the better tree gains are removed, and the test is repeated.
         """
         network, own = self._problem.network, self._problem.own_rates
         motions = set(self.motions)

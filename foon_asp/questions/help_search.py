@@ -19,14 +19,14 @@ _BEST = (Objective.SUCCESS, Objective.UNITS)
 class PricedHelp:
     """Lagrangian relaxation of the number of helped units: help for a unit costs a factor of success.
 
-    Let S be the best success at such a price q. A tree with help for M units succeeds no more often than
-    S / q^M, since at the price it would be better than the best. If the best tree at the price succeeds that
-    often with help for M units, it is the best with M; by fewest units too, which decide between equals at
-    the price. Where no price has such a tree, trees are listed in order of success at the price with the
-    least bound, until the best one seen is as good as any that may follow.
+    Let S be the optimal success at a price q. A tree with help for M units has at most the success S / q^M,
+    or it would beat the optimum at that price. If the optimal tree at the price reaches this bound with help
+    for M units, it is optimal for M, also by fewest units, which break ties at the price. If no price closes
+    the gap, trees are enumerated in order of success at the price with the least bound, until the best tree
+    seen is as good as any later one can be.
 
-    The prices tried are those at which help for another motion becomes worth it. The logarithm of the bound
-    is convex in that of the price, so that the least bound is found where it rises for the first time.
+    The prices tried are the breakpoints at which help for another motion pays. The logarithm of the bound is
+    convex in the logarithm of the price, so the least bound is found where the bound first rises.
     """
 
     def __init__(
@@ -147,9 +147,9 @@ class CountedHelp:
 class HelpedTrees(NamedTuple):
     """The best trees with help for at most 0, 1, 2, ... units.
 
-    The problem of each outcome has the person's rates of the helped units as their own. ``greatest`` is the
-    best success with help for any number, ``None`` where there is no tree at all and where a limit came
-    first. ``complete`` says that every row is proved and none is left out.
+    The problem of each outcome has the person's rates for the helped units. ``greatest`` is the best success
+    with help for any number of units; ``None`` without a tree or at a limit. ``complete`` says that every row
+    is proved and no row is missing.
     """
 
     rows: tuple[Outcome, ...]

@@ -94,8 +94,8 @@ def posed_in_python(
 ) -> Any:
     """Return the arguments of a question, with a problem in place of a path or of data.
 
-    Takes the names that pose the problem out of ``named``. Raises :class:`UserError` for a call that lacks
-    what the question is about, or names a goal beside a problem, which has its own.
+    Removes the names that pose the problem from ``named``. Raises :class:`UserError` for a call without a
+    subject, or with a goal beside a problem, which has its own.
     """
     from foon_asp.foon import Foon, load  # noqa: PLC0415 (commands ask about what they have read)
 

@@ -112,7 +112,7 @@ class Findings(NamedTuple):
 
     files: Sequence[Path]
     findings: list[Diagnostic]
-    known: int = 0
+    baselined: int = 0
     gone: int = 0
 
     def linted(self, mended: int = 0) -> Linted:
@@ -124,7 +124,7 @@ class Findings(NamedTuple):
             counts={str(severity): severities[severity] for severity in Severity},
             codes=dict(sorted(codes.items())),
             mended=mended,
-            known=self.known,
+            known=self.baselined,
             gone=self.gone,
             findings=tuple(map(Finding.of, self.findings)),
         )

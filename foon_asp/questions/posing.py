@@ -63,8 +63,8 @@ def one_problem(
 ) -> tuple[Problem]:
     """Pose one problem, whose tree makes all goals that are named.
 
-    With ``all_goals``, its goals are a question of their own each: those that are named, or all of the goals
-    file. What the goals can need of a large store is read when it is looked at.
+    With ``all_goals``, each goal is a question of its own: the named goals, or all of the goals
+    file. Of a large store, the units that the goals can need are read on first access.
     """
     dataset = command.dataset
     with command.reading():

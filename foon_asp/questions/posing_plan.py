@@ -80,11 +80,11 @@ def settle_data(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
 
 
 def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence[Path]:
-    """Return the files with trees that are their own network, where no data are named.
+    """Return the files with trees that are their own network, if no data are named.
 
-    None is returned where the bundled kitchen has half of their units: a recipe may have one in common with
-    it, and a tree of it units that a program made up. An answer does not have all of the data that it is of:
-    raises :class:`UserError` for one of other data.
+    Returns no file if the bundled kitchen has at least half of the units: a recipe may share a unit with the
+    kitchen, and a tree of the kitchen may have units that a program made up. Raises :class:`UserError` for an
+    answer about other data, since an answer holds only a part of its data.
     """
     listed = [listed_unit for tree in files.values() for listed_unit in tree.units or ()]
     bundled = units_in(kitchen, [unit for unit, _ in listed])

@@ -145,7 +145,7 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
             (str(step.step), time_text(step.start), time_text(step.end), str(step.agent or "-"), step.name)
             for step in self.gantt.in_order
         ]
-        yield from ("", Table(("step", "start", "end", "agent", ""), rows, left=frozenset({4})), "")
+        yield from ("", Table(("step", "start", "end", "agent", ""), rows, left_aligned=frozenset({4})), "")
         for agent in range(1, self.agents + 1):
             own = (step.end - step.start for step in self.timetable if step.agent == agent)
             yield f"agent {agent} works {time_text(sum(own, Fraction(0)))} of {time_text(self.makespan)}"

@@ -148,7 +148,7 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
             yield f"one rate may be wrong between these ends, {claim}"
             yield ""
             headings = ("rate", "from", "to", "motion", "beyond")
-            yield Table(headings, [*map(self._cells, flipping)], left=frozenset({3, 4}), indent=2)
+            yield Table(headings, [*map(self._cells, flipping)], left_aligned=frozenset({3, 4}), indent=2)
         kept = [str(interval) for interval in still if interval.proved and interval.units]
         foreign = sum(interval.proved and not interval.units for interval in still) + len(self.others)
         if foreign:

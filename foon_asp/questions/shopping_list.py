@@ -155,9 +155,9 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         """Return a line on whether more lists exist."""
         if not self.complete:
             return "there are more lists than these: --lists finds more"
-        these = "this list" if len(self.lists) == 1 else "one of these lists"
+        shown = "this list" if len(self.lists) == 1 else "one of these lists"
         return (
-            f"that is all: any other set of things on offer that makes a tree possible holds all of {these}"
+            f"that is all: any other set of things on offer that makes a tree possible holds all of {shown}"
         )
 
     def _price(self, bought: ShoppingList) -> str:
@@ -327,16 +327,16 @@ def _priced(problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]])
         listed, key=lambda entry: not isinstance(entry.name, str)
     ):  # entries with whole nodes override labels
         if isinstance(entry.name, str):
-            what = "no node for sale has this label"
+            fault = "no node for sale has this label"
             objects = [o for o in network.by_label.get(entry.name, ()) if shop.sells(o)]
         else:
-            what = "no such object node"
+            fault = "no such object node"
             object_id = network.object_id(entry.name)
             objects = [] if object_id is None else [object_id]
         prices.update(dict.fromkeys(objects, entry.value))
         if not objects:
             node = ObjectNode(entry.name) if isinstance(entry.name, str) else entry.name
-            caller().reporter.warning(f"{entry.source}:{entry.source.column}: warning: {what}: {node}")
+            caller().reporter.warning(f"{entry.source}:{entry.source.column}: warning: {fault}: {node}")
     return {o: price for o, price in prices.items() if o not in problem.kitchen}
 
 

@@ -64,7 +64,7 @@ def statistics(findings: Sequence[Finding]) -> Table:
         mends = [f"{safe} safely"] * bool(safe) + [f"{unsafe} unsafely"] * bool(unsafe)
         rows.append((str(count), str(alike[0].severity), code, ", ".join(mends), CATALOG[code].meaning))
     headings = "count", "severity", "code", "mends", "meaning"
-    return Table(headings, rows, left=frozenset({1, 2, 3, 4}), headed=bool(rows))
+    return Table(headings, rows, left_aligned=frozenset({1, 2, 3, 4}), headed=bool(rows))
 
 
 def annotations(findings: Sequence[Finding]) -> str:

@@ -24,14 +24,14 @@ class Table(NamedTuple):
     """Rows under headings; columns of figures are aligned to the right.
 
     A row that is one text is a line of its own, over the rows that follow it.
-    ``left`` are the places of the columns that are aligned to the left, of which the last one is folded where
-    it is too long. ``indent`` is how far in the table stands. ``headed`` says whether the headings are shown
-    where there is room; a narrow terminal shows a block for each row, a line ``heading: cell`` for each cell.
+    ``left_aligned`` are the indices of columns aligned to the left; the last of them is folded if it is too
+    long. ``indent`` is the number of spaces before the table. ``headed`` says whether a wide terminal
+    shows headings; a narrow one shows a block for each row, a line ``heading: cell`` for each cell.
     """
 
     headings: Sequence[str]
     rows: Sequence[Sequence[str | Cell] | str]
-    left: frozenset[int] = frozenset()
+    left_aligned: frozenset[int] = frozenset()
     indent: int = 0
     headed: bool = True
 
@@ -78,9 +78,9 @@ def _aligned(table: Table, width: int | None, coloured: bool) -> Iterator[str]:
             last = index == len(row) - 1
             shown = (
                 text
-                if last and index in table.left
+                if last and index in table.left_aligned
                 else text.ljust(column_width)
-                if index in table.left
+                if index in table.left_aligned
                 else text.rjust(column_width)
             )
             cells.append(_coloured(shown, cell, coloured, heading=table.headed and not number))
