@@ -43,7 +43,7 @@ def answer_on_cluster(
         raise UserError(f"no scheduler at {address}: {error}") from None
     with client:
         waiting = iter(questions)
-        again: deque[tuple[BatchQuestion, ...]] = deque()
+        retries: deque[tuple[BatchQuestion, ...]] = deque()
         suspects: deque[tuple[BatchQuestion, ...]] = deque()
         chunk_of: dict[str, tuple[BatchQuestion, ...]] = {}
         is_alone = False
@@ -56,7 +56,7 @@ def answer_on_cluster(
 
         def submit_ahead() -> None:
             while len(chunk_of) < ahead:
-                chunk = again.popleft() if again else tuple(islice(waiting, _QUESTIONS_PER_TASK))
+                chunk = retries.popleft() if retries else tuple(islice(waiting, _QUESTIONS_PER_TASK))
                 if not chunk:
                     break
                 submit(chunk)
@@ -68,7 +68,7 @@ def answer_on_cluster(
             chunk = chunk_of.pop(future.key)
             rows: list[AnswerRow] = future.result() if future.status == "finished" else []
             if rows or len(chunk) > 1:
-                again += ((question,) for question in chunk[len(rows) :])
+                retries += ((question,) for question in chunk[len(rows) :])
             elif isinstance(future.exception(), KilledWorker) and not is_alone:
                 suspects.append(chunk)
             else:

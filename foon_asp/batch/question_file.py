@@ -70,10 +70,10 @@ def each_question(questions: Iterable[BatchQuestion], asker: Asker) -> Iterator[
         if question.goal in _FOR_MANY:
             goals = named(str(question.goal), question.containers, question.kitchen)
         for goal in goals:
-            one = msgspec.structs.replace(question, goal=goal)
-            if one not in seen:
-                seen.add(one)
-                yield one
+            expanded = msgspec.structs.replace(question, goal=goal)
+            if expanded not in seen:
+                seen.add(expanded)
+                yield expanded
 
 
 def _combinations(value: object, time_limit: float | None) -> Iterator[BatchQuestion]:
@@ -83,15 +83,16 @@ def _combinations(value: object, time_limit: float | None) -> Iterator[BatchQues
     if unknown := sorted(value.keys() - {*_KEYS}):
         raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(_KEYS)}")
     entry = {"time_limit": time_limit} | value
-    several = {key: _several(entry[key]) for key in reversed(_KEYS) if key in entry}  # all goals by turns
-    if [] in several.values():
+    # goals vary fastest in the product, so the goal comes last
+    values_of_key = {key: _several(entry[key]) for key in reversed(_KEYS) if key in entry}
+    if [] in values_of_key.values():
         raise ValueError("found an empty list, expected at least one value")
     for key, choices in _CHOICES.items():
-        for name in several.get(key, ()):
+        for name in values_of_key.get(key, ()):
             if name not in choices:
                 raise ValueError(f"found the {key} {name!r}, expected {' or '.join(choices)}")
-    for values in itertools.product(*several.values()):
-        question = msgspec.convert(dict(zip(several, values, strict=True)), BatchQuestion)
+    for values in itertools.product(*values_of_key.values()):
+        question = msgspec.convert(dict(zip(values_of_key, values, strict=True)), BatchQuestion)
         if len(question.goals) == 1:
             question = msgspec.structs.replace(question, goal=question.goals[0])
         for name in question.goals:

@@ -148,14 +148,14 @@ def solve_all_goals(
     outcomes: list[Outcome] = []
     for goal in _each_goal(problem, settings):
         for chosen in lists:
-            now = settings._replace(deadline=Deadline(*each_limits, within=outer))
-            nearby = near_goals(goal, chosen, now)
+            goal_settings = settings._replace(deadline=Deadline(*each_limits, within=outer))
+            nearby = near_goals(goal, chosen, goal_settings)
             if nearby is None:
-                outcomes.append(find(read(goal), chosen, now, caller().reporter))
+                outcomes.append(find(read(goal), chosen, goal_settings, caller().reporter))
             else:
-                outcomes.append(answered_nearby(nearby, chosen, now).outcome)
-    every = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)
-    return Optima(**head_of(shown(problem), every), answers=tuple(map(Answer.of, outcomes)))
+                outcomes.append(answered_nearby(nearby, chosen, goal_settings).outcome)
+    objectives_of_all = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)
+    return Optima(**head_of(shown(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes)))
 
 
 def _each_goal(problem: Problem, settings: Settings) -> list[Problem]:

@@ -165,8 +165,8 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
         """Return lines with each object node where trees part, and the trees that agree there."""
         for parting in self.partings:
             trees = sorted(index for way in parting.ways for index in way.trees)
-            who = "they part" if len(trees) == len(self.trees) else f"{_numbered(trees)} part"
-            yield f"{who} at {parting.object}"
+            subject = "they part" if len(trees) == len(self.trees) else f"{_numbered(trees)} part"
+            yield f"{subject} at {parting.object}"
             for way in parting.ways:
                 makers = " and ".join(f"{unit.motion} [{unit.source[0]}]" for unit in way.made_by)
                 yield f"  {_numbered(way.trees)}: {makers}"
@@ -411,8 +411,8 @@ def _ranked(
 def _is_worse(costs: Costs, best: Costs, order: tuple[Objective, ...], worse: Fraction) -> bool:
     if not worse:
         return costs.key(order) > best.key(order)
-    ours, least = Fraction(costs.measure(order[0])), Fraction(best.measure(order[0]))
-    return ours < least * (1 - worse) if multiplies(order[0]) else ours > least * (1 + worse)
+    figure, best_figure = Fraction(costs.measure(order[0])), Fraction(best.measure(order[0]))
+    return figure < best_figure * (1 - worse) if multiplies(order[0]) else figure > best_figure * (1 + worse)
 
 
 def _numbered(places: Sequence[int]) -> str:

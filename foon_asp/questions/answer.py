@@ -357,7 +357,7 @@ class WithAnswer(Result, AboutGoals, frozen=True, kw_only=True):
     """A result that comes with the best tree, which its picture shows.
 
     Attributes:
-        answer: The best tree; null where there is none to go on with.
+        answer: The best tree; null without one.
     """
 
     answer: Answer | None

@@ -17,25 +17,25 @@ if TYPE_CHECKING:  # takes clingo along, which `verify` must not load
 _MAX_NAMED = 20  # units of a limit that are listed
 
 
-def trusted_text(own: Rule, of_tree: bool) -> str:
+def trusted_text(user_rules: Rule, of_tree: bool) -> str:
     """Return the assumptions of a certificate about user rules, with the names of the rule files.
 
     ``of_tree`` says that a tree is claimed to keep to the rules.
     """
-    names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in own["files"]]
-    names += [*own["library"], *own["constants"]]
-    empty = [[], []] in own["claims"]
-    removed = [used[0] for used, without in own["claims"] if len(used) == 1 and not without]
-    wanted = sum(not used for used, _ in own["claims"]) - empty
-    others = len(own["claims"]) - len(removed) - wanted - empty
+    names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in user_rules["files"]]
+    names += [*user_rules["library"], *user_rules["constants"]]
+    empty = [[], []] in user_rules["claims"]
+    removed = [used[0] for used, without in user_rules["claims"] if len(used) == 1 and not without]
+    wanted = sum(not used for used, _ in user_rules["claims"]) - empty
+    others = len(user_rules["claims"]) - len(removed) - wanted - empty
     limits = []
-    for amounts, bound in own["limits"]:
+    for amounts, bound in user_rules["limits"]:
         units = [unit for ids in amounts.values() for unit in ids]
         if bound == 0:
             removed += units
         elif bound > 0:
             limits.append(_limited(sorted(units), bound, [*amounts] == ["1"]))
-    none = empty or any(bound < 0 for _, bound in own["limits"])
+    none = empty or any(bound < 0 for _, bound in user_rules["limits"])
     claims = ["no tree keeps to them"] if none else []
     claims += [f"no tree has one of the units {', '.join(map(str, removed))}"] if removed else []
     claims += [f"every tree has a unit of {counted(wanted, 'set')}"] if wanted else []
@@ -62,14 +62,14 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
         return [f"proof: {by} (no certificate was found, and nothing is written)"]
     content, claim = certificate.content, certificate.claim
     tree = "tree" if outcome.problem.items is None else "plan"
-    own = trusted(content)
+    user_rules = trusted(content)
     if claim == "bound":
         about = "all trees, without the constraints that it does not cover" if tree == "tree" else "all plans"
         return [f"proof: {by}; the certificate {file} proves a bound on {about}: {bound_text(content)}"]
-    if own is not None:
+    if user_rules is not None:
         proved = "that there is no tree" if claim == "infeasible" else "the tree best"
         claim_text = f"the certificate {file} proves {proved}, but takes on trust what rules say,"
-        return [f"proof: {by}; {claim_text}", f"  {trusted_text(own, of_tree=False)}"]
+        return [f"proof: {by}; {claim_text}", f"  {trusted_text(user_rules, of_tree=False)}"]
     if claim == "optimal" and by != "certificate":
         sure = ", ".join(certificate.certified)
         return [f"proof: {by}; the certificate {file} proves the {tree} best by {sure} alone"]

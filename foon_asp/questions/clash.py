@@ -147,44 +147,46 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
     def clash(**fields: Any) -> Clash:
         return Clash(constraints=tuple(by_number.values()), **fields)
 
-    def those(numbers: Iterable[int]) -> tuple[WeightedConstraint, ...]:
+    def constraints_of(numbers: Iterable[int]) -> tuple[WeightedConstraint, ...]:
         return tuple(by_number[number] for number in sorted(numbers))
 
-    first = prepare(problem, _OBJECTIVES, settings, program)
-    if first.stopped:
+    prepared = prepare(problem, _OBJECTIVES, settings, program)
+    if prepared.stopped:
         return clash(complete=False)
-    if first.tree is None:
+    if prepared.tree is None:
         return clash(tree_exists_without_constraints=False)
     dropping = "optimize(_dropping,1).\n"
     corrections: list[tuple[int, ...]] = []
     blamed: tuple[int, ...] = ()
     while True:
-        ended = first.run(dropping + write_constraints(weights, blamed), predicates=[("_dropped", 1)])
+        ended = prepared.run(dropping + write_constraints(weights, blamed), predicates=[("_dropped", 1)])
         if ended.units is None or not ended.exhausted:
             break
         corrections.append(tuple(sorted(ended.atoms["_dropped"])))
         if not corrections[-1]:
             break
-        hit = write_constraints(weights, ()) + write_corrections(corrections)
-        hitting = run(blame, hit, CLINGO_OPTIONS, deadline, predicates=[("_blamed", 1)])
+        rules = write_constraints(weights, ()) + write_corrections(corrections)
+        hitting = run(blame, rules, CLINGO_OPTIONS, deadline, predicates=[("_blamed", 1)])
         if hitting.units is None or not hitting.exhausted:
             break
         blamed = tuple(sorted(hitting.atoms["_blamed"]))
     clashes = ended.units is None and ended.exhausted
     if not corrections:
-        enough = ended.atoms["_dropped"] if ended.atoms else ()  # to drop, but perhaps not the cheapest
+        sufficient = ended.atoms["_dropped"] if ended.atoms else ()  # to drop, but perhaps not the cheapest
         return clash(
-            complete=clashes, tree_exists_without_constraints=not clashes, cheapest_to_drop=those(enough)
+            complete=clashes,
+            tree_exists_without_constraints=not clashes,
+            cheapest_to_drop=constraints_of(sufficient),
         )
     dropped = corrections[0]
     kept = write_constraints(weights, set(weights).difference(dropped))
-    outcome = solve_prepared(first, _OBJECTIVES, kept)
+    outcome = solve_prepared(prepared, _OBJECTIVES, kept)
     if outcome.status is Status.INFEASIBLE:
         raise BugError("dropping the constraints does not leave a tree")
     return clash(
-        smallest_clash=those(blamed) if clashes else (),
+        smallest_clash=constraints_of(blamed) if clashes else (),
         smallest_proved=clashes,
-        cheapest_to_drop=those(dropped),
+        cheapest_to_drop=constraints_of(dropped),
         answer=Answer.of(outcome),
     )
 

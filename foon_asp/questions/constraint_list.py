@@ -60,9 +60,9 @@ def list_constraints() -> ConstraintList:
     """Return the ready-made constraints, in order of name."""
     listed = []
     for name, file, title, purpose, parameters in library_constraints():
-        own = tuple(
+        constants = tuple(
             ConstraintParameter(parameter, None if value in _NOT_SET else value, example)
             for parameter, value, example in parameters
         )
-        listed.append(ReadyMadeConstraint(name, str(file), title, purpose, own))
+        listed.append(ReadyMadeConstraint(name, str(file), title, purpose, constants))
     return ConstraintList(constraints=tuple(listed))

@@ -130,13 +130,13 @@ def question(
     """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
-        own = {option.name for option in options}
-        every = (*options, *(option for option in _options_of(ask) if option.name not in own))
-        if not used_up and "items" not in {option.name for option in every}:
+        named = {option.name for option in options}
+        all_options = (*options, *(option for option in _options_of(ask) if option.name not in named))
+        if not used_up and "items" not in {option.name for option in all_options}:
             ask = _for_lasting_items(ask)
         typed_in = command or ask  # a command line has read its values already, rules among them
-        wrapped = asked_in_python(ask, every)
-        wrapped.__dict__["question"] = Question(every, help_, formats, suffixes or {}, pose, typed_in)
+        wrapped = asked_in_python(ask, all_options)
+        wrapped.__dict__["question"] = Question(all_options, help_, formats, suffixes or {}, pose, typed_in)
         return wrapped
 
     return decorate

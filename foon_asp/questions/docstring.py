@@ -17,8 +17,8 @@ def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
     """Return the entries of the ``Parameters`` section of a docstring, by name."""
     if ask.__doc__ is None:  # python -OO
         return {}
-    own = inspect.cleandoc(ask.__doc__).partition("Parameters:\n")[2].partition("\n\n")[0]
-    return {name: " ".join(text.split()) for name, text in _ENTRY.findall(own)}
+    section = inspect.cleandoc(ask.__doc__).partition("Parameters:\n")[2].partition("\n\n")[0]
+    return {name: " ".join(text.split()) for name, text in _ENTRY.findall(section)}
 
 
 def complete_docstring(

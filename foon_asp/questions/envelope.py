@@ -121,15 +121,15 @@ class Envelope:
     def _unmoved(self) -> set[str]:
         """Return motions whose rates may rise to 1 with the tree staying optimal, tested many at once.
 
-        Test: all units of these motions outside the tree never fail. If the tree stays optimal, it also does
-        if the rate of one of the motions rises, since other trees gain no more by that. Otherwise the
+        Test: units with one of the motions, outside the tree, never fail. If the tree stays optimal, it does
+        so if the rate of one of the motions rises, since other trees gain no more by that. Otherwise the
         motions by which the better tree gains are removed, and the test is repeated.
         """
-        network, own = self._problem.network, self._problem.own_rates
+        network, own_rates = self._problem.network, self._problem.own_rates
         motions = set(self.motions)
         while motions:
             others = {unit for unit in self._units if network.motions[unit] in motions}.difference(self._tree)
-            sure = dict.fromkeys(others, Fraction(1)) | dict(own)
+            sure = dict.fromkeys(others, Fraction(1)) | dict(own_rates)
             outcome, better = self._compared(replace(self._problem, own_rates=sure, as_seen=self._problem))
             if not better or outcome.units is None:
                 return motions if outcome.status is Status.OPTIMAL else set()
@@ -139,22 +139,22 @@ class Envelope:
     def _compared(self, varied: Problem) -> tuple[Outcome, bool]:
         """Return the optimum at other rates, and whether it is better there than the tree of the envelope."""
         outcome = solve(varied, _SUCCESS, self._settings, Reporter())
-        ours = _success(varied.costs(self._tree))
-        theirs = Fraction(0) if outcome.costs is None else _success(outcome.costs)
+        tree_success = _success(varied.costs(self._tree))
+        rival_success = Fraction(0) if outcome.costs is None else _success(outcome.costs)
         self._holds.require(
-            theirs >= ours or outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE},
+            rival_success >= tree_success or outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE},
             lambda: f"at other success rates {outcome.status} is said, but the tree {self._tree} is better",
         )
-        return outcome, theirs > ours
+        return outcome, rival_success > tree_success
 
     def _counted(self, units: Iterable[int]) -> Counter[str]:
         """Count the units by motion, without units that have a rate of their own."""
-        network, own = self._problem.network, self._problem.own_rates
-        return Counter(network.motions[unit] for unit in units if unit not in own)
+        network, own_rates = self._problem.network, self._problem.own_rates
+        return Counter(network.motions[unit] for unit in units if unit not in own_rates)
 
     def _seen(self, motion: str, units: tuple[int, ...]) -> _Tree:
-        network, own = self._problem.network, self._problem.own_rates
-        fixed = [unit for unit in units if network.motions[unit] != motion or unit in own]
+        network, own_rates = self._problem.network, self._problem.own_rates
+        fixed = [unit for unit in units if network.motions[unit] != motion or unit in own_rates]
         factor = math.prod(map(self._problem.rate, fixed), start=Fraction(1))
         return _Tree(units, len(units) - len(fixed), factor)
 
@@ -162,8 +162,8 @@ class Envelope:
 def _at_rate(problem: Problem, motion: str, degree: int, of: Fraction) -> Problem:
     """Raise all rates of a problem to the degree of a root, which the rate of a motion is."""
     raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
-    own = {unit: rate**degree for unit, rate in problem.own_rates.items()}
-    return replace(problem, rates=raised | {motion: of}, own_rates=own, as_seen=problem)
+    own_rates = {unit: rate**degree for unit, rate in problem.own_rates.items()}
+    return replace(problem, rates=raised | {motion: of}, own_rates=own_rates, as_seen=problem)
 
 
 def _success(costs: Costs) -> Fraction:

@@ -91,8 +91,8 @@ class PricedHelp:
 
     def _helped(self, max_helped: int, units: tuple[int, ...]) -> Outcome:
         motions = self._problem.network.motions
-        own = {unit: self._better[motions[unit]] for unit in self.helped(max_helped, units)}
-        problem = replace(self._problem, own_rates=own)
+        own_rates = {unit: self._better[motions[unit]] for unit in self.helped(max_helped, units)}
+        problem = replace(self._problem, own_rates=own_rates)
         return Outcome(problem, _SUCCESS, Status.FEASIBLE, units, problem.costs(units), {}, {})
 
     def _at(self, price: Fraction) -> Outcome:
@@ -122,8 +122,8 @@ class CountedHelp:
         network = problem.network
         units = [unit for unit in sorted(reach(problem).units) if network.motions[unit] in better]
         self._originals = dict(enumerate(units, len(network)))
-        own = {twin: better[network.motions[unit]] for twin, unit in self._originals.items()}
-        self._twins = replace(problem, network=network.with_copies(units), own_rates=own)
+        own_rates = {twin: better[network.motions[unit]] for twin, unit in self._originals.items()}
+        self._twins = replace(problem, network=network.with_copies(units), own_rates=own_rates)
 
     def best(self, max_helped: int) -> Outcome:
         """Return the best tree with help for at most ``max_helped`` units."""
@@ -135,8 +135,10 @@ class CountedHelp:
         if outcome.units is None:
             return outcome._replace(problem=self._problem)
         units = tuple(self._originals.get(unit, unit) for unit in outcome.units)
-        own = {self._originals[u]: self._twins.own_rates[u] for u in outcome.units if u in self._originals}
-        problem = replace(self._problem, own_rates=own)
+        own_rates = {
+            self._originals[u]: self._twins.own_rates[u] for u in outcome.units if u in self._originals
+        }
+        problem = replace(self._problem, own_rates=own_rates)
         return outcome._replace(problem=problem, units=units, costs=problem.costs(units))
 
     def any_number(self) -> Outcome:

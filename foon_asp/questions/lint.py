@@ -156,7 +156,7 @@ def lint(
         The findings, by file and line.
 
     Raises:
-        UserError: for a file that cannot be read, and a code that is none.
+        UserError: for a file that cannot be read, and an unknown code.
 
     Example:
         >>> recipe = b"//\nO\tegg\nM\tfry\nO\tegg \nS\tfried\n//\n"

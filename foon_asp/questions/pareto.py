@@ -328,11 +328,11 @@ def _best_trees(
     """
     reporter = caller().reporter
     while True:
-        now = settings
+        bounded_settings = settings
         if points:
             nearest_costs = _nearest([point.costs for point in points], order[1:])
-            now = settings._replace(bounded=better_than(nearest_costs, order[1:]))
-        outcome = solve(problem, order, now, _Silent(reporter) if points else reporter)
+            bounded_settings = settings._replace(bounded=better_than(nearest_costs, order[1:]))
+        outcome = solve(problem, order, bounded_settings, _Silent(reporter) if points else reporter)
         if outcome.status is Status.INFEASIBLE:
             return
         yield outcome
@@ -353,8 +353,10 @@ def _best_plans(
         for box in boxes:
             if box not in solved:
                 below = tuple({o: bound} for o, bound in zip(others, box, strict=True) if bound is not None)
-                now = settings._replace(bounded=Bounded(below=below))
-                solved[box] = solve(problem, order, now, _Silent(reporter) if points else reporter)
+                bounded_settings = settings._replace(bounded=Bounded(below=below))
+                solved[box] = solve(
+                    problem, order, bounded_settings, _Silent(reporter) if points else reporter
+                )
                 if solved[box].status not in {Status.OPTIMAL, Status.INFEASIBLE}:
                     yield solved[box]
         boxes = [box for box in boxes if solved[box].costs is not None]
@@ -391,10 +393,10 @@ def _require_apart(holds: Postconditions, point: _Point, points: Sequence[_Point
     """Require that a point of the front neither weakly dominates another point nor is weakly dominated."""
     key = point.costs.key(holds.levels)
     for other in points:
-        theirs = other.costs.key(holds.levels)
+        other_key = other.costs.key(holds.levels)
         holds.require(
-            any(a < b for a, b in zip(key, theirs, strict=True))
-            and any(a > b for a, b in zip(key, theirs, strict=True)),
+            any(a < b for a, b in zip(key, other_key, strict=True))
+            and any(a > b for a, b in zip(key, other_key, strict=True)),
             partial(
                 "of two points of the front, {} and {}, one is as good as the other everywhere".format,
                 list(point.units),

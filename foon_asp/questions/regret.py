@@ -199,7 +199,8 @@ def regret(
     if best.units is None or best.status is not Status.OPTIMAL:
         return Regrets(**head, answer=answer, regrets=())
     regrets: list[Regret] = []
-    own = settings.constraints == () and settings.replaced is None  # else rules may ask for what is missing
+    # under rules, the optimum may be better without a part: they may require what is missing
+    unrestricted = settings.constraints == () and settings.replaced is None
     holds = Postconditions(problem, levels(chosen), settings)
 
     def without(leave_out: Callable[[], Problem], **parts: Any) -> Regret:
@@ -212,7 +213,7 @@ def regret(
             remaining = find(fewer, chosen, settings, Reporter())
         regrets.append(_regret(best, remaining, **parts))
         # a missing item is not taken from the kitchen, so a tree that makes it costs less by ``kitchen``
-        if remaining and own and ("item" not in parts or Objective.KITCHEN not in chosen):
+        if remaining and unrestricted and ("item" not in parts or Objective.KITCHEN not in chosen):
             holds.no_better(remaining, best, f"without {regrets[-1]}")
         return regrets[-1]
 
@@ -261,24 +262,26 @@ def _regret(
 
 def _loss(best: Costs, remaining: Costs, objective: Objective) -> int | Fraction:
     """Return the loss by an objective: a difference, or for ``success`` a share."""
-    ours, theirs = best.measure(objective), remaining.measure(objective)
+    best_figure, figure = best.measure(objective), remaining.measure(objective)
     if multiplies(objective):
-        return 1 - Fraction(theirs) / Fraction(ours) if ours else Fraction(0)
-    return theirs - ours
+        return 1 - Fraction(figure) / Fraction(best_figure) if best_figure else Fraction(0)
+    return figure - best_figure
 
 
-def _kitchen_without(problem: Problem, *gone: int) -> Problem:
+def _kitchen_without(problem: Problem, *removed: int) -> Problem:
     if problem.network.object_numbers and problem.origin is not None:  # what makes the items is read
-        return problem.vary(without=[problem.network.objects[o] for o in gone])
-    return replace(problem, kitchen=problem.kitchen.difference(gone))
+        return problem.vary(without=[problem.network.objects[o] for o in removed])
+    return replace(problem, kitchen=problem.kitchen.difference(removed))
 
 
-def _without_units(problem: Problem, gone: Sequence[int]) -> Problem:
+def _without_units(problem: Problem, removed: Sequence[int]) -> Problem:
     """Return a problem over the network without some units; the other units keep their own rates."""
-    kept = [unit for unit in range(len(problem.network)) if unit not in gone]
+    kept = [unit for unit in range(len(problem.network)) if unit not in removed]
     rates = problem.own_rates
-    own = {position: rates[unit] for position, unit in enumerate(kept) if unit in rates} if rates else {}
-    return replace(problem, network=problem.network.without(gone), own_rates=own)
+    own_rates = (
+        {position: rates[unit] for position, unit in enumerate(kept) if unit in rates} if rates else {}
+    )
+    return replace(problem, network=problem.network.without(removed), own_rates=own_rates)
 
 
 def _units_of(problem: Problem, motion: str) -> list[int]:

@@ -235,9 +235,9 @@ def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
 
     Among plans that cost the same, the shortest is looked for, but no longer than the cost takes to prove.
     """
-    own = Deadline(within=deadline)
-    reporter = _Enough(caller().reporter, task.objective, own)
-    answer = answered(task.problem(), (task.objective,), Settings(deadline=own), reporter)
+    proof_deadline = Deadline(within=deadline)
+    reporter = _Enough(caller().reporter, task.objective, proof_deadline)
+    answer = answered(task.problem(), (task.objective,), Settings(deadline=proof_deadline), reporter)
     return Relaxed.of(task, answer)
 
 

@@ -147,8 +147,8 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
         ]
         yield from ("", Table(("step", "start", "end", "agent", ""), rows, left_aligned=frozenset({4})), "")
         for agent in range(1, self.agents + 1):
-            own = (step.end - step.start for step in self.timetable if step.agent == agent)
-            yield f"agent {agent} works {time_text(sum(own, Fraction(0)))} of {time_text(self.makespan)}"
+            times = (step.end - step.start for step in self.timetable if step.agent == agent)
+            yield f"agent {agent} works {time_text(sum(times, Fraction(0)))} of {time_text(self.makespan)}"
 
     def write_chart(self, file: File) -> None:
         """Draw a Gantt chart into a file.

@@ -142,18 +142,18 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
         """Return the motions whose rates can make another tree optimal, then the other motions."""
         yield from (*self.goal_lines(), *self.answer.headlines())
         flipping = [interval for interval in self.intervals if interval.flips]
-        still = [interval for interval in self.intervals if not interval.flips]
+        stable = [interval for interval in self.intervals if not interval.flips]
         if flipping:
             claim = "each proved" if self.ending is Ending.DONE else "as far as they are known"
             yield f"one rate may be wrong between these ends, {claim}"
             yield ""
             headings = ("rate", "from", "to", "motion", "beyond")
             yield Table(headings, [*map(self._cells, flipping)], left_aligned=frozenset({3, 4}), indent=2)
-        kept = [str(interval) for interval in still if interval.proved and interval.units]
-        foreign = sum(interval.proved and not interval.units for interval in still) + len(self.others)
+        kept = [str(interval) for interval in stable if interval.proved and interval.units]
+        foreign = sum(interval.proved and not interval.units for interval in stable) + len(self.others)
         if foreign:
             kept.append(f"{counted(foreign, 'motion')} that the tree does not have")
-        unknown = [str(interval) for interval in still if not interval.proved]
+        unknown = [str(interval) for interval in stable if not interval.proved]
         for title, names in (("at any rate", kept), ("not known", unknown)):
             if names:
                 yield ""
@@ -241,7 +241,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
         return Sensitivity(**head, answer=answer, intervals=(), others=(), first=None)
     envelope = Envelope(problem, outcome.units, settings)
     flipping: list[tuple[Flip, RateInterval]] = []
-    still: list[RateInterval] = []
+    stable: list[RateInterval] = []
     for motion in envelope.motions:
         rate = (problem.rates or {})[motion]
         flips, ends = [], []
@@ -254,7 +254,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
         if flips:
             flipping.append((min(flips), interval))
         else:
-            still.append(interval)
+            stable.append(interval)
     flipping.sort(key=lambda pair: pair[0])
     nearest = [
         FirstFlip(interval.motion, "above" if flip.above else "below") for flip, interval in flipping[:1]
@@ -262,7 +262,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
     return Sensitivity(
         **head,
         answer=answer,
-        intervals=(*(interval for _, interval in flipping), *still),
+        intervals=(*(interval for _, interval in flipping), *stable),
         others=tuple(sorted({*problem.network.motions}.difference(envelope.motions))),
         first=nearest[0] if nearest else None,
     )
@@ -271,10 +271,10 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
 def _end(best: Answer, end: End, flip: Flip | None) -> RateEnd:
     if flip is None or end.beyond is None:
         return RateEnd(end.proved, None, None)
-    tree, ours = costed_tree(best.problem, end.beyond, best.problem.costs(end.beyond)), best.units or ()
+    tree, best_units = costed_tree(best.problem, end.beyond, best.problem.costs(end.beyond)), best.units or ()
     gone, new = (
         tuple(step.id for step in steps_not_in(steps, others) if step.id is not None)
-        for steps, others in ((ours, tree.units), (tree.units, ours))
+        for steps, others in ((best_units, tree.units), (tree.units, best_units))
     )
     return RateEnd(
         end.proved,

@@ -161,8 +161,8 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         )
 
     def _price(self, bought: ShoppingList) -> str:
-        things = counted(len(bought.items), "object node")
-        return f"{things} for {_decimal(bought.price)}" if self.offer is Offer.PRICED else things
+        items = counted(len(bought.items), "object node")
+        return f"{items} for {_decimal(bought.price)}" if self.offer is Offer.PRICED else items
 
 
 @question(
@@ -232,8 +232,10 @@ def shopping_list(
             shop = Shop(problem)
             offers = _for_sale(problem, shop) if priced is None else [made_of]
         for made_of in offers:
-            first = prepare(problem, chosen, settings, program, for_sale=made_of[1])
-            priced_lists, complete = _lists(first, shop, made_of[1], max_lists, chosen != (Objective.UNITS,))
+            prepared = prepare(problem, chosen, settings, program, for_sale=made_of[1])
+            priced_lists, complete = _lists(
+                prepared, shop, made_of[1], max_lists, chosen != (Objective.UNITS,)
+            )
             if priced_lists or not complete:
                 break
     except KeyboardInterrupt:
@@ -347,16 +349,16 @@ def _for_sale(problem: Problem, shop: Shop) -> list[tuple[Offer, dict[int, Fract
 
 
 def _lists(
-    first: Prepared, shop: Shop, wares: Mapping[int, Fraction], max_lists: int, compared: bool
+    prepared: Prepared, shop: Shop, wares: Mapping[int, Fraction], max_lists: int, compared: bool
 ) -> tuple[list[_PricedList], bool]:
     """Return the cheapest lists from ``wares``, one run each, and whether all lists are found.
 
     If trees are ``compared`` by more than their size, all lists of the last price are found, too.
     """
-    if first.tree is None:
-        return [], not first.stopped
-    problem = first.problem
-    met = {*problem.goals, *(o for unit in first.units for o in problem.needs[unit])}
+    if prepared.tree is None:
+        return [], not prepared.stopped
+    problem = prepared.problem
+    met = {*problem.goals, *(o for unit in prepared.units for o in problem.needs[unit])}
     scale = math.lcm(*(price.denominator for price in wares.values()))
     sold = {o: price for o, price in wares.items() if o in met}
     if any(price * scale >= 2**31 for price in sold.values()):
@@ -368,7 +370,7 @@ def _lists(
     while len(lists) < max_lists or (
         compared and len(lists) < _MAX_COMPARED and lists[-1].price == lists[max_lists - 1].price
     ):
-        ended = first.run(facts, encodings=(encoding,), predicates=[("_buy", 1)])
+        ended = prepared.run(facts, encodings=(encoding,), predicates=[("_buy", 1)])
         if ended.units is not None:
             items = tuple(sorted(ended.atoms["_buy"]))
             price = sum((wares[o] for o in items), Fraction(0))

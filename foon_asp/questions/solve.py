@@ -113,7 +113,7 @@ def solve(
     """Find the best task tree for the goals of a problem, and prove that no other is better.
 
     At a limit, or when interrupted, the answer is the best tree so far, with a bound on the best one. Under
-    ``soft`` constraints it is the best tree of those that pay least for the constraints they break.
+    ``soft`` constraints it is the best of the trees with the least penalty for broken constraints.
 
     Parameters:
         reductions: What reduces the network before the search: ``all``, ``none``, ``safe`` (all that keep
@@ -131,8 +131,8 @@ def solve(
 
     Returns:
         The answer, with its ``status``, ``costs``, ``units`` and ``tree``; under ``soft`` constraints it has
-        the ``penalty`` and in how many ways each is broken, too. Its ``certificate`` is ``None`` where none
-        was asked for or found.
+        the ``penalty`` and the number of ways in which each is broken, too. Its ``certificate`` is ``None``
+        unless one was requested and found.
 
     Raises:
         BugError: if a built-in engine finds a different optimum.
@@ -160,7 +160,8 @@ def solve(
         from foon_asp.questions.cross_check import cross_checked  # noqa: PLC0415
 
         problem, engines = whole(problem), find_engines()
-    several = soft is None and len(shown(problem).goals) > 1  # of a large store no more is read for that
+    # without reading more of a large store
+    has_several_goals = soft is None and len(shown(problem).goals) > 1
     if soft is not None:
         from foon_asp.questions.solve_soft import softly_answered  # noqa: PLC0415
 
@@ -171,7 +172,7 @@ def solve(
         answer = certified(problem, chosen, settings, certificate)
     else:
         answer = answered_under(problem, chosen, settings, reporter)
-    if several:
+    if has_several_goals:
         from foon_asp.questions.several_goals import with_goals_apart  # noqa: PLC0415
 
         answer = with_goals_apart(answer, settings, problem)

@@ -167,8 +167,8 @@ def _states(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]
     stock = _stock(problem)
     counts = Counter({node: n for node, n in stock.items() if problem.at_hand(node)})
     changes = [((), ()), *((step.came, step.gone) for step in replay.steps)]
-    for came, gone in changes:
-        for copies, sign in ((came, 1), (gone, -1)):
+    for added, consumed in changes:
+        for copies, sign in ((added, 1), (consumed, -1)):
             for copy in copies:
                 if copy.node in stock or not problem.at_hand(copy.node):
                     counts[copy.node] += sign

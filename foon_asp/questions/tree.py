@@ -193,8 +193,8 @@ def read_listed(
 ) -> tuple[Sequence[tuple[FunctionalUnit, Source]], Sequence[ObjectNode]]:
     """Read the units of a tree in the order listed, with their places, and the goals, which an answer has.
 
-    ``network`` is called if the file has ids, and returns the network of these ids. Assumptions are warnings
-    to the caller. Raises :class:`UserError` as :meth:`Tree.read`.
+    ``network`` is called if the file has ids, and returns the network that the ids refer to. Assumptions are
+    warnings to the caller. Raises :class:`UserError` as :meth:`Tree.read`.
     """
     listed = read_answer(file).with_units(file, network)
     return listed.units or (), listed.goals

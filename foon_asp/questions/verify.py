@@ -113,8 +113,8 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
             starting: The object nodes that can be needed, by id, where no kitchen was given.
             stated: The digests that were not computed, because a store states them.
         """
-        own, items = proof.trusted(content), verified.used_up
-        claims = [] if own is None else [trusted_text(own, verified.tree is not None)]
+        user_rules, items = proof.trusted(content), verified.used_up
+        claims = [] if user_rules is None else [trusted_text(user_rules, verified.tree is not None)]
         for measure in verified.trusted:
             units = counted(len(measure.costs), "unit")
             costs = f"the costs of {units} by {measure.name}, and that none is below 0"
@@ -351,17 +351,17 @@ def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool) -> Verifi
             raise
         raise OtherDataError(differing, str(refused)) from None
     for measure in verified.trusted:
-        ours = dataset.measures.get(measure.name)
-        if ours is not None and ours.text != measure.rules:
+        known_measure = dataset.measures.get(measure.name)
+        if known_measure is not None and known_measure.text != measure.rules:
             raise proof.RefusedError(f"the rules of {measure.name} are not those that are given")
-    own = proof.trusted(content)
-    if with_clingo and (verified.trusted or own is not None):
+    user_rules = proof.trusted(content)
+    if with_clingo and (verified.trusted or user_rules is not None):
         problem = dataset.problem(verified.goals, verified.containers, everything=True)
         _check_with_clingo(problem, verified)
-        if own is not None:
+        if user_rules is not None:
             from foon_asp.certificate.own_rules import check_with_clingo  # noqa: PLC0415 (the solver)
 
-            check_with_clingo(content, own, problem, Deadline(_SECONDS))
+            check_with_clingo(content, user_rules, problem, Deadline(_SECONDS))
     starting = None
     if not subject.trusted and dataset.data.starting:
         starting = kitchen_needed(dataset.problem(verified.goals, verified.containers, everything=True))

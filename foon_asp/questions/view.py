@@ -479,8 +479,8 @@ def pages(
         )
         yield page
     if PagePart.FRONT in wanted:
-        several = chosen if len(chosen) > 1 else _against(chosen, problem.rates is not None)
-        yield structs.replace(page, front=pareto(problem, several, **rules, **remaining_limits()))
+        front_objectives = chosen if len(chosen) > 1 else _against(chosen, problem.rates is not None)
+        yield structs.replace(page, front=pareto(problem, front_objectives, **rules, **remaining_limits()))
 
 
 def _against(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:

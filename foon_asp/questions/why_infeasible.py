@@ -69,9 +69,9 @@ def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
             continue
         first, *others = [str(objects[o]) for o, _ in reversed(root.cycle.steps)]
         back = (*others, first)
-        circle = "".join(f", and that only from {other}" for other in back[1:_MAX_CYCLE])
+        cycle_text = "".join(f", and that only from {other}" for other in back[1:_MAX_CYCLE])
         if len(back) > _MAX_CYCLE:
-            circle += f", and so on: {len(back)} object nodes wait for each other"
-        yield f"the cause: {first} can only be made from {back[0]}{circle}"
+            cycle_text += f", and so on: {len(back)} object nodes wait for each other"
+        yield f"the cause: {first} can only be made from {back[0]}{cycle_text}"
     if len(roots) > shown:
         yield f"  ... and {len(roots) - shown} more"

@@ -40,7 +40,7 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[Block]:
 
 
 def summary(findings: Sequence[Finding], files: int, mended: int) -> str:
-    """Return in one line the numbers of files, of findings, and of those that --fix mended or would mend."""
+    """Return in one line the numbers of files, of findings, and of fixes that --fix made or would make."""
     counts = Counter(finding.severity for finding in findings)
     parts = [counted(counts[severity], str(severity)) for severity in Severity if counts[severity]]
     text = f"{counted(files, 'file')}: {', '.join(parts) or 'nothing found'}"

@@ -61,9 +61,9 @@ def schema_of(document: type[Struct]) -> Json:
     for name, definition in reversed(_OWN.values()):  # each may refer to one before it
         if _REFERENCE.format(name=name) in repr(definitions):
             definitions[name] = definition
-    whole = definitions.pop(top["$ref"].rpartition("/")[2])
-    title = whole["description"].rstrip(".")
-    schema = {"$schema": _DRAFT, **whole, "$defs": dict(sorted(definitions.items())), "title": title}
+    root = definitions.pop(top["$ref"].rpartition("/")[2])
+    title = root["description"].rstrip(".")
+    schema = {"$schema": _DRAFT, **root, "$defs": dict(sorted(definitions.items())), "title": title}
     _put_null_last(schema)
     _name_keys(schema)
     return schema

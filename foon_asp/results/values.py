@@ -290,11 +290,11 @@ class ListedConstraint(Value, frozen=True):
 class UsedUpRun(Value, frozen=True):
     """Whether the steps, each done once, run where items are used up.
 
-    Those of an answer are done in the order listed, those of another tree in some order.
+    The steps of an answer are done in the order listed, the steps of another tree in some order.
 
     Attributes:
-        runs: null where no order was found and it is not proved that there is none, and below level 3.
-        shortage: What is missing, if it does not run.
+        runs: null if it is open whether any order runs, and below level 3.
+        shortage: The missing copy, if the steps do not run.
     """
 
     runs: bool | None

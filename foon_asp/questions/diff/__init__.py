@@ -68,8 +68,8 @@ def _of_files(
 def _data_of(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
     """Return the data of trees in files, where Python names none: the bundled kitchen, or the files."""
     kitchen = load(level=level)
-    own = own_networks(kitchen.network, files)
-    return load(own, level=level).dataset if own else kitchen.dataset
+    network_files = own_networks(kitchen.network, files)
+    return load(network_files, level=level).dataset if network_files else kitchen.dataset
 
 
 def _read(file: Path) -> ListedTree | Network:
