@@ -1,4 +1,4 @@
-"""Data that was loaded: a FOON, a kitchen and what stands beside them."""
+"""Loaded data: a FOON, a kitchen, and the files beside them."""
 
 import contextlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
@@ -93,12 +93,14 @@ def load(
     folder = paths[0] if one and paths[0].is_dir() else None
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
-    beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)]
+    side_files = [
+        None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)
+    ]
     with _limited(time_limit, cancel, "reading"):
-        known = read_measures(measures)
-        named = find_data(folder, () if folder else paths, *beside)
+        definitions = read_measures(measures)
+        named = find_data(folder, () if folder else paths, *side_files)
         with _counted(on_progress, size_of(named.network)) as tell, telling(tell):
-            dataset = read_dataset(named, lenient, level).measured(known)
+            dataset = read_dataset(named, lenient, level).measured(definitions)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
     foon = Foon(dataset, name)
     for remark in foon.warnings:
@@ -108,24 +110,24 @@ def load(
 
 @contextlib.contextmanager
 def _counted(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
-    """Yield a function to call with how much more is done in a ``with`` block; at its end, all of it is."""
+    """Yield a function that adds to the progress of a ``with`` block; its end completes the progress."""
     done = 0
 
-    def tell(more: int) -> None:
+    def report(added: int) -> None:
         nonlocal done
-        done += more
+        done += added
         if on_progress is not None:
             on_progress(Progress(done=done, total=total))
 
-    yield tell
+    yield report
     if done < total:
-        tell(total - done)
+        report(total - done)
 
 
 def _limited(
     time_limit: float | None, cancel: Cancel | None, doing: str
 ) -> contextlib.AbstractContextManager[object]:
-    """Stop what is in a ``with`` block in time or by a token, if there is one of them."""
+    """Return a context that stops its ``with`` block at a time limit or by a token, if there is either."""
     if time_limit is None and cancel is None:
         return contextlib.nullcontext()
     return stoppable(None if time_limit is None else seconds(time_limit), cancel, doing)
@@ -137,7 +139,7 @@ PlainUnit = FunctionalUnit | tuple[str, Names, Names] | Mapping[str, Any]
 
 @typed
 def build(
-    units: "Network | Iterable[PlainUnit]",  # a text, for what is no unit is said in other words
+    units: "Network | Iterable[PlainUnit]",  # quoted: _network reports other types itself
     *,
     kitchen: Names | None = None,
     goals: Names | None = None,
@@ -149,7 +151,7 @@ def build(
     on_progress: OnProgress | None = None,
     cancel: Cancel | None = None,
 ) -> "Foon":
-    """Make data of units written in Python, with a kitchen, goals, rates and the rest.
+    """Make data from units written in Python, with a kitchen, goals, rates and further parts.
 
     Parameters:
         units: Units, each as motion, inputs and outputs, where object nodes are in one-line notation:
@@ -212,9 +214,9 @@ def build(
 
 
 def _network(units: Iterable[PlainUnit], tell: Callable[[int], None]) -> Network:
-    """Build a network of units as callers write them; their places are their numbers, from 1.
+    """Build a network of units as callers write them; the place of a unit is its number, from 1.
 
-    ``tell`` is called with the number of units that were added since it was called last.
+    ``tell`` is called with the number of units added since the last call.
     """
     builder, number = NetworkBuilder(), 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
@@ -233,20 +235,20 @@ def _network(units: Iterable[PlainUnit], tell: Callable[[int], None]) -> Network
             raise UserError(f"found the unit {unit!r}; {_UNIT}")
         if not isinstance(motion, str) or not motion.strip():
             raise UserError(f"found the motion {motion!r} of unit {number}, expected a name; {_UNIT}")
-        place = Source("the units", number)
-        builder.add(motion, [*_nodes(inputs, number)], [*_nodes(outputs, number)], place)
-        if number % _OFTEN == 0:
-            tell(_OFTEN)
-    if number % _OFTEN:
-        tell(number % _OFTEN)
+        source = Source("the units", number)
+        builder.add(motion, [*_nodes(inputs, number)], [*_nodes(outputs, number)], source)
+        if number % _REPORT_EVERY == 0:
+            tell(_REPORT_EVERY)
+    if number % _REPORT_EVERY:
+        tell(number % _REPORT_EVERY)
     return builder.build()
 
 
-def _nodes(side: object, number: int) -> Iterator[ObjectNode]:
-    """Return one side of a unit as nodes."""
-    several = [side] if isinstance(side, str | ObjectNode) else side
+def _nodes(names: object, number: int) -> Iterator[ObjectNode]:
+    """Yield the inputs or the outputs of a unit as object nodes."""
+    several = [names] if isinstance(names, str | ObjectNode) else names
     if not isinstance(several, Iterable):
-        raise UserError(f"found {side!r} in unit {number}, expected object nodes; {_UNIT}")
+        raise UserError(f"found {names!r} in unit {number}, expected object nodes; {_UNIT}")
     for name in several:
         if isinstance(name, ObjectNode):
             yield name
@@ -254,13 +256,13 @@ def _nodes(side: object, number: int) -> Iterator[ObjectNode]:
             try:
                 yield parse_node(name)
             except LineError as error:
-                said = f"{name!r} of unit {number} cannot be read: at column {error.column}, {error}"
-                raise UserError(f"the object node {said}") from None
+                message = f"{name!r} of unit {number} cannot be read: at column {error.column}, {error}"
+                raise UserError(f"the object node {message}") from None
         else:
             raise UserError(f"found {name!r} in unit {number}, expected an object node; {_UNIT}")
 
 
-_OFTEN = 100  # units, after which progress is told
+_REPORT_EVERY = 100  # units between two reports of progress
 _UNIT = "a unit is its motion, its inputs and its outputs: ('pour', ['water; hot', 'tea bag'], ['tea; hot'])"
 
 
@@ -306,7 +308,7 @@ class Foon:
         return cls(Dataset.of(data).measured(problem.measures), "a problem")
 
     def close(self) -> None:
-        """Close the store, for all that vary these data too; data that were read whole stay.
+        """Close the store, also for data varied from these; data that were read whole stay.
 
         To read more of a closed store raises :class:`UserError`.
         """
@@ -341,8 +343,8 @@ class Foon:
         Raises:
             UserError: for a name that means no object node or several, with candidates; or for another rule.
         """
-        how = items_of(self._dataset, items, stock, stays)
-        return self._dataset.nearby(self._dataset.named_goals(goals), containers, how)
+        used_up = items_of(self._dataset, items, stock, stays)
+        return self._dataset.nearby(self._dataset.named_goals(goals), containers, used_up)
 
     @typed
     def vary(
@@ -358,7 +360,7 @@ class Foon:
         """Return the same data with another kitchen, other success rates, other prices or other measures.
 
         Parameters:
-            kitchen: Everything at hand: names, or a kitchen file as a :class:`~pathlib.Path`.
+            kitchen: The items available: names, or a kitchen file as a :class:`~pathlib.Path`.
             adding: Names of object nodes to add to the kitchen.
             without: Names of object nodes to remove from the kitchen.
             rates: New success rates of some motions, above 0 and at most 1.
@@ -374,13 +376,13 @@ class Foon:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What was assumed while reading, with files and lines; empty when nothing was."""
+        """The assumptions made while reading, with files and lines."""
         advice = () if self._dataset.has_kitchen else (_NO_KITCHEN,)
         return (*self._dataset.remarks, *advice)
 
     @property
     def level(self) -> int:
-        """What counts of an object node: 3 all of it, 2 without contents, 1 the label."""
+        """The level at which object nodes are compared: 3 all of a node, 2 without contents, 1 the label."""
         return self._dataset.names.level
 
     @property
@@ -390,7 +392,7 @@ class Foon:
 
     @property
     def kitchen(self) -> tuple[ObjectNode, ...]:
-        """Everything at hand, in the order of the network; of a store, all of it is read."""
+        """The items of the kitchen, in the order of the network; of a store, all of it is read."""
         data = self._dataset.data
         return tuple(data.network.objects[o] for o in sorted(data.kitchen))
 
@@ -408,7 +410,7 @@ class Foon:
 
     @property
     def rates(self) -> dict[str, Fraction] | None:
-        """The success rates by motion, exact; ``None`` where none are known."""
+        """The exact success rates by motion; ``None`` if unknown."""
         rates = self._dataset.rates
         return None if rates is None else dict(rates)
 
@@ -419,7 +421,7 @@ class Foon:
 
     @property
     def utensils(self) -> frozenset[str]:
-        """The labels that the container rule ``implied`` looks at."""
+        """The labels of utensils, which the container rule ``implied`` uses."""
         return self._dataset.utensils
 
     @typed
@@ -434,7 +436,7 @@ class Foon:
 
     @property
     def dataset(self) -> Dataset:
-        """What the rooms below ask the data with."""
+        """The data set, for lower modules."""
         return self._dataset
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""From one question to one row of results, whatever happens on the way."""
+"""Rows of results: one for each question of a batch, errors included."""
 
 import time
 from typing import Any, Literal
@@ -8,7 +8,7 @@ from msgspec.structs import asdict, replace
 
 from foon_asp.asp import Outcome, Settings, solve
 from foon_asp.asp.assembly import need_whole_network
-from foon_asp.batch.asked import Asked, Asker
+from foon_asp.batch.batch_question import Asker, BatchQuestion
 from foon_asp.comparison.rows_file import RowForm
 from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
 from foon_asp.deadline import Deadline, LimitError
@@ -19,21 +19,21 @@ from foon_asp.results.plain import costs_by_name, exact_measures, plain, read_pl
 from foon_asp.results.values import Figure
 
 Figures = dict[str, Figure | None]
-"""What is measured, by the name of the objective."""
+"""Measures by the name of the objective."""
 
 
-class AnswerRow(Asked, frozen=True, kw_only=True):
-    """An answer: a question, and what came of it.
+class AnswerRow(BatchQuestion, frozen=True, kw_only=True):
+    """A question of a batch, and its answer.
 
     Attributes:
-        error: Why there is no tree, if there is none.
-        proof: What proves it.
-        costs: What the tree costs by every objective, null where nothing is known, and its ingredients.
+        error: Why there is no tree, or null.
+        proof: The kind of proof, or null.
+        costs: The costs of the tree by every objective, null if unknown, and its ingredients.
         lower_bound: By objective, the best value that a tree can still have.
         runs_used_up: Whether the tree runs where items are used up; null without a tree, and where that is
             not known.
         units: Unit ids in an order that executes.
-        seconds: How long it took.
+        seconds: The time of the answer.
     """
 
     status: Literal["optimal", "infeasible", "feasible", "unknown", "failed"]
@@ -46,59 +46,59 @@ class AnswerRow(Asked, frozen=True, kw_only=True):
     seconds: float | None = None
 
     @property
-    def asked(self) -> Asked:
-        """The question alone, which identifies the row."""
-        return msgspec.convert(self, Asked, from_attributes=True)
+    def question(self) -> BatchQuestion:
+        """The question of the row, which identifies it."""
+        return msgspec.convert(self, BatchQuestion, from_attributes=True)
 
 
-ANSWERS = RowForm("batch-row", plain, lambda row: read_plain(AnswerRow, row), lambda row: row.asked)
+ANSWERS = RowForm("batch-row", plain, lambda row: read_plain(AnswerRow, row), lambda row: row.question)
 
 
 def answer_row(
-    asker: Asker, asked: Asked, memory_limit: int | None = None, how: Settings | None = None
+    asker: Asker, question: BatchQuestion, memory_limit: int | None = None, settings: Settings | None = None
 ) -> AnswerRow:
-    """Answer a question; an error, of the user's or ours, is a row too.
+    """Answer a question; a user error or a bug becomes a row with the status ``failed``.
 
-    ``how`` has the user rules. ``memory_limit`` is in bytes; where a limit leaves no tree, ``error`` says
-    which one.
+    ``settings`` have the user rules. ``memory_limit`` is in bytes; where a limit leaves no tree, ``error``
+    names it.
     """
     began = time.perf_counter()
     try:
-        deadline = Deadline(asked.time_limit, memory_limit)
-        settings = (how or Settings())._replace(deadline=deadline)
+        deadline = Deadline(question.time_limit, memory_limit)
+        settings = (settings or Settings())._replace(deadline=deadline)
         with deadline.watched("reading", late=True):
-            problem = asker.problem(asked)
-        objectives = parse_objectives([asked.objective], problem.measures)
-        near = near_goals(problem, objectives, settings)
-        outcome = None if near is None else solve_nearby(near, objectives, settings)
+            problem = asker.problem(question)
+        objectives = parse_objectives([question.objective], problem.measures)
+        nearby = near_goals(problem, objectives, settings)
+        outcome = None if nearby is None else solve_nearby(nearby, objectives, settings)
         if outcome is None:
             with deadline.watched("reading", late=True):
                 problem = problem.whole if need_whole_network(problem, settings) else problem
-                assert problem.goals  # what they can need is read when it is looked at
+                assert problem.goals  # reads the units that the goals can need
             outcome = solve(problem, objectives, settings)
-        row = _answered(asked, outcome)
+        row = _answered(question, outcome)
     except LimitError as limit:
-        row = _row(asked, status="unknown", error=f"stopped at {limit.stopped}")
+        row = _row(question, status="unknown", error=f"stopped at {limit.stopped}")
     except UserError as error:
-        row = failed_row(asked, str(error))
+        row = failed_row(question, str(error))
     except Exception as error:
-        row = failed_row(asked, f"a bug of foon-asp: {type(error).__name__}: {error}")
+        row = failed_row(question, f"a bug of foon-asp: {type(error).__name__}: {error}")
     return replace(row, seconds=round(time.perf_counter() - began, 6))
 
 
-def failed_row(asked: Asked, error: str) -> AnswerRow:
+def failed_row(question: BatchQuestion, error: str) -> AnswerRow:
     """Return the row of a question without an answer."""
-    return _row(asked, status="failed", error=error)
+    return _row(question, status="failed", error=error)
 
 
-def _row(asked: Asked, **answer: Any) -> AnswerRow:
-    return AnswerRow(**asdict(asked), **answer)
+def _row(question: BatchQuestion, **answer: Any) -> AnswerRow:
+    return AnswerRow(**asdict(question), **answer)
 
 
-def _answered(asked: Asked, outcome: Outcome) -> AnswerRow:
+def _answered(question: BatchQuestion, outcome: Outcome) -> AnswerRow:
     problem, units = outcome.problem, outcome.units
     row = _row(
-        asked,
+        question,
         status=str(outcome.status),
         error=None if units or not outcome.stopped else f"stopped at {outcome.stopped}",
         proof=None if outcome.proof is None else str(outcome.proof),

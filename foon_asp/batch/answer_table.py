@@ -7,7 +7,7 @@ from typing import Any, Final
 import msgspec
 
 from foon_asp.batch.answer_row import AnswerRow, Figures
-from foon_asp.batch.asked import Goals
+from foon_asp.batch.batch_question import Goals
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective
 from foon_asp.results.plain import csv_text, flat_row, plain
@@ -34,9 +34,11 @@ def columns(objectives: Iterable[Objective]) -> Iterator[tuple[str, Any]]:
         if field.type != Figures | None:
             yield field.name, field.type
             continue
-        for each in objectives:
-            name = f"{field.name}.{each}"
-            yield from [(name, int)] if each.row.whole else [(name, float | None), (f"{name}_exact", str)]
+        for objective in objectives:
+            name = f"{field.name}.{objective}"
+            yield from (
+                [(name, int)] if objective.row.whole else [(name, float | None), (f"{name}_exact", str)]
+            )
         if field.name == "costs":
             yield "costs.ingredients", int
 

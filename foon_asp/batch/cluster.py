@@ -9,23 +9,23 @@ from typing import Final
 
 from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import AnswerRow, answer_row, failed_row
-from foon_asp.batch.asked import Asked, Asker, Opener
+from foon_asp.batch.batch_question import Asker, BatchQuestion, Opener
 from foon_asp.errors import UserError
 
-_PATIENCE = "10s"  # until there has to be an answer from the scheduler
-_TASKS_AHEAD: Final = 2  # on their way for each thread of the cluster, so that none waits for the next
-_QUESTIONS: Final = 32  # of a task: Dask takes some milliseconds for each task
+_PATIENCE = "10s"  # time limit for an answer from the scheduler
+_TASKS_AHEAD: Final = 2  # tasks queued for each thread of the cluster, so that no thread waits
+_QUESTIONS_PER_TASK: Final = 32  # Dask takes some milliseconds for each task
 _TASK_SECONDS: Final = 0.5  # after which a task begins with no further question
 
 
 def answer_on_cluster(
     opener: Opener,
-    questions: Iterable[Asked],
+    questions: Iterable[BatchQuestion],
     address: str,
     memory_limit: int | None = None,
-    how: Settings | None = None,
+    settings: Settings | None = None,
 ) -> Iterator[AnswerRow]:
-    """Answer questions on the workers of a scheduler, as ``how`` says; return rows as they come.
+    """Answer questions on the workers of a scheduler, under ``settings``; return rows as they come.
 
     A worker opens the data once, and keeps them until others are asked for. The files have to be there under
     the same names as here. What a task leaves or dies of is asked in tasks of one question each. A question
@@ -43,20 +43,20 @@ def answer_on_cluster(
         raise UserError(f"no scheduler at {address}: {error}") from None
     with client:
         waiting = iter(questions)
-        again: deque[tuple[Asked, ...]] = deque()
-        suspects: deque[tuple[Asked, ...]] = deque()
-        asked_of: dict[str, tuple[Asked, ...]] = {}
+        retries: deque[tuple[BatchQuestion, ...]] = deque()
+        suspects: deque[tuple[BatchQuestion, ...]] = deque()
+        chunk_of: dict[str, tuple[BatchQuestion, ...]] = {}
         is_alone = False
         running = as_completed()
 
-        def submit(chunk: tuple[Asked, ...]) -> None:
-            future = client.submit(_answer_some, opener, chunk, memory_limit, how, pure=False)
-            asked_of[future.key] = chunk
+        def submit(chunk: tuple[BatchQuestion, ...]) -> None:
+            future = client.submit(_answer_some, opener, chunk, memory_limit, settings, pure=False)
+            chunk_of[future.key] = chunk
             running.add(future)
 
         def submit_ahead() -> None:
-            while len(asked_of) < ahead:
-                chunk = again.popleft() if again else tuple(islice(waiting, _QUESTIONS))
+            while len(chunk_of) < ahead:
+                chunk = retries.popleft() if retries else tuple(islice(waiting, _QUESTIONS_PER_TASK))
                 if not chunk:
                     break
                 submit(chunk)
@@ -65,30 +65,30 @@ def answer_on_cluster(
         ahead = _TASKS_AHEAD * max(1, sum(threads.values()))
         submit_ahead()
         for future in running:
-            chunk = asked_of.pop(future.key)
+            chunk = chunk_of.pop(future.key)
             rows: list[AnswerRow] = future.result() if future.status == "finished" else []
             if rows or len(chunk) > 1:
-                again += ((asked,) for asked in chunk[len(rows) :])
+                retries += ((question,) for question in chunk[len(rows) :])
             elif isinstance(future.exception(), KilledWorker) and not is_alone:
                 suspects.append(chunk)
             else:
                 rows = [failed_row(chunk[0], f"on the cluster: {future.exception()}")]
             submit_ahead()
-            is_alone = not asked_of
+            is_alone = not chunk_of
             if is_alone and suspects:
                 submit(suspects.popleft())
             yield from rows
 
 
 def _answer_some(
-    opener: Opener, chunk: tuple[Asked, ...], memory_limit: int | None, how: Settings | None
+    opener: Opener, chunk: tuple[BatchQuestion, ...], memory_limit: int | None, settings: Settings | None
 ) -> list[AnswerRow]:
-    """Return the rows of the first questions of a chunk, at least one, after half a second."""
+    """Return the rows of the first questions of a chunk: at least one, and no new one after half a second."""
     asker = _open(opener)
     began = time.monotonic()
-    rows = [answer_row(asker, chunk[0], memory_limit, how)]
+    rows = [answer_row(asker, chunk[0], memory_limit, settings)]
     while len(rows) < len(chunk) and time.monotonic() - began < _TASK_SECONDS:
-        rows.append(answer_row(asker, chunk[len(rows)], memory_limit, how))
+        rows.append(answer_row(asker, chunk[len(rows)], memory_limit, settings))
     return rows
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 
-from foon_asp.batch.asked import Asked, Asker
+from foon_asp.batch.batch_question import Asker, BatchQuestion
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.problem import ITEMS, ContainerRule, parse_objectives
@@ -18,34 +18,36 @@ from foon_asp.text.json_list import json_fault
 from foon_asp.text.json_value import read_json
 from foon_asp.text.plain_file import read_plain_text
 
-_KEYS = Asked.__struct_fields__
+_KEYS = BatchQuestion.__struct_fields__
 _FILES = ("kitchen", "stock", "stays")
-_KNOWN = {"containers": [*map(str, ContainerRule)], "items": ITEMS}
+_CHOICES = {"containers": [*map(str, ContainerRule)], "items": ITEMS}
 _FOR_MANY = ("@goals", "@makeable")
 
 
-def read_questions(file: Path, time_limit: float | None, measures: Collection[str] = ()) -> list[Asked]:
+def read_questions(
+    file: Path, time_limit: float | None, measures: Collection[str] = ()
+) -> list[BatchQuestion]:
     """Read questions, every combination of the values of a line; kitchens are beside the file.
 
-    ``time_limit`` is for those that do not say theirs, and ``measures`` are objectives of the user's own, by
-    name. Goals may be words that stand for many.
+    ``time_limit``, in seconds, is for questions without their own; ``measures`` are the names of user-defined
+    objectives. Goals may be words that stand for many.
 
-    Raises :class:`InputError` naming every line that is not one object with the keys that are known.
+    Raises :class:`InputError` naming every line that is not one object with known keys.
     """
-    questions: list[Asked] = []
+    questions: list[BatchQuestion] = []
     errors: list[Diagnostic] = []
     for number, text in enumerate(read_plain_text(file).replace("\r\n", "\n").split("\n"), 1):
         if not text.strip():
             continue
         try:
-            for asked in _combinations(read_json(text), time_limit):
-                parse_objectives([asked.objective], measures)
-                questions.append(_with_files(asked, file.parent))
+            for question in _combinations(read_json(text), time_limit):
+                parse_objectives([question.objective], measures)
+                questions.append(_with_files(question, file.parent))
         except (UserError, ValueError) as problem:
             fault = json_fault(problem) if isinstance(problem, json.JSONDecodeError) else None
-            place = Source(str(file), number, fault.column if fault else 1)
+            source = Source(str(file), number, fault.column if fault else 1)
             message = fault.message if fault else str(problem)
-            errors.append(Diagnostic(Severity.ERROR, "json", message, place, text))
+            errors.append(Diagnostic(Severity.ERROR, "json", message, source, text))
     if errors:
         raise InputError(errors)
     if not questions:
@@ -53,66 +55,67 @@ def read_questions(file: Path, time_limit: float | None, measures: Collection[st
     return questions
 
 
-def named_files(questions: Iterable[Asked]) -> set[Path]:
+def named_files(questions: Iterable[BatchQuestion]) -> set[Path]:
     """Return the files that questions name."""
-    names = {getattr(asked, key) for asked in questions for key in _FILES}
+    names = {getattr(question, key) for question in questions for key in _FILES}
     return {Path(name) for name in names - {None, str(STARTING)}}
 
 
-def each_question(questions: Iterable[Asked], asker: Asker) -> Iterator[Asked]:
-    """Return every question once, with the goals that words stand for."""
+def each_question(questions: Iterable[BatchQuestion], asker: Asker) -> Iterator[BatchQuestion]:
+    """Return every question once, with ``@goals`` and ``@makeable`` replaced by goals."""
     named = functools.cache(asker.named)
-    seen: set[Asked] = set()
-    for asked in questions:
-        goals: Iterable[str | tuple[str, ...]] = (asked.goal,)
-        if asked.goal in _FOR_MANY:
-            goals = named(str(asked.goal), asked.containers, asked.kitchen)
+    seen: set[BatchQuestion] = set()
+    for question in questions:
+        goals: Iterable[str | tuple[str, ...]] = (question.goal,)
+        if question.goal in _FOR_MANY:
+            goals = named(str(question.goal), question.containers, question.kitchen)
         for goal in goals:
-            one = msgspec.structs.replace(asked, goal=goal)
-            if one not in seen:
-                seen.add(one)
-                yield one
+            expanded = msgspec.structs.replace(question, goal=goal)
+            if expanded not in seen:
+                seen.add(expanded)
+                yield expanded
 
 
-def _combinations(value: object, time_limit: float | None) -> Iterator[Asked]:
+def _combinations(value: object, time_limit: float | None) -> Iterator[BatchQuestion]:
     """Return every combination of the values of a line; raises :class:`ValueError` for a wrong one."""
     if not isinstance(value, dict) or "goal" not in value:
         raise ValueError('expected an object such as {"goal": "ice", "objective": ["units", "success"]}')
     if unknown := sorted(value.keys() - {*_KEYS}):
         raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(_KEYS)}")
-    given = {"time_limit": time_limit} | value
-    several = {key: _several(given[key]) for key in reversed(_KEYS) if key in given}  # all goals by turns
-    if [] in several.values():
+    entry = {"time_limit": time_limit} | value
+    # goals vary fastest in the product, so the goal comes last
+    values_of_key = {key: _several(entry[key]) for key in reversed(_KEYS) if key in entry}
+    if [] in values_of_key.values():
         raise ValueError("found an empty list, expected at least one value")
-    for key, known in _KNOWN.items():
-        for name in several.get(key, ()):
-            if name not in known:
-                raise ValueError(f"found the {key} {name!r}, expected {' or '.join(known)}")
-    for values in itertools.product(*several.values()):
-        asked = msgspec.convert(dict(zip(several, values, strict=True)), Asked)
-        if len(asked.goals) == 1:
-            asked = msgspec.structs.replace(asked, goal=asked.goals[0])
-        for name in asked.goals:
-            if name.startswith("@") and asked.goal not in _FOR_MANY:
+    for key, choices in _CHOICES.items():
+        for name in values_of_key.get(key, ()):
+            if name not in choices:
+                raise ValueError(f"found the {key} {name!r}, expected {' or '.join(choices)}")
+    for values in itertools.product(*values_of_key.values()):
+        question = msgspec.convert(dict(zip(values_of_key, values, strict=True)), BatchQuestion)
+        if len(question.goals) == 1:
+            question = msgspec.structs.replace(question, goal=question.goals[0])
+        for name in question.goals:
+            if name.startswith("@") and question.goal not in _FOR_MANY:
                 raise ValueError(
                     f"found the goal {name!r}, expected a name, or @goals or @makeable by itself"
                 )
-        if asked.items == "lasting" and (asked.stock or asked.stays):
+        if question.items == "lasting" and (question.stock or question.stays):
             raise ValueError(
                 'a stock, and what stays, are for items that are used up: add "items": "used-up"'
             )
-        yield asked
+        yield question
 
 
 def _several(value: object) -> list[object]:
-    """Return the values of a key; one that is not in a list stands alone."""
+    """Return the values of a key as a list; a single value is a list of one."""
     return value if isinstance(value, list) else [value]
 
 
-def _with_files(asked: Asked, folder: Path) -> Asked:
-    """Return a question that names its files from where we are; the starting kitchen is no file."""
-    named = {key: name for key in _FILES if (name := getattr(asked, key)) is not None}
+def _with_files(question: BatchQuestion, folder: Path) -> BatchQuestion:
+    """Return a question whose file names are relative to the working directory; ``@starting`` stays."""
+    named = {key: name for key in _FILES if (name := getattr(question, key)) is not None}
     files = {
         key: str(folder / name) for key, name in named.items() if (key, name) != ("kitchen", str(STARTING))
     }
-    return msgspec.structs.replace(asked, **files)
+    return msgspec.structs.replace(question, **files)

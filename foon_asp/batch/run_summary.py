@@ -1,4 +1,4 @@
-"""What came of a run of many questions."""
+"""The summary of a batch run."""
 
 import statistics
 from collections import Counter
@@ -7,25 +7,25 @@ from typing import Self
 
 from foon_asp.batch.answer_row import AnswerRow
 from foon_asp.network import counted
-from foon_asp.results.document import Document, Known
-from foon_asp.results.table import Part
+from foon_asp.results.document import Document, Unserialized
+from foon_asp.results.table import Block
 from foon_asp.text.json_value import schema_name
 
-_SHOWN = 3  # errors, of possibly thousands
+_MAX_SHOWN = 3  # errors listed, of possibly thousands
 
 
 class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
-    """What came of a run of many questions.
+    """The summary of a batch run.
 
     Attributes:
-        questions: How many there are.
-        answered_before: How many had an answer from an earlier run.
-        answered: How many were answered by this run.
-        statuses: How many answers there are of each status.
-        proofs: How many answers of this run are proved by what.
-        seconds_median: Of an answer of this run.
-        seconds_worst: The greatest of an answer of this run.
-        seconds: How long the run took.
+        questions: The number of questions.
+        answered_before: The number of questions answered by an earlier run.
+        answered: The number of questions answered by this run.
+        statuses: The number of answers by status.
+        proofs: The number of answers of this run by kind of proof.
+        seconds_median: The median time of an answer of this run.
+        seconds_worst: The greatest time of an answer of this run.
+        seconds: The time of the run.
     """
 
     questions: int
@@ -37,29 +37,29 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
     seconds_worst: float | None
     seconds: float
 
-    errors = Known[Sequence[AnswerRow]](())
+    errors = Unserialized[Sequence[AnswerRow]](())
     """The rows of this run that have an error."""
 
     @classmethod
     def of(
         cls, questions: int, before: Sequence[AnswerRow], now: Sequence[AnswerRow], seconds: float
     ) -> Self:
-        """Sum up the rows of a run of some seconds, and those that were there before."""
-        each = [row.seconds for row in now if row.seconds is not None]
-        found = cls(
+        """Return the summary of the rows of a run that took ``seconds``, and of an earlier run."""
+        durations = [row.seconds for row in now if row.seconds is not None]
+        summary = cls(
             questions=questions,
             answered_before=len(before),
             answered=len(now),
             statuses=dict(sorted(Counter(row.status for row in (*before, *now)).items())),
             proofs=dict(sorted(Counter(row.proof for row in now if row.proof is not None).items())),
-            seconds_median=statistics.median(each) if each else None,
-            seconds_worst=max(each, default=None),
+            seconds_median=statistics.median(durations) if durations else None,
+            seconds_worst=max(durations, default=None),
             seconds=round(seconds, 3),
         )
-        return found.knowing(errors=[row for row in now if row.error is not None])
+        return summary.knowing(errors=[row for row in now if row.error is not None])
 
-    def show(self) -> Iterator[Part]:
-        """Return how many were answered and proved, and the first of the rows that have an error."""
+    def show(self) -> Iterator[Block]:
+        """Return the numbers of answers and proofs, and the first rows with an error."""
         before = f", {self.answered_before:,} of them answered before" if self.answered_before else ""
         yield counted(self.questions, "question", ",") + before
         yield f"in total: {_counts(self.statuses, '') or 'none'}"
@@ -68,10 +68,10 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
             yield f"proved: {_counts(self.proofs, 'by ') or 'none'}"
         if self.seconds_median is not None:
             yield f"seconds for one: median {self.seconds_median:.3f}, worst {self.seconds_worst:.3f}"
-        yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in self.errors[:_SHOWN])
+        yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in self.errors[:_MAX_SHOWN])
         failed = sum(row.status == "failed" for row in self.errors)
-        if failed > _SHOWN:
-            yield f"... and {failed - _SHOWN} more failed: see their rows"
+        if failed > _MAX_SHOWN:
+            yield f"... and {failed - _MAX_SHOWN} more failed: see their rows"
 
 
 def _counts(counts: dict[str, int], by: str) -> str:

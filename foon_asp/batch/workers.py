@@ -1,4 +1,4 @@
-"""Questions shared among processes of this machine."""
+"""Questions of a batch answered by local processes."""
 
 from collections.abc import Iterable, Iterator
 from functools import partial
@@ -6,7 +6,7 @@ from typing import Final
 
 from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import AnswerRow, answer_row, failed_row
-from foon_asp.batch.asked import Asked, Opener
+from foon_asp.batch.batch_question import BatchQuestion, Opener
 from foon_asp.errors import UserError
 from foon_asp.processes.pool import LostError, share
 
@@ -15,10 +15,10 @@ GRACE: Final = 10.0  # seconds beyond its time limit after which a process that 
 
 def answer_all(
     opener: Opener,
-    questions: Iterable[Asked],
+    questions: Iterable[BatchQuestion],
     jobs: int,
     memory_limit: int | None = None,
-    how: Settings | None = None,
+    settings: Settings | None = None,
     grace: float = GRACE,
 ) -> Iterator[AnswerRow]:
     """Answer questions in processes, each with its own copy of the data; return rows as they come.
@@ -29,20 +29,20 @@ def answer_all(
     once yourself before.
     """
 
-    def seconds(asked: Asked) -> float | None:
-        return None if asked.time_limit is None else asked.time_limit + grace
+    def seconds(question: BatchQuestion) -> float | None:
+        return None if question.time_limit is None else question.time_limit + grace
 
-    begin = partial(_begin, opener, memory_limit, how)
-    for asked, row, error in share(begin, questions, jobs, seconds):
+    begin = partial(_begin, opener, memory_limit, settings)
+    for question, row, error in share(begin, questions, jobs, seconds):
         if isinstance(error, LostError) and error.is_late:
-            yield failed_row(asked, f"no answer within the time limit and {grace:g} seconds more")
+            yield failed_row(question, f"no answer within the time limit and {grace:g} seconds more")
         elif isinstance(error, LostError | UserError):
-            yield failed_row(asked, str(error))
+            yield failed_row(question, str(error))
         elif row is None:
             raise error or AssertionError("neither an answer nor an error")
         else:
             yield row
 
 
-def _begin(opener: Opener, memory_limit: int | None, how: Settings | None) -> "partial[AnswerRow]":
-    return partial(answer_row, opener(), memory_limit=memory_limit, how=how)
+def _begin(opener: Opener, memory_limit: int | None, settings: Settings | None) -> "partial[AnswerRow]":
+    return partial(answer_row, opener(), memory_limit=memory_limit, settings=settings)

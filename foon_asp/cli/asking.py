@@ -19,8 +19,8 @@ from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.questions.caller import Caller, asked_by
-from foon_asp.questions.contract import Part, Question, question_of
-from foon_asp.questions.each import Each
+from foon_asp.questions.contract import Question, Role, question_of
+from foon_asp.questions.each_goal import EachGoal
 from foon_asp.questions.index import module_name, question_name
 from foon_asp.questions.posing import no_data, one_problem
 from foon_asp.questions.posing_plan import a_plan, settle_data
@@ -34,9 +34,9 @@ def find_question(verb: str) -> Question:
     return question_of(getattr(module, question_name(verb)))
 
 
-def parameters(question: Question, values: Mapping[str, Any], parts: Part) -> dict[str, Any]:
+def parameters(question: Question, values: Mapping[str, Any], parts: Role) -> dict[str, Any]:
     """Return the values, by name, of the options of a question that belong to ``parts``."""
-    names = (option.name for option in question.options if option.part & parts)
+    names = (option.name for option in question.options if option.role & parts)
     return {name: values[name] for name in names if name in values}
 
 
@@ -46,7 +46,7 @@ def ask(
     """Call a question with the parameters of a command, under its ``deadline``; return the result.
 
     ``form`` is the chosen format of the result; ``None`` is the default. Several assumed goals give an
-    :class:`Each` of results.
+    :class:`EachGoal` of results.
     """
     option_names = {option.name for option in question.options}
     command = _Command({name: value for name, value in values.items() if name not in option_names})
@@ -58,11 +58,11 @@ def ask(
         if question.pose is not no_data or "time_limit" in option_names:
             progress.begin()  # a search follows
         with asked_by(caller._replace(read_seconds=command.read_seconds)):
-            options_ = parameters(question, values, Part.QUESTION | Part.COMMAND)
+            options_ = parameters(question, values, Role.QUESTION | Role.COMMAND)
             results = [question.command(*subject, **options_) for subject in subjects]
     if len(results) == 1:
         return results[0]
-    return Each(answers=tuple(results))
+    return EachGoal(answers=tuple(results))
 
 
 def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
@@ -87,7 +87,7 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
 
     Assumed goals and kitchen items are reported to the user.
     """
-    problem_options = parameters(question, values, Part.PROBLEM)
+    problem_options = parameters(question, values, Role.PROBLEM)
     tree = values.get("tree")
     if question.pose is not a_plan and tree is not None and tree.is_file():  # a pipe is read once
         listed = read_answer(tree)

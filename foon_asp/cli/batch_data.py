@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from foon_asp.batch.asked import Asked
+from foon_asp.batch.batch_question import BatchQuestion
 from foon_asp.cli import options
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.comparison.many import makeable
@@ -60,7 +60,7 @@ class BatchData:
         """A problem over the data, with which the rules for all questions are checked."""
         return self._datasets[None].problem((0,), "strict")
 
-    def problem(self, question: Asked) -> Problem:
+    def problem(self, question: BatchQuestion) -> Problem:
         """Return the problem of a question; of a large store, the relevant part is read at its first use."""
         dataset = self._with(question.kitchen)
         files = question.stock, question.stays

@@ -9,7 +9,7 @@ import click
 
 from foon_asp.cli.named_path import NamedPath, WrittenPath
 from foon_asp.deadline import memory_size, seconds
-from foon_asp.questions.contract import Kind, Option, Part
+from foon_asp.questions.contract import Kind, Option, Role
 from foon_asp.rules.constraint import Constraint, RuleText, named_constraint
 
 Command = TypeVar("Command", bound=Callable[..., object])
@@ -104,8 +104,8 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         default=option.default,
         show_default=option.default is not None,
         metavar=option.metavar or ("FILE" if option.kind in {Kind.FILE, Kind.WRITTEN} else None),
-        expose_value=option.part is not Part.MORE,
-        is_eager=option.part is Part.MORE,  # before the option to which it adds
+        expose_value=option.role is not Role.EXTRA_VALUES,
+        is_eager=option.role is Role.EXTRA_VALUES,  # before the option to which it adds
         callback=_weights if option.kind is Kind.WEIGHTS else _CALLBACKS.get(option.name),
         shell_complete=_complete if option.name in _NAMED_IN_DATA else None,
         help=f"{option.help[:-1]}; repeatable." if option.many else option.help,

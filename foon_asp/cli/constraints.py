@@ -9,7 +9,7 @@ from foon_asp.cli.output import write_parts
 from foon_asp.cli.progress_line import Progress
 from foon_asp.errors import UserError
 from foon_asp.questions.constraint_list import list_constraints
-from foon_asp.questions.contract import TABLES, Part
+from foon_asp.questions.contract import TABLES, Role
 from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, RULE
 from foon_asp.results.document import Document
 from foon_asp.rules.constraint import Constraint, RuleText
@@ -19,7 +19,7 @@ _EXPLAIN = CONSTRAINTS._replace(
     flags=("--explain",),
     help="Say what the rules of a file or of a ready-made constraint do, and how fast that is.",
 )
-_RULE = RULE._replace(name="stated", part=Part.COMMAND, help="A rule to explain, by itself or beside files.")
+_RULE = RULE._replace(name="stated", role=Role.COMMAND, help="A rule to explain, by itself or beside files.")
 _CONSTANTS = CONSTANTS._replace(name="values", help="The value of a #const in what is explained.")
 
 

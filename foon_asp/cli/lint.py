@@ -22,7 +22,7 @@ from foon_asp.linting.mending import is_mendable, mended
 from foon_asp.linting.vocabulary import Vocabulary
 from foon_asp.network import counted
 from foon_asp.questions.contract import TABLES
-from foon_asp.questions.lint import Found, Linted, find, linted_files
+from foon_asp.questions.lint import Findings, Linted, find, linted_files
 from foon_asp.questions.result import Ending
 from foon_asp.report.lint_findings import explained
 from foon_asp.results.plain import plain
@@ -213,7 +213,7 @@ def _write_vocabulary(files: Sequence[Path], output: Path | None) -> ExitCode:
 _Repaired = Mapping[Path, tuple[bytes, bytes]]  # the content of a file before and after
 
 
-def _repaired(found: Found, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
+def _repaired(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
     """Return the content of every file with a fixable finding, before and after its repair."""
     fixes: dict[str, list[Diagnostic]] = {}
     for finding in found.findings:

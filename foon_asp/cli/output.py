@@ -12,7 +12,7 @@ import click
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable, escaped_lines
-from foon_asp.results.table import Part, rendered
+from foon_asp.results.table import Block, rendered
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -150,7 +150,7 @@ def terminal() -> tuple[int | None, bool]:
     return shutil.get_terminal_size().columns, "NO_COLOR" not in os.environ
 
 
-def write_parts(parts: Iterable[Part]) -> None:
+def write_parts(parts: Iterable[Block]) -> None:
     """Write lines and tables to standard output, in the width and the colours of the terminal."""
     width, coloured = terminal()
     text = with_plain_signs(rendered(parts, width, coloured))

@@ -22,7 +22,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS
 from foon_asp.questions.caller import Caller, asked_by
-from foon_asp.questions.contract import Part, Question, not_built
+from foon_asp.questions.contract import Question, Role, not_built
 from foon_asp.questions.index import INDEX
 from foon_asp.questions.posing import no_data
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
@@ -50,7 +50,7 @@ def question_command(verb: str) -> click.Command:
     names = {option.name for option in question.options}
     if "containers" in names and "items" not in names:
         command = _without_used_up(verb)(command)
-    own_options = [o for o in question.options if not (o.name in _LIMITS and o.part is Part.COMMAND)]
+    own_options = [o for o in question.options if not (o.name in _LIMITS and o.role is Role.COMMAND)]
     if len(own_options) < len(question.options):
         command = options.limit_options(command)
     for declared in reversed(own_options):
@@ -85,7 +85,7 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
         deadline: Deadline | None = None,
         **values: Any,
     ) -> ExitCode:
-        charts = [file for files in parameters(question, values, Part.CHART).values() for file in files]
+        charts = [file for files in parameters(question, values, Role.CHART).values() for file in files]
         if charts:
             from foon_asp.pictures.chart import check_suffix
 

@@ -14,8 +14,8 @@ from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.problem import parse_objectives
+from foon_asp.questions.common_options import settings_of
 from foon_asp.questions.contract import Question
-from foon_asp.questions.how import settings_of
 
 _FILE_OPTIONS = {"output": "-o", "format_": "--format"}
 

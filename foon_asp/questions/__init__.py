@@ -1,1 +1,1 @@
-"""The questions: one file for each, with its result, the text and JSON of that, and its options."""
+"""The questions: one module for each, with its result type, text, JSON and options."""

@@ -15,18 +15,18 @@ from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, answered_nearby
 from foon_asp.questions.arguments import asked_with, chosen_objectives, read
 from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.contract import asked_in_python
-from foon_asp.questions.how import How, limits_of, settings_of
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.figure_text import figure_text
-from foon_asp.results.table import Cell, Part, Table
+from foon_asp.results.table import Block, Cell, Table
 from foon_asp.results.values_of import head_of
 from foon_asp.text.json_value import schema_name
 
 _ALWAYS = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)  # columns; others where they are asked for
 _STYLES = {Status.OPTIMAL: "good", Status.INFEASIBLE: "bad"}
-_LEFT = frozenset({0, 1})
+_LEFT_ALIGNED = frozenset({0, 1})
 
 
 class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("optima")):
@@ -47,25 +47,29 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
 
     @property
     def ending(self) -> Ending:
-        """Done when every answer is proved, a goal without a tree included."""
+        """``DONE`` if every answer is proved, infeasible ones included."""
         stopped = any(answer.ending is Ending.LIMIT for answer in self.answers)
         return Ending.LIMIT if stopped else Ending.DONE
 
-    def show(self) -> Iterator[Part]:
+    def show(self) -> Iterator[Block]:
         """Return a table with a row for each tree that is best by something."""
         first = self.answers[0]
         trees, tree = ("task trees", "tree") if self.items == "lasting" else ("plans", "plan")
         yield f"The best {trees} ({first.conditions})"
         yield ""
-        asked = list(dict.fromkeys(answer.objectives for answer in self.answers))
-        others = [each for each in dict.fromkeys(chain(*asked)) if each not in _ALWAYS]
+        objective_lists = list(dict.fromkeys(answer.objectives for answer in self.answers))
+        others = [
+            objective for objective in dict.fromkeys(chain(*objective_lists)) if objective not in _ALWAYS
+        ]
         columns = (*_ALWAYS, *others)
         rows: list[list[str | Cell]] = []
         for goal, equal in self._by_goal():
-            for place, answers in enumerate(equal):
-                cells = _cells(answers, len(asked), columns)
-                rows.append([Cell("" if place else goal, "strong"), *cells])
-        yield Table(["goal", "best by", *columns, "status", "seconds"], rows, _LEFT | {len(columns) + 2})
+            for index, answers in enumerate(equal):
+                cells = _cells(answers, len(objective_lists), columns)
+                rows.append([Cell("" if index else goal, "strong"), *cells])
+        yield Table(
+            ["goal", "best by", *columns, "status", "seconds"], rows, _LEFT_ALIGNED | {len(columns) + 2}
+        )
         if any(answer.status is Status.OPTIMAL for answer in self.answers):
             yield "optimal: proved best by the objective named"
         if any(answer.status is Status.INFEASIBLE for answer in self.answers):
@@ -74,7 +78,7 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
             yield "* with each item used once, it does not run: see --items used-up"
 
     def _by_goal(self) -> Iterator[tuple[str, list[list[Answer]]]]:
-        """Yield each goal with its answers, those of the same status and costs together."""
+        """Yield each goal with its answers, grouped by equal status and costs."""
         goals: dict[object, dict[object, list[Answer]]] = {}
         for answer in self.answers:
             rows = goals.setdefault(answer.goals, {})
@@ -87,13 +91,13 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
         return f"<Optima: {len(self.answers)} answers>"
 
 
-def _cells(answers: list[Answer], asked: int, columns: Iterable[Objective]) -> Iterator[str | Cell]:
-    """Yield the cells of answers with the same tree, behind their goal."""
+def _cells(answers: list[Answer], list_count: int, columns: Iterable[Objective]) -> Iterator[str | Cell]:
+    """Yield the cells of a row, after the goal: answers with equal status and costs."""
     first = answers[0]
     names = [" then ".join(answer.objectives) for answer in answers]
     leading = {answer.objectives[0] for answer in answers}
     mark = " *" if any(map(_is_short_of_copies, answers)) else ""
-    yield "" if first.costs is None else ("all" if len(names) == asked > 1 else ", ".join(names)) + mark
+    yield "" if first.costs is None else ("all" if len(names) == list_count > 1 else ", ".join(names)) + mark
     for objective in columns:
         measure = None if first.costs is None else first.costs.measures.get(objective)
         text = "" if first.costs is None else "–" if measure is None else _measure_text(objective, measure)
@@ -109,13 +113,13 @@ def _measure_text(objective: Objective, measure: int | Fraction) -> str:
 
 
 def _is_short_of_copies(answer: Answer) -> bool:
-    """Return whether there is a tree that would not run if items were used up."""
+    """Return whether the answer has a tree that would not run if items were used up."""
     return answer.used_up is not None and answer.used_up.runs is False
 
 
 @asked_in_python
 def solve_all_goals(
-    problem: Problem, objectives: str | Iterable[str] = "units", **how: Unpack[How]
+    problem: Problem, objectives: str | Iterable[str] = "units", **options: Unpack[CommonOptions]
 ) -> Optima:
     """Find the best tree for each goal of a problem by itself, under several lists of objectives.
 
@@ -139,18 +143,19 @@ def solve_all_goals(
     texts = [objectives] if isinstance(objectives, str) else objectives
     lists = [chosen_objectives(problem, text) for text in texts]
     # limits are for each answer, ctrl-C is for all of them
-    settings, each_limits, within = settings_of(how), limits_of(how), Deadline(within=caller().deadline)
+    settings, each_limits = settings_of(options), limits_of(options)
+    outer = Deadline(within=caller().deadline)
     outcomes: list[Outcome] = []
     for goal in _each_goal(problem, settings):
         for chosen in lists:
-            now = settings._replace(deadline=Deadline(*each_limits, within=within))
-            near = near_goals(goal, chosen, now)
-            if near is None:
-                outcomes.append(find(read(goal), chosen, now, caller().reporter))
+            goal_settings = settings._replace(deadline=Deadline(*each_limits, within=outer))
+            nearby = near_goals(goal, chosen, goal_settings)
+            if nearby is None:
+                outcomes.append(find(read(goal), chosen, goal_settings, caller().reporter))
             else:
-                outcomes.append(answered_nearby(near, chosen, now).outcome)
-    every = dict.fromkeys(each for outcome in outcomes for each in outcome.objectives)
-    return Optima(**head_of(shown(problem), every), answers=tuple(map(Answer.of, outcomes)))
+                outcomes.append(answered_nearby(nearby, chosen, goal_settings).outcome)
+    objectives_of_all = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)
+    return Optima(**head_of(shown(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes)))
 
 
 def _each_goal(problem: Problem, settings: Settings) -> list[Problem]:

@@ -20,21 +20,21 @@ from foon_asp.pictures.notebook import page_bundle
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.arguments import Objectives, asked_with, at_least, chosen_objectives
 from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Option, question
-from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import ITEMS, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
-from foon_asp.results.document import AboutGoals, Known
+from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import costs_text
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.results.values import CostedTree, Mention, Node, Value, step_lines, steps_not_in
 from foon_asp.results.values_of import costed_tree, head_of, mention_of, node_of
 from foon_asp.text.json_value import schema_name
 
-_SHOWN = 20  # trees that are listed one by one for people
-_PICTURES = 4  # that a notebook shows
+_MAX_SHOWN = 20  # trees that are listed one by one for people
+_MAX_PICTURES = 4  # trees drawn in a notebook
 
 
 class Way(Value, frozen=True):
@@ -86,32 +86,32 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
     partings: tuple[Parting, ...]
     trees: tuple[CostedTree, ...]
 
-    problem = Known[Problem]()
+    problem = Unserialized[Problem]()
     """The problem that was asked about."""
 
     @property
     def task_trees(self) -> tuple[Tree, ...]:
-        """The trees as values for other questions, in the same order."""
+        """The trees as :class:`Tree` values for other questions, in the order of ``trees``."""
         claims = (
             f"tree {number}: {costs_text(tree.costs, self.objectives)}"
             for number, tree in enumerate(self.trees, 1)
         )
         ids = (self.problem.network.units_of_numbers(tree.ids) for tree in self.trees)
-        return tuple(Tree.of(self.problem, *each) for each in zip(ids, claims, strict=True))
+        return tuple(Tree.of(self.problem, *ids_and_claim) for ids_and_claim in zip(ids, claims, strict=True))
 
     @property
     def ending(self) -> Ending:
-        """Done when nothing is left out of what was asked for."""
+        """``DONE`` if every requested tree is listed, ``NEGATIVE`` if no tree exists."""
         if not self.complete:
             return Ending.LIMIT
         return Ending.DONE if self.trees else Ending.NEGATIVE
 
-    def show(self) -> Iterator[Part]:
-        """Return how many trees there are, what each costs, and in what it differs from the first."""
+    def show(self) -> Iterator[Block]:
+        """Return the number of trees, the costs of each, and its differences from the first tree."""
         yield from self.goal_lines()
         yield from self._claim()
         for number, (tree, task_tree) in enumerate(
-            zip(self.trees[:_SHOWN], self.task_trees, strict=False), 1
+            zip(self.trees[:_MAX_SHOWN], self.task_trees, strict=False), 1
         ):
             yield task_tree.claim
             yield from used_up_note(self.problem, task_tree)
@@ -120,11 +120,11 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
                 continue
             yield from step_lines(steps_not_in(self.trees[0].units, tree.units), "-")
             yield from step_lines(steps_not_in(tree.units, self.trees[0].units), "+")
-        if len(self.trees) > _SHOWN:
-            yield f"... and {counted(len(self.trees) - _SHOWN, 'more tree')}; --format json lists all"
+        if len(self.trees) > _MAX_SHOWN:
+            yield f"... and {counted(len(self.trees) - _MAX_SHOWN, 'more tree')}; --format json lists all"
 
     def _claim(self) -> Iterator[str]:
-        """Return lines that say what is proved of the trees together."""
+        """Return lines with the claim about all trees: how many, and whether proved."""
         rule, number = self.conditions, len(self.trees)
         if not self.trees and self.complete:
             yield f"infeasible: proved that no task tree exists ({rule})"
@@ -162,32 +162,32 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
             yield from step_lines(shown[unit] for unit in self.in_every_optimal)
 
     def _parting_lines(self) -> Iterator[str]:
-        """Return lines that say where the trees part, and which go the same way."""
+        """Return lines with each object node where trees part, and the trees that agree there."""
         for parting in self.partings:
-            trees = sorted(place for way in parting.ways for place in way.trees)
-            who = "they part" if len(trees) == len(self.trees) else f"{_numbered(trees)} part"
-            yield f"{who} at {parting.object}"
+            trees = sorted(index for way in parting.ways for index in way.trees)
+            subject = "they part" if len(trees) == len(self.trees) else f"{_numbered(trees)} part"
+            yield f"{subject} at {parting.object}"
             for way in parting.ways:
                 makers = " and ".join(f"{unit.motion} [{unit.source[0]}]" for unit in way.made_by)
                 yield f"  {_numbered(way.trees)}: {makers}"
 
-    wanted = Known[int | None]()
+    wanted = Unserialized[int | None]()
     """The number of trees asked for; ``None`` for all optimal ones."""
 
-    different = Known[bool]()
+    different = Unserialized[bool]()
     """Whether the trees are those that differ most."""
 
     def drawing(self) -> Drawing | None:
-        """Return what the picture of the first tree shows."""
+        """Return the drawing of the first tree; ``None`` without a tree."""
         return self.task_trees[0].drawing() if self.trees else None
 
     def _in_notebook(self) -> dict[str, str]:
-        """Return what a notebook shows by media type: the text, and the pictures of the first trees."""
-        return page_bundle(self, (tree.drawing() for tree in self.task_trees[:_PICTURES]))
+        """Return the notebook display by media type: the text, and the pictures of the first trees."""
+        return page_bundle(self, (tree.drawing() for tree in self.task_trees[:_MAX_PICTURES]))
 
 
 class _Listed(NamedTuple):
-    """A tree by unit ids in an order that executes, and what it costs."""
+    """A tree by unit ids in an order that executes, and its costs."""
 
     units: tuple[int, ...]
     costs: Costs
@@ -227,7 +227,7 @@ def alternatives(
     different: Annotated[int | None, Option(metavar="K", least=2)] = None,
     within: Annotated[int, Option(metavar="PERCENT", least=0)] = 0,
     limit: Annotated[int, Option(metavar="N", least=1)] = 100,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Alternatives:
     """Find all optimal trees, the best few, or those that differ most from each other.
 
@@ -258,7 +258,7 @@ def alternatives(
         raise UserError("within is only for different trees: give different, too")
     worse = Fraction(at_least(within, 0, "within"), 100)
     at_least(limit, 1, "limit")
-    chosen, settings = chosen_objectives(problem, objectives), settings_of(how)
+    chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
     problem = asked_with(problem, settings)
     if best is not None:
         pool = _ranked(problem, chosen, settings, at_least(best, 1, "best"), None)
@@ -267,16 +267,16 @@ def alternatives(
         pool = _most_different(_ranked(problem, chosen, settings, limit, worse), different, settings)
     else:
         pool = _ranked(problem, chosen, settings, limit, Fraction(0))
-    found = _values(problem, chosen, pool)
-    return found.knowing(problem=problem, wanted=best or different, different=different is not None)
+    result = _values(problem, chosen, pool)
+    return result.knowing(problem=problem, wanted=best or different, different=different is not None)
 
 
 def _values(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) -> Alternatives:
-    """Return trees as values, with what the optimal ones have in common, and where all part."""
+    """Return trees as values, with the units common to all optimal trees, and the nodes where trees part."""
     order, number = levels(objectives), problem.network.unit_number
     proved = pool.trees if len(pool.trees) > pool.unproved else ()
     optimal = [
-        frozenset(each.units) for each in proved if each.costs.key(order) == proved[0].costs.key(order)
+        frozenset(tree.units) for tree in proved if tree.costs.key(order) == proved[0].costs.key(order)
     ]
     return Alternatives(
         **head_of(problem, objectives),
@@ -285,16 +285,16 @@ def _values(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) ->
         optimal=len(optimal),
         in_every_optimal=tuple(sorted(map(number, frozenset.intersection(*optimal) if optimal else ()))),
         in_some_optimal=tuple(sorted(map(number, frozenset().union(*optimal)))),
-        partings=tuple(_partings(problem, [frozenset(each.units) for each in pool.trees])),
-        trees=tuple(costed_tree(problem, each.units, each.costs) for each in pool.trees),
+        partings=tuple(_partings(problem, [frozenset(tree.units) for tree in pool.trees])),
+        trees=tuple(costed_tree(problem, tree.units, tree.costs) for tree in pool.trees),
     )
 
 
 def _partings(problem: Problem, trees: Sequence[frozenset[int]]) -> Iterator[Parting]:
-    """Yield where trees part, from the goals backwards: first all of them, then each group by itself."""
+    """Yield the nodes where trees part, from the goals back: of all, then of groups that agree so far."""
     groups = [tuple(range(len(trees)))]
-    for group in groups:  # grows on the way
-        for o, ways in _ways(problem, {place: trees[place] for place in group}):
+    for group in groups:  # grows during the loop
+        for o, ways in _ways(problem, {index: trees[index] for index in group}):
             mentions = [tuple(mention_of(problem.network, unit) for unit in made) for made in ways]
             places = map(tuple, ways.values())
             yield Parting(node_of(problem.network, o), tuple(map(Way, mentions, places)))
@@ -306,16 +306,18 @@ def _ways(
 ) -> Iterator[tuple[int, dict[tuple[int, ...], list[int]]]]:
     """Yield the first object node behind the goals that some trees make in different ways, if there is one.
 
-    Beside it are the places of the trees by the units that make it there.
+    Each node comes with the indices of trees by the units that make it in them.
     """
     queue = list(problem.goals)
-    for o in queue:  # grows on the way
+    for o in queue:  # grows during the loop
         if o in problem.kitchen:
             continue
-        makers = [unit for unit in problem.makers[o] if o not in problem.needs[unit]]  # not handed on
+        makers = [
+            unit for unit in problem.makers[o] if o not in problem.needs[unit]
+        ]  # without units that only hand the node on
         ways: dict[tuple[int, ...], list[int]] = {}
-        for place, tree in trees.items():
-            ways.setdefault(tuple(unit for unit in makers if unit in tree), []).append(place)
+        for index, tree in trees.items():
+            ways.setdefault(tuple(unit for unit in makers if unit in tree), []).append(index)
         if len(ways) > 1:
             yield o, ways
             return
@@ -323,15 +325,15 @@ def _ways(
         queue += [need for need in further if need not in queue]
 
 
-def _most_different(pool: _Pool, count: int, how: Settings) -> _Pool:
-    """Choose ``count`` trees of a pool that differ most."""
+def _most_different(pool: _Pool, count: int, settings: Settings) -> _Pool:
+    """Choose ``count`` trees of a pool whose smallest pairwise difference is greatest (max-min diversity)."""
     if len(pool.trees) <= count:
         return pool
     ended = run(
         (question_encoding("most_different.lp"),),
         write_distances(list(map(_executions, pool.trees)), count),
         CLINGO_OPTIONS,
-        how.begun,
+        settings.begun,
         predicates=[("_chosen", 1)],
     )
     if ended.exhausted and not ended.atoms:
@@ -345,50 +347,51 @@ def _most_different(pool: _Pool, count: int, how: Settings) -> _Pool:
 
 
 def _executions(tree: _Listed) -> frozenset[tuple[int, int]]:
-    """Return each execution of a tree or plan: the unit, and which time it is."""
+    """Return the executions of a tree or plan: pairs of a unit and the count of its executions so far."""
     seen = Counter[int]()
-    found = set[tuple[int, int]]()
+    executions = set[tuple[int, int]]()
     for unit in tree.units:
         seen[unit] += 1
-        found.add((unit, seen[unit]))
-    return frozenset(found)
+        executions.add((unit, seen[unit]))
+    return frozenset(executions)
 
 
 def _far_apart(trees: Sequence[_Listed], count: int) -> list[int]:
-    """Choose ``count`` trees one by one, each as different as possible from those before it."""
+    """Choose ``count`` trees greedily, each the most different from those before (farthest point first)."""
     units = list(map(_executions, trees))
     chosen = [0]
     while len(chosen) < count:
-        left = (number for number in range(len(trees)) if number not in chosen)
-        chosen.append(max(left, key=lambda n: min(len(units[n] ^ units[other]) for other in chosen)))
+        remaining = (number for number in range(len(trees)) if number not in chosen)
+        chosen.append(max(remaining, key=lambda n: min(len(units[n] ^ units[other]) for other in chosen)))
     return sorted(chosen)
 
 
 def _ranked(
     problem: Problem,
     objectives: tuple[Objective, ...],
-    how: Settings,
-    most: int,
+    settings: Settings,
+    max_trees: int,
     worse: Fraction | None,
 ) -> _Pool:
-    """Take trees in order until there are ``most``, or until one is worse by more than ``worse``.
+    """Enumerate trees in order of costs, at most ``max_trees``, until one is worse by more than ``worse``.
 
-    ``None`` allows any tree. With ``worse`` 0 only optimal trees are taken, by the whole list of objectives.
+    ``worse`` is a share of the best value of the first objective; ``None`` allows any tree, 0 only trees that
+    are optimal by all objectives.
     """
     if problem.items is not None and worse == 0:
-        plans, proved, complete = best_plans(problem, objectives, how, caller().reporter, most)
-        given = tuple(_Listed(plan, costs) for plan, costs in plans)
-        return _Pool(given, complete, 0 if proved else len(given))
+        plans, proved, complete = best_plans(problem, objectives, settings, caller().reporter, max_trees)
+        listed = tuple(_Listed(plan, costs) for plan, costs in plans)
+        return _Pool(listed, complete, 0 if proved else len(listed))
     order = levels(objectives)
     one_by_one = Ranked if problem.items is None else RankedPlans
-    ranked = one_by_one(problem, objectives, how, caller().reporter)
+    ranked = one_by_one(problem, objectives, settings, caller().reporter)
     trees: list[_Listed] = []
     complete = False
     for units, costs in ranked:
         if trees and worse is not None and _is_worse(costs, trees[0].costs, order, worse):
             complete = True
             break
-        if len(trees) == most:
+        if len(trees) == max_trees:
             complete = worse is None
             break
         trees.append(_Listed(units, costs))
@@ -397,10 +400,10 @@ def _ranked(
     settled = len(trees)
     for units, costs in ranked.pending:
         worse_than_asked = trees and worse is not None and _is_worse(costs, trees[0].costs, order, worse)
-        if not worse_than_asked and len(trees) < most:
+        if not worse_than_asked and len(trees) < max_trees:
             trees.append(_Listed(units, costs))
     unproved = len(trees) - settled
-    if settled and worse == 0:  # what is as good as an optimal tree is optimal
+    if settled and worse == 0:  # a tree with the costs of an optimal tree is optimal
         unproved = 0
     return _Pool(tuple(trees), complete, unproved)
 
@@ -408,9 +411,9 @@ def _ranked(
 def _is_worse(costs: Costs, best: Costs, order: tuple[Objective, ...], worse: Fraction) -> bool:
     if not worse:
         return costs.key(order) > best.key(order)
-    ours, least = Fraction(costs.measure(order[0])), Fraction(best.measure(order[0]))
-    return ours < least * (1 - worse) if multiplies(order[0]) else ours > least * (1 + worse)
+    figure, best_figure = Fraction(costs.measure(order[0])), Fraction(best.measure(order[0]))
+    return figure < best_figure * (1 - worse) if multiplies(order[0]) else figure > best_figure * (1 + worse)
 
 
 def _numbered(places: Sequence[int]) -> str:
-    return f"tree{'s' * (len(places) > 1)} {', '.join(str(place + 1) for place in places)}"
+    return f"tree{'s' * (len(places) > 1)} {', '.join(str(index + 1) for index in places)}"

@@ -1,4 +1,4 @@
-"""The best tree for a problem, and what is proved of it."""
+"""The best tree for a problem, and its proof."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
@@ -18,15 +18,15 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.questions.why_infeasible import why_infeasible
-from foon_asp.results.document import AboutGoals, Known
+from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import bound_text, costs_text, figure_text
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.results.values import Figure, ListedConstraint, Node, Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.writer import write_units
 
-if TYPE_CHECKING:  # what a command that prints an answer can do without
+if TYPE_CHECKING:  # slow to import, and not needed to print an answer
     from foon_asp.certificate import Certificate
     from foon_asp.dataset.nearby import Nearby
     from foon_asp.pictures.drawing import Drawing
@@ -84,14 +84,14 @@ class Serving(Value, frozen=True):
 
 
 class EngineCheck(Value, frozen=True):
-    """What came of asking another engine.
+    """The check of an answer by another engine.
 
     Attributes:
-        package: The package of an engine that is not ours, or null.
-        checked: Whether it has checked the answer.
-        agrees_by: The objectives by which it finds the tree best; none where it agrees that there is none.
-        disagrees: In what an engine of another package is wrong, or null.
-        reason: Why it has not checked the answer, or null.
+        package: The package of the engine; null for a built-in one.
+        checked: Whether the engine checked the answer.
+        agrees_by: The objectives by which the engine finds the tree optimal; empty if no tree exists.
+        disagrees: The error in the answer of an engine of another package, or null.
+        reason: Why the engine did not check the answer, or null.
     """
 
     engine: str
@@ -104,12 +104,12 @@ class EngineCheck(Value, frozen=True):
 
 
 class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
-    """The best task tree, and what is proved of it.
+    """The best task tree, and its proof.
 
     Attributes:
         encodings: The folder that replaced the built-in encodings, if any: they then define what is best.
-        status: optimal: proved best; feasible: stopped at a limit with a tree; infeasible: proved that there
-            is none; unknown: stopped without one.
+        status: optimal: proved best; feasible: stopped at a limit with a tree; infeasible: proved that no
+            tree exists; unknown: stopped without a tree.
         stopped: The limit that stopped an unproved answer, and what was being done.
         proof: What proves an optimal or infeasible answer; null for others.
         proof_by_objective: The same by objective, of an optimal answer.
@@ -121,12 +121,12 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         units: The steps of the tree, in an order that executes; null without a tree.
         seconds: The time of each phase.
         penalty: Under soft constraints, the sum of weight times ways over them; null without a tree.
-        soft_constraints: Every constraint that may be broken; none without a tree.
+        soft_constraints: Every constraint that may be broken; empty without a tree.
         goals_alone: Of several goals, the best tree for each by itself.
         sum_of_goals_alone: What these cost by the first objective, added up (success: multiplied); null
             if one has no tree.
         serves: Of several goals, those that each unit is needed for.
-        cross_check: What other engines say, where they are asked.
+        cross_check: The checks by other engines, where they are requested.
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
@@ -164,13 +164,13 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     cross_check: tuple[EngineCheck, ...] | UnsetType = UNSET
 
     @classmethod
-    def of(cls, outcome: Outcome, bought: Collection[int] = (), **more: Any) -> Self:
+    def of(cls, outcome: Outcome, bought: Collection[int] = (), **fields: Any) -> Self:
         """Return the answer that an outcome of the solver is.
 
         Parameters:
             outcome: The outcome.
-            bought: The items of the kitchen, by id, that were not there before.
-            more: The fields that a kind of answer has besides.
+            bought: The ids of kitchen items that were bought.
+            fields: Further fields of a subclass.
         """
         problem, units, proof = outcome.problem, outcome.units, outcome.proof
         proofs: dict[Objective, Proof] = {}
@@ -189,11 +189,11 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             used_up=used_up_of(problem, None if units is None else problem.tree(units)),
             units=None if units is None else steps_of(problem, units, bought),
             seconds={phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
-            **more,
+            **fields,
         )
         return answer.knowing(outcome=outcome)
 
-    outcome = Known[Outcome]()
+    outcome = Unserialized[Outcome]()
     """The outcome of the solver, with ids."""
 
     @property
@@ -201,16 +201,16 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         """The problem that was asked about."""
         return self.outcome.problem
 
-    notes = Known[tuple[str, ...]](())
+    notes = Unserialized[tuple[str, ...]](())
     """Lines about the proof, which are shown behind the steps."""
 
-    certificate = Known["Certificate | None"](None)
+    certificate = Unserialized["Certificate | None"](None)
     """The certificate that proves the answer, where one was asked for and found."""
 
     def having(
         self, notes: Iterable[str] = (), certificate: "Certificate | None" = None, **fields: Any
     ) -> Self:
-        """Return the same answer with more of what is known of it.
+        """Return the answer with changed fields and more notes.
 
         Parameters:
             notes: More notes.
@@ -219,8 +219,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         """
         answer = replace(self, **fields)
         certificate = certificate or self.certificate
-        known = {**self.__dict__, "notes": (*self.notes, *notes), "certificate": certificate}
-        return answer.knowing(**known)
+        attributes = {**self.__dict__, "notes": (*self.notes, *notes), "certificate": certificate}
+        return answer.knowing(**attributes)
 
     @property
     def ids(self) -> tuple[int, ...] | None:
@@ -229,7 +229,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     @property
     def claim(self) -> str:
-        """What is proved of the tree, and what it costs, in one line."""
+        """The status, the objectives and the costs of the tree, in one line."""
         what = "task tree" if self.items == "lasting" else "plan"
         rule = self.conditions if self.encodings is None else f"{self.conditions}, as {self.encodings} has it"
         if self.status is Status.INFEASIBLE:
@@ -251,21 +251,21 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     @property
     def tree(self) -> "Tree | None":
-        """The tree, in an order that executes; ``None`` where there is none."""
+        """The tree, in an order that executes; ``None`` without a tree."""
         from foon_asp.questions.tree import Tree  # noqa: PLC0415
 
         return None if self.ids is None else Tree.of(self.problem, self.ids, self.claim)
 
     @property
     def ending(self) -> Ending:
-        """Done when the tree is proved to be the best."""
+        """``DONE`` if the tree is proved optimal."""
         return of_status(self.status)
 
-    def show(self) -> Iterator[Part]:
-        """Return the goals, the claim, the steps, and notes; without a tree, why there is none."""
+    def show(self) -> Iterator[Block]:
+        """Return the goals, the claim, the steps, and notes; without a tree, the reasons."""
         yield from (*self.goal_lines(), *self.findings(), *self.notes)
 
-    def findings(self) -> Iterator[Part]:
+    def findings(self) -> Iterator[Block]:
         """Return the claim and the steps."""
         yield from self.headlines()
         yield from self.remarks()
@@ -281,20 +281,20 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             yield from why_infeasible(self.problem, caller().deadline)
 
     def remarks(self) -> Iterator[str]:
-        """Return lines about what several goals share, and about soft constraints."""
+        """Return lines on units shared between goals, and on soft constraints."""
         yield from self._sharing()
         yield from self._penalty()
 
     def _sharing(self) -> Iterator[str]:
-        """Return lines that say what each of several goals costs alone, and which units serve several."""
+        """Return lines with the costs of each goal by itself, and the units that serve several goals."""
         if not isinstance(self.goals_alone, tuple) or not isinstance(self.serves, tuple):
             return
         yield from map(str, self.goals_alone)
         by, total = self.objectives[0], self.sum_of_goals_alone
         if self.costs is None or self.units is None or isinstance(total, UnsetType) or total is None:
             return
-        alone, together = (figure_text(by, each) for each in (total, self.costs.measure(by)))
-        shared = {each.unit: each.goals for each in self.serves if len(each.goals) > 1}
+        alone, together = (figure_text(by, measure) for measure in (total, self.costs.measure(by)))
+        shared = {serving.unit: serving.goals for serving in self.serves if len(serving.goals) > 1}
         yield f"{by} one by one {alone}, together {together}; {counted(len(shared), 'unit')} shared"
         for step in self.units:
             if step.id in shared:
@@ -302,30 +302,30 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
                 yield f"  {step.motion}    [{step.source[0]}] for {labels}"
 
     def _penalty(self) -> Iterator[str]:
-        """Return lines that say which soft constraints the tree breaks, and what that costs."""
+        """Return lines with the penalty, and the soft constraints that the tree breaks."""
         if not isinstance(self.soft_constraints, tuple) or self.penalty is None:
             return
         number = counted(len(self.soft_constraints), "soft constraint")
-        broken = [each for each in self.soft_constraints if each.broken]
+        broken = [constraint for constraint in self.soft_constraints if constraint.broken]
         if not broken:
             one = len(self.soft_constraints) == 1
             yield f"penalty 0: {'the soft constraint holds' if one else f'all of {number} hold'}"
             return
         least = "the least there is" if self.status is Status.OPTIMAL else "not proved least"
         yield f"penalty {self.penalty}, {least}: {len(broken)} of {number} broken"
-        for each in broken:
-            times = "" if each.broken == 1 else f", {each.broken} times"
-            yield from each.lines(f"    (weight {each.weight}{times})")
+        for constraint in broken:
+            times = "" if constraint.broken == 1 else f", {constraint.broken} times"
+            yield from constraint.lines(f"    (weight {constraint.weight}{times})")
 
     def foon(self) -> str:
-        """Return the tree as FOON text with a comment that says what it is; empty where there is none."""
+        """Return the tree as FOON text under a comment with the claim; empty without a tree."""
         if self.ids is None:
             return ""
         comments = [f"Task tree for: {' + '.join(map(str, self.goals))}", *self.headlines()]
         return write_units(map(self.problem.network.unit, self.ids), comments)
 
     def steps(self) -> str:
-        """Return the plan for a robot's program, as JSON; empty where there is none."""
+        """Return the plan for a robot's program, as JSON; empty without a tree."""
         if self.ids is None:
             return ""
         from foon_asp.questions.robot_plan import RobotPlan  # noqa: PLC0415
@@ -342,11 +342,11 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         return "\n".join([*claimed, *([] if format_ == "json" else note), *self.notes])
 
     def drawing(self) -> "Drawing | None":
-        """Return what the picture shows."""
+        """Return the drawing of the tree; ``None`` without a tree."""
         return None if self.tree is None else self.tree.drawing()
 
     def _in_notebook(self) -> dict[str, str]:
-        """Return what a notebook shows by media type: the picture with its claim, or the text."""
+        """Return the notebook display by media type: the picture with its claim, or the text."""
         from foon_asp.pictures.notebook import picture_bundle  # noqa: PLC0415
 
         drawing = self.drawing()
@@ -357,7 +357,7 @@ class WithAnswer(Result, AboutGoals, frozen=True, kw_only=True):
     """A result that comes with the best tree, which its picture shows.
 
     Attributes:
-        answer: The best tree; null where there is none to go on with.
+        answer: The best tree; null without one.
     """
 
     answer: Answer | None
@@ -367,92 +367,92 @@ class WithAnswer(Result, AboutGoals, frozen=True, kw_only=True):
         return bool(self.answer)
 
     def drawing(self) -> "Drawing | None":
-        """Return what the picture of the tree shows."""
+        """Return the drawing of the tree; ``None`` without a tree."""
         return None if self.answer is None else self.answer.drawing()
 
 
 def answered(
-    problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
+    problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter | None = None
 ) -> Answer:
-    """Solve a problem, and note how long reading took, if known."""
-    return _noted(find(problem, objectives, how, reporter or caller().reporter))
+    """Solve a problem; the answer includes the seconds that reading took, if known."""
+    return _noted(find(problem, objectives, settings, reporter or caller().reporter))
 
 
 def answered_under(
-    problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
+    problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter | None = None
 ) -> Answer:
-    """Solve a problem under rules of the user's, which may be about units that no goal needs.
+    """Solve a problem under user rules, which may be about units that no goal needs.
 
-    Of a store, the part that the goals can need is asked about first, where no rule looks beyond a tree. A
-    tree with a unit from elsewhere has one more than its goals need: where that makes it no better than what
-    was found, no more is read. Where what is near the goals is enough to begin with, it is asked about first.
+    Of a store, the units nearest to the goals are read first, if :func:`near_goals` allows it, and else the
+    part that the goals can need, if no rule looks beyond a tree. A tree with a unit outside that part has one
+    unit more than its goals need: if that cannot improve the tree found, no more is read.
     """
-    near = near_goals(problem, objectives, how)
-    if near is not None:
-        return answered_nearby(near, objectives, how)
+    nearby = near_goals(problem, objectives, settings)
+    if nearby is not None:
+        return answered_nearby(nearby, objectives, settings)
     reporter = reporter or caller().reporter
-    how = how._replace(deadline=how.begun)
-    found = None
+    settings = settings._replace(deadline=settings.begun)
+    outcome = None
     if hasattr(problem, "nearby"):  # of a large store
         from foon_asp.dataset.nearby_under_rules import solve_nearby_under  # noqa: PLC0415
 
-        found = solve_nearby_under(problem, objectives, how, reporter)
-    if found is not None and (found.proof is not None or found.stopped):
-        return _noted(found)
+        outcome = solve_nearby_under(problem, objectives, settings, reporter)
+    if outcome is not None and (outcome.proof is not None or outcome.stopped):
+        return _noted(outcome)
     try:
-        answer = _answered_reading(problem, objectives, how, reporter)
+        answer = _answered_reading(problem, objectives, settings, reporter)
     except KeyboardInterrupt:
-        if found is None:
+        if outcome is None:
             raise
-        how.begun.interrupt()
-        return _noted(found._replace(stopped=how.begun.stopped))
-    if found is not None and answer.status is Status.UNKNOWN:  # there is a tree already
-        return _noted(found._replace(stopped=answer.stopped))
+        settings.begun.interrupt()
+        return _noted(outcome._replace(stopped=settings.begun.stopped))
+    if outcome is not None and answer.status is Status.UNKNOWN:  # there is a tree already
+        return _noted(outcome._replace(stopped=answer.stopped))
     return answer
 
 
 def _answered_reading(
-    problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter
+    problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
 ) -> Answer:
-    """Read the part that the goals can need, and where that is not enough, everything."""
+    """Solve over the part that the goals can need; if its optimum may be missed there, over all data."""
     problem = read(problem)
-    part = problem.network.object_numbers and problem.items is None and how.constraints
-    if part and how.replaced is None and reach_of_rules(how) is ReachOfRules.TREE:
-        free = find(problem, objectives, how._replace(constraints=(), constants=()), Reporter())
-        if free.status is Status.OPTIMAL and free.costs:
-            here = find(problem, objectives, how, Reporter())
+    is_partial = problem.network.object_numbers and problem.items is None and settings.constraints
+    if is_partial and settings.replaced is None and reach_of_rules(settings) is ReachOfRules.TREE:
+        unconstrained = find(problem, objectives, settings._replace(constraints=(), constants=()), Reporter())
+        if unconstrained.status is Status.OPTIMAL and unconstrained.costs:
+            partial = find(problem, objectives, settings, Reporter())
             order = levels(tuple(objectives))
-            least = least_with_more(free.costs, order)
-            if here.status is Status.OPTIMAL and here.costs and here.costs.key(order) <= least:
-                return _noted(here)
+            least = least_with_more(unconstrained.costs, order)
+            if partial.status is Status.OPTIMAL and partial.costs and partial.costs.key(order) <= least:
+                return _noted(partial)
             try:
-                with how.begun.watched("reading"):  # and not late, since there may be a tree already
-                    problem = asked_with(problem, how)
+                with settings.begun.watched("reading"):  # and not late, since there may be a tree already
+                    problem = asked_with(problem, settings)
             except KeyboardInterrupt:
-                if here.units is None:
+                if partial.units is None:
                     raise
-                how.begun.interrupt()
-                bounds = {order[0]: free.costs.measure(order[0])}
-                here = here._replace(status=Status.FEASIBLE, proof=None, stopped=how.begun.stopped)
-                return _noted(here._replace(bounds=bounds))
-    return answered(asked_with(problem, how), objectives, how, reporter)
+                settings.begun.interrupt()
+                bounds = {order[0]: unconstrained.costs.measure(order[0])}
+                partial = partial._replace(status=Status.FEASIBLE, proof=None, stopped=settings.begun.stopped)
+                return _noted(partial._replace(bounds=bounds))
+    return answered(asked_with(problem, settings), objectives, settings, reporter)
 
 
-def answered_nearby(near: "Nearby", objectives: Sequence[Objective], how: Settings) -> Answer:
-    """Solve a question to a large store, of which no more is read than it takes to prove the answer.
+def answered_nearby(nearby: "Nearby", objectives: Sequence[Objective], settings: Settings) -> Answer:
+    """Solve a problem over a large store, reading no more than the proof takes.
 
-    Without a tree, everything is read, to say why.
+    If no tree exists, all data are read, to explain why.
     """
-    found = solve_nearby(near, objectives, how, caller().reporter)
-    if found is not None:
-        return _noted(found)
+    outcome = solve_nearby(nearby, objectives, settings, caller().reporter)
+    if outcome is not None:
+        return _noted(outcome)
     with reading():
-        problem = near.whole()
-    return answered_under(problem, objectives, how)
+        problem = nearby.whole()
+    return answered_under(problem, objectives, settings)
 
 
 def _noted(outcome: Outcome) -> Answer:
-    """Make an answer of an outcome, with how long reading took, if known."""
+    """Return the answer of an outcome, with the seconds that reading took, if known."""
     read = caller().read_seconds
     if read is not None:
         outcome.seconds["read"] = read

@@ -17,23 +17,23 @@ Objectives = str | Iterable[str]
 """An objective, a list by commas, or several: the first counts most."""
 
 
-def chosen_objectives(problem: Problem, given: Objectives) -> tuple[Objective, ...]:
-    """Read objectives; ``success`` needs rates, ``price`` that of each unit."""
-    objectives = parse_objectives([given] if isinstance(given, str) else given, problem.measures)
+def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, ...]:
+    """Return parsed objectives; raises :class:`UserError` for one without its rates or prices."""
+    objectives = parse_objectives([names] if isinstance(names, str) else names, problem.measures)
     with reading():
         problem.require_known_for(objectives)
     return objectives
 
 
 def usual_objectives(
-    problem: Problem, given: Objectives, usual: Sequence[str], instead: Sequence[str]
+    problem: Problem, names: Objectives, usual: Sequence[str], instead: Sequence[str]
 ) -> Objectives:
-    """Return the objectives that are asked for, or those usual for a question where none are.
+    """Return the named objectives, or the usual ones of a question if none is named.
 
     Where no success rates are known, it is those ``instead``, and a warning says so.
     """
-    if given:
-        return given
+    if names:
+        return names
     if problem.rates is not None:
         return usual
     why = "motions lack one in the rates file" if problem.unrated else "no success rates are given (--rates)"
@@ -41,17 +41,17 @@ def usual_objectives(
     return instead
 
 
-def given_constraints(given: Files) -> tuple[Constraint, ...]:
+def given_constraints(constraints: Files) -> tuple[Constraint, ...]:
     """Read one constraint or several: paths, rules, and names of ready-made ones."""
-    one = isinstance(given, str | PathLike)
-    return tuple(map(given_constraint, [given] if one else given))  # type: ignore[arg-type]
+    one = isinstance(constraints, str | PathLike)
+    return tuple(map(given_constraint, [constraints] if one else constraints))  # type: ignore[arg-type]
 
 
-def asked_with(problem: Problem, how: Settings) -> Problem:
-    """Return the whole problem if the settings have rules that may be about any unit."""
+def asked_with(problem: Problem, settings: Settings) -> Problem:
+    """Return the problem over all data if the settings have rules that may be about any unit."""
     from foon_asp.asp.assembly import need_whole_network  # noqa: PLC0415 (where there may be rules)
 
-    return whole(problem) if need_whole_network(problem, how) else problem
+    return whole(problem) if need_whole_network(problem, settings) else problem
 
 
 def whole(problem: Problem) -> Problem:
@@ -73,12 +73,12 @@ def reading() -> AbstractContextManager[object]:
     return nullcontext() if deadline is None else deadline.watched("reading", late=True)
 
 
-def constraint_weights(given: Mapping[File, int]) -> dict[Constraint, int]:
+def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, int]:
     """Read the weights of constraints, whole numbers from 1."""
     from foon_asp.asp.assembly import GREATEST_WEIGHT  # noqa: PLC0415 (where there are rules)
 
     weights: dict[Constraint, int] = {}
-    for name, weight in given.items():
+    for name, weight in weight_of_file.items():
         if not isinstance(weight, int) or not 1 <= weight <= GREATEST_WEIGHT:
             raise UserError(
                 f"found the weight {weight!r} of {name}, expected a whole number from 1 to {GREATEST_WEIGHT}"

@@ -12,16 +12,16 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Number, Objective, Problem, success_rate
 from foon_asp.questions.arguments import asked_with, at_least
 from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.help_search import helped_trees
-from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
-from foon_asp.results.document import AboutGoals, Known
+from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import costs_text, success_text
-from foon_asp.results.table import Part, Table
+from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
 from foon_asp.text.json_value import schema_name
@@ -50,7 +50,7 @@ class AssistedTree(Value, frozen=True):
 
     @property
     def success(self) -> Fraction | None:
-        """The product of the rates of those who do the units; ``None`` without a tree."""
+        """The success of the tree, with the person's rates for helped units; ``None`` without a tree."""
         return None if self.costs is None else self.costs.success
 
 
@@ -82,15 +82,15 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
     smallest: int | None
     rows: tuple[AssistedTree, ...]
 
-    problem = Known[Problem]()
+    problem = Unserialized[Problem]()
     """The problem that was asked about."""
 
-    most = Known[int | None]()
+    most = Unserialized[int | None]()
     """The greatest number of units that was asked for."""
 
     @property
     def task_trees(self) -> tuple[Tree | None, ...]:
-        """The trees of the rows as values for other questions, ``None`` where a row has none."""
+        """The trees of the rows for other questions; ``None`` for a row without a tree."""
         return tuple(map(self._tree, self.rows))
 
     def _tree(self, row: AssistedTree) -> Tree | None:
@@ -102,14 +102,14 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
 
     @property
     def ending(self) -> Ending:
-        """Done when every row is proved, and what was to be reached is."""
+        """``DONE`` if every row is proved, and the requested success is reached."""
         if not self.complete:
             return Ending.LIMIT
         missed = self.reach is not None and self.smallest is None
         return Ending.NEGATIVE if missed or self.rows[-1].units is None else Ending.DONE
 
-    def show(self) -> Iterator[Part]:
-        """Return a row for each number of units, and what was reached.
+    def show(self) -> Iterator[Block]:
+        """Return a table with a row for each number of helped units, and the success that was reached.
 
         The tree of the last row is shown where it was asked for, and where it reaches what is wanted.
         """
@@ -138,7 +138,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
             yield from (line for step in last.units or () for line in step.lines())
 
     def _cells(self) -> Iterator[tuple[str, ...]]:
-        """Yield what every row adds to the one before: the whole would be most of a tree, again and again."""
+        """Yield the cells of each row, with only the changes from the row before."""
         motions = {step.id: step.motion for row in self.rows for step in row.units or ()}
         before: tuple[int, ...] = ()
         for row in self.rows:
@@ -148,11 +148,11 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
                 continue
             changes = [("-", unit) for unit in before if unit not in row.by_person]
             changes += [("+", unit) for unit in row.by_person if unit not in before]
-            taken = [f"{sign} {unit} {motions[unit]}" for sign, unit in changes]
+            texts = [f"{sign} {unit} {motions[unit]}" for sign, unit in changes]
             if row.status is Status.FEASIBLE:
-                most = "" if row.bound is None else f" (at most {success_text(row.bound)})"
-                taken.append(f"not proved best{most}")
-            yield str(row.most), success_text(row.success), str(row.costs.units), ", ".join(taken)
+                at_most = "" if row.bound is None else f" (at most {success_text(row.bound)})"
+                texts.append(f"not proved best{at_most}")
+            yield str(row.most), success_text(row.success), str(row.costs.units), ", ".join(texts)
             before = row.by_person
 
     def _remarks(self) -> Iterator[str]:
@@ -197,7 +197,7 @@ def assist(
     *,
     reach: Annotated[Number | None, Option(metavar="SUCCESS")] = None,
     person: Annotated[File | Mapping[str, Number] | None, Option(kind=Kind.FILE)] = None,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Assistance:
     """Find the best success if a person does at most 0, 1, 2, ... units, and which ones these are.
 
@@ -226,20 +226,20 @@ def assist(
         >>> [(row.most, round(float(row.success), 4)) for row in helped.rows]
         [(0, 0.6293), (1, 0.7122), (2, 0.7742)]
     """
-    settings = settings_of(how)
+    settings = settings_of(options)
     wanted = None if reach is None else success_rate(reach, "the success to reach")
     limit = None if most is None else at_least(most, 0, "most")
     theirs = _rates(problem, person)
     problem = asked_with(problem, settings)
-    found = helped_trees(problem, theirs, settings, caller().reporter, limit, wanted)
-    rows = tuple(_row(problem, most, row) for most, row in enumerate(found.rows))
+    trees = helped_trees(problem, theirs, settings, caller().reporter, limit, wanted)
+    rows = tuple(_row(problem, max_helped, row) for max_helped, row in enumerate(trees.rows))
     last = rows[-1].success
     answer = Assistance(
         **head_of(problem, [Objective.SUCCESS]),
         person=theirs,
-        complete=found.complete,
-        greatest_success=found.greatest,
-        more_help_changes_nothing=found.greatest is not None and found.greatest == last,
+        complete=trees.complete,
+        greatest_success=trees.greatest,
+        more_help_changes_nothing=trees.greatest is not None and trees.greatest == last,
         reach=wanted,
         smallest=rows[-1].most if wanted is not None and last is not None and last >= wanted else None,
         rows=rows,
@@ -255,23 +255,23 @@ def _rates(problem: Problem, person: File | Mapping[str, Number] | None) -> dict
         success_rate(rate, f"the success rate of {motion!r}")
     if person is None:
         return None
-    place = ""
+    prefix = ""
     if isinstance(person, str | PathLike):
-        rates, place = RATES.read(Path(person)), f"{person}: warning: "
+        rates, prefix = RATES.read(Path(person)), f"{person}: warning: "
     else:
         rates = {motion: success_rate(rate, f"the rate of {motion!r}") for motion, rate in person.items()}
     for motion in rates:
         if motion not in problem.rates:
-            caller().reporter.warning(f"{place}the motion {motion!r} has no rate for the robot")
+            caller().reporter.warning(f"{prefix}the motion {motion!r} has no rate for the robot")
     return rates
 
 
-def _row(problem: Problem, most: int, found: Outcome) -> AssistedTree:
-    units, helped, bound = found.units, found.problem.own_rates, found.bounds.get(Objective.SUCCESS)
+def _row(problem: Problem, max_helped: int, outcome: Outcome) -> AssistedTree:
+    units, helped, bound = outcome.units, outcome.problem.own_rates, outcome.bounds.get(Objective.SUCCESS)
     return AssistedTree(
-        most,
-        found.status,
-        found.costs,
+        max_helped,
+        outcome.status,
+        outcome.costs,
         None if bound is None else Fraction(bound),
         tuple(sorted(map(problem.network.unit_number, helped))),
         used_up_of(problem, None if units is None else problem.tree(units)),

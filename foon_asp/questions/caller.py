@@ -1,4 +1,4 @@
-"""Who asks: Python, or a command, which shows progress and started before it read its data."""
+"""The caller of a question: Python, or a command, which shows progress and has a deadline."""
 
 import contextlib
 from collections.abc import Iterator
@@ -19,10 +19,10 @@ class _Warner(Reporter):
 
 
 class Caller(NamedTuple):
-    """Who asks.
+    """The caller of a question: Python or a command.
 
-    ``reporter`` receives warnings and progress. ``deadline`` is that of the whole command. ``read_seconds``
-    is how long reading took, if it is to be shown. ``lenient`` says that lines of trees that are not
+    ``reporter`` receives warnings and progress. ``deadline`` is the deadline of the command. ``read_seconds``
+    is the time of reading, if it is shown. ``lenient`` says that lines of trees that are not
     understood are left out. ``form`` is the format of the result, if one is chosen.
     """
 
@@ -42,13 +42,13 @@ def caller() -> Caller:
 
 
 def is_python() -> bool:
-    """Whether it is Python that asks, and no command."""
+    """Whether the caller is Python, and no command."""
     return _CALLER.get() is None
 
 
 @contextlib.contextmanager
 def asked_by(who: Caller) -> Iterator[None]:
-    """Let somebody else ask in a ``with`` block."""
+    """Set the caller inside a ``with`` block."""
     token = _CALLER.set(who)
     try:
         yield

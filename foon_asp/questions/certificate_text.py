@@ -1,4 +1,4 @@
-"""What a certificate proves, in words, and what it takes on trust of rules of the user's own."""
+"""The claim of a certificate in words, and its assumptions about user rules."""
 
 from collections.abc import Mapping, Sequence
 from decimal import Context, Decimal
@@ -10,51 +10,51 @@ from foon_asp.network import counted
 from foon_asp.proof.constraint import Rule
 from foon_asp.proof.verify import trusted
 
-if TYPE_CHECKING:  # these rooms take clingo along, which `verify` has to do without
+if TYPE_CHECKING:  # takes clingo along, which `verify` must not load
     from foon_asp.asp import Outcome
     from foon_asp.certificate import Certificate
 
-_NAMED = 20  # units of a limit that are listed
+_MAX_NAMED = 20  # units of a limit that are listed
 
 
-def trusted_text(own: Rule, of_tree: bool) -> str:
-    """Return what a certificate takes on trust of rules of the user's own, and by what these are called.
+def trusted_text(user_rules: Rule, of_tree: bool) -> str:
+    """Return the assumptions of a certificate about user rules, with the names of the rule files.
 
     ``of_tree`` says that a tree is claimed to keep to the rules.
     """
-    names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in own["files"]]
-    names += [*own["library"], *own["constants"]]
-    empty = [[], []] in own["claims"]
-    removed = [used[0] for used, without in own["claims"] if len(used) == 1 and not without]
-    wanted = sum(not used for used, _ in own["claims"]) - empty
-    others = len(own["claims"]) - len(removed) - wanted - empty
+    names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in user_rules["files"]]
+    names += [*user_rules["library"], *user_rules["constants"]]
+    empty = [[], []] in user_rules["claims"]
+    removed = [used[0] for used, without in user_rules["claims"] if len(used) == 1 and not without]
+    wanted = sum(not used for used, _ in user_rules["claims"]) - empty
+    others = len(user_rules["claims"]) - len(removed) - wanted - empty
     limits = []
-    for amounts, most in own["limits"]:
-        units = [unit for each in amounts.values() for unit in each]
-        if most == 0:
+    for amounts, bound in user_rules["limits"]:
+        units = [unit for ids in amounts.values() for unit in ids]
+        if bound == 0:
             removed += units
-        elif most > 0:
-            limits.append(_limited(sorted(units), most, [*amounts] == ["1"]))
-    none = empty or any(most < 0 for _, most in own["limits"])
-    said = ["no tree keeps to them"] if none else []
-    said += [f"no tree has one of the units {', '.join(map(str, removed))}"] if removed else []
-    said += [f"every tree has a unit of {counted(wanted, 'set')}"] if wanted else []
-    said += [f"{others} {'set breaks' if others == 1 else 'sets break'} a rule"] if others else []
-    said += limits
-    said += ["the tree keeps to them"] if of_tree or not said else []
-    return escaped(f"among the trees that keep to {', '.join(names)}: {'; '.join(said)}")
+        elif bound > 0:
+            limits.append(_limited(sorted(units), bound, [*amounts] == ["1"]))
+    none = empty or any(bound < 0 for _, bound in user_rules["limits"])
+    claims = ["no tree keeps to them"] if none else []
+    claims += [f"no tree has one of the units {', '.join(map(str, removed))}"] if removed else []
+    claims += [f"every tree has a unit of {counted(wanted, 'set')}"] if wanted else []
+    claims += [f"{others} {'set breaks' if others == 1 else 'sets break'} a rule"] if others else []
+    claims += limits
+    claims += ["the tree keeps to them"] if of_tree or not claims else []
+    return escaped(f"among the trees that keep to {', '.join(names)}: {'; '.join(claims)}")
 
 
-def _limited(units: list[int], most: int, each: bool) -> str:
-    """Return what a tree has at most of some units; without ``each``, they count differently."""
-    named = f"the units {', '.join(map(str, units))}" if len(units) <= _NAMED else f"{len(units)} units"
-    if not each:
-        return f"what {named} count comes to {most} at most"
-    return f"no tree has {'all' if most == len(units) - 1 else f'more than {most}'} of {named}"
+def _limited(units: list[int], bound: int, alike: bool) -> str:
+    """Return a limit on some units in words; unless ``alike``, the units have different weights."""
+    named = f"the units {', '.join(map(str, units))}" if len(units) <= _MAX_NAMED else f"{len(units)} units"
+    if not alike:
+        return f"what {named} count comes to {bound} at most"
+    return f"no tree has {'all' if bound == len(units) - 1 else f'more than {bound}'} of {named}"
 
 
 def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", file: str) -> Sequence[str]:
-    """Return what proves an answer after the search for a certificate, which was written into a file."""
+    """Return lines with the proof of an answer, and the claim of the certificate written into a file."""
     by = outcome.proof or "none"
     if certificate is None and outcome.proof is None:
         return ["proof: none, so there is nothing to certify"]
@@ -62,14 +62,14 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
         return [f"proof: {by} (no certificate was found, and nothing is written)"]
     content, claim = certificate.content, certificate.claim
     tree = "tree" if outcome.problem.items is None else "plan"
-    own = trusted(content)
+    user_rules = trusted(content)
     if claim == "bound":
         about = "all trees, without the constraints that it does not cover" if tree == "tree" else "all plans"
         return [f"proof: {by}; the certificate {file} proves a bound on {about}: {bound_text(content)}"]
-    if own is not None:
+    if user_rules is not None:
         proved = "that there is no tree" if claim == "infeasible" else "the tree best"
-        given = f"the certificate {file} proves {proved}, but takes on trust what rules say,"
-        return [f"proof: {by}; {given}", f"  {trusted_text(own, of_tree=False)}"]
+        claim_text = f"the certificate {file} proves {proved}, but takes on trust what rules say,"
+        return [f"proof: {by}; {claim_text}", f"  {trusted_text(user_rules, of_tree=False)}"]
     if claim == "optimal" and by != "certificate":
         sure = ", ".join(certificate.certified)
         return [f"proof: {by}; the certificate {file} proves the {tree} best by {sure} alone"]
@@ -80,20 +80,20 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
 
 
 def looked_at(content: Mapping[str, Any]) -> str:
-    """Return how many cuts a proof has, and of plans the balance of how many nodes it looks at."""
+    """Return the number of cuts of a proof, and for a plan the number of nodes with a balance."""
     cuts = counted(len(content["cuts"]), "cut")
     if "items" not in content:
         return cuts
     nodes: set[int] = set()
     waiting = list(content["proof"])
-    for part in waiting:  # grows while it is walked through
-        nodes.update(o for o, _ in part.get("balance", ()))
-        waiting += (part[side] for side in ("up_to", "above") if side in part)
+    for case in waiting:  # grows during the loop
+        nodes.update(o for o, _ in case.get("balance", ()))
+        waiting += (case[branch] for branch in ("up_to", "above") if branch in case)
     return f"{cuts}, the balance of {counted(len(nodes), 'node')}"
 
 
 def bound_text(content: Mapping[str, Any]) -> str:
-    """Return the bound of a certificate by its first objective, and how far the tree is from it."""
+    """Return the bound of a certificate by its first objective, and the gap of the tree."""
     objective, bound = content["objective"][0], content["bound"][0]
     text = f"success at most {_success(bound)}" if objective == "success" else f"{objective} at least {bound}"
     if content["costs"] is not None:

@@ -1,4 +1,4 @@
-"""Certificates of the best tree, and of one that is given: proofs that are checked without a solver."""
+"""Certificates of optimal trees, found or given: proofs that are checked without a solver."""
 
 import contextlib
 from collections.abc import Sequence
@@ -29,29 +29,29 @@ from foon_asp.whole_file import write_whole
 
 
 def certified(
-    problem: Problem, objectives: Sequence[Objective], how: Settings, file: File | None = None
+    problem: Problem, objectives: Sequence[Objective], settings: Settings, file: File | None = None
 ) -> Answer:
-    """Solve a problem, and look for a certificate; at a limit or ctrl-C the answer comes without one.
+    """Solve a problem, and search for a certificate; at a limit or ctrl-C the answer has none.
 
-    Where it is written into a ``file``, notes of the answer say what it proves.
+    If the certificate is written into a ``file``, notes of the answer say what it proves.
     """
-    deadline = how.begun
-    how = how._replace(deadline=deadline)
-    ruled = how.constraints or how.constants or how.encodings
+    deadline = settings.begun
+    settings = settings._replace(deadline=deadline)
+    ruled = settings.constraints or settings.constants or settings.encodings
     plain = not ruled and problem.items is None and Objective.PRICE not in objectives
-    near = near_goals(problem, objectives, how) if plain else None
+    nearby = near_goals(problem, objectives, settings) if plain else None
     with reading():
-        subject = near.subject() if near is not None else _subject(problem) if plain else None
-    if near is None:
-        answer = answered(whole(problem) if subject is None else problem, objectives, how)
+        subject = nearby.subject() if nearby is not None else _subject(problem) if plain else None
+    if nearby is None:
+        answer = answered(whole(problem) if subject is None else problem, objectives, settings)
         proved = answer.problem
     else:
-        answer = answered_nearby(near, objectives, how)
-        proved = near.relaxed
+        answer = answered_nearby(nearby, objectives, settings)
+        proved = nearby.relaxed
     certificate = None
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         outcome, certificate = certify_outcome(
-            answer.outcome._replace(problem=proved), how, lambda: deadline.passed, subject
+            answer.outcome._replace(problem=proved), settings, lambda: deadline.passed, subject
         )
         answer = Answer.of(outcome._replace(problem=answer.problem))
     if file is None:
@@ -61,7 +61,7 @@ def certified(
 
 
 def _subject(problem: Problem) -> Subject | None:
-    """Return what a certificate speaks about, if it need not be read; ``None`` where the problem has it."""
+    """Return the subject of a certificate from the index of a store; ``None`` if the problem has it."""
     data = problem.origin
     if not problem.network.object_numbers or not isinstance(data, Dataset) or problem.own_rates:
         return None
@@ -71,7 +71,7 @@ def _subject(problem: Problem) -> Subject | None:
 
 
 def certify_tree(
-    tree: Tree, objectives: tuple[Objective, ...], how: Settings, file: File
+    tree: Tree, objectives: tuple[Objective, ...], settings: Settings, file: File
 ) -> tuple[Certificate | None, Ending, str]:
     """Prove a tree or plan that executes the best, without a search, and write the certificate.
 
@@ -79,7 +79,7 @@ def certify_tree(
     """
     objectives, certificate = levels(objectives), None
     try:
-        certificate = _of_tree(tree, objectives, how)
+        certificate = _of_tree(tree, objectives, settings)
     except NotBestError as better:
         by = ", then ".join(objectives)
         return None, Ending.NEGATIVE, f"not the best by {by}: there is one with {costs_text(better.costs)}"
@@ -88,14 +88,14 @@ def certify_tree(
         return None, Ending.LIMIT, "no certificate was found, and nothing is written"
     content, sure = certificate.content, certificate.certified
     if certificate.claim == "bound":
-        said = f"the certificate {file} proves a bound only: {bound_text(content)}"
-        return certificate, Ending.LIMIT, said
+        text = f"the certificate {file} proves a bound only: {bound_text(content)}"
+        return certificate, Ending.LIMIT, text
     ending = Ending.DONE if sure == objectives else Ending.LIMIT
     return certificate, ending, f"proved best by {', then '.join(sure)} ({file}, {looked_at(content)})"
 
 
-def _of_tree(tree: Tree, objectives: tuple[Objective, ...], how: Settings) -> Certificate | None:
-    problem, deadline, covered, units = tree.problem, how.begun, coverage(how), tree.ids
+def _of_tree(tree: Tree, objectives: tuple[Objective, ...], settings: Settings) -> Certificate | None:
+    problem, deadline, covered, units = tree.problem, settings.begun, coverage(settings), tree.ids
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         if problem.items is not None:
             covered = covered_for_plans(covered)

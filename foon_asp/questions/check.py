@@ -14,15 +14,15 @@ from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_for
 from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
-from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.common_options import CommonOptions, settings_of
+from foon_asp.questions.contract import Kind, Option, Role, question
 from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree, posed_tree
 from foon_asp.questions.verdict import Stop, found_of, verdict_lines
-from foon_asp.results.document import AboutGoals, Known
-from foon_asp.results.table import Part as Shown
+from foon_asp.results.document import AboutGoals, Unserialized
+from foon_asp.results.table import Block
 from foon_asp.results.values import ListedConstraint, UsedUpRun
 from foon_asp.results.values_of import head_of
 from foon_asp.text.json_value import schema_name
@@ -62,26 +62,26 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
     breaks: tuple[ListedConstraint, ...] | UnsetType | None = UNSET
 
     @classmethod
-    def of(cls, tree: Tree, objectives: Iterable[Objective] = (), **more: Any) -> Self:
+    def of(cls, tree: Tree, objectives: Iterable[Objective] = (), **fields: Any) -> Self:
         """Simulate a tree, or replay a plan.
 
         Parameters:
             tree: The tree or plan.
             objectives: The objectives by which it is to be the best.
-            more: The fields that a kind of check has besides.
+            fields: Further fields of a subclass.
         """
         problem, simulation = tree.problem, _simulated(tree)
         foreign = tuple(n for n, unit in enumerate(map(problem.network.unit_id, tree), 1) if unit is None)
-        found = cls(
+        checked = cls(
             **head_of(problem, objectives),
             **found_of(tree, simulation),
             costs=None if foreign else problem.costs(tree.ids),
             not_in_network=foreign,
-            **more,
+            **fields,
         )
-        return found.knowing(tree=tree, simulation=simulation)
+        return checked.knowing(tree=tree, simulation=simulation)
 
-    tree = Known[Tree]()
+    tree = Unserialized[Tree]()
     """The tree as it was given."""
 
     @property
@@ -96,24 +96,24 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
 
     @property
     def in_order(self) -> Tree | None:
-        """The tree in an order that executes, ``None`` where no order does."""
+        """The tree in an order that executes; ``None`` if no order does."""
         if not self.executes:
             return None
         return self.tree.in_order(position - 1 for position in self.order)
 
-    certificate = Known["Certificate | None"](None)
+    certificate = Unserialized["Certificate | None"](None)
     """The certificate that proves the tree the best, where one was asked for and found."""
 
     @property
     def ending(self) -> Ending:
-        """Done when the tree executes, has units of the network alone, and breaks no rule.
+        """``DONE`` if the tree executes, has units of the network only, and breaks no rule.
 
         Where a certificate is asked for, the tree is also to be proved the best.
         """
         sound = self.executes and not self.not_in_network and not self.breaks
         return self.proof_ending if sound else Ending.NEGATIVE
 
-    def show(self) -> Iterator[Shown]:
+    def show(self) -> Iterator[Block]:
         """Return whether the tree executes, in which order, what stops it, and which rules it breaks."""
         yield from verdict_lines(self.tree, self.simulation)
         yield from (*self._about_rules(), *self.notes)
@@ -131,21 +131,21 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
             for rule in self.breaks:
                 yield from rule.lines()
 
-    notes = Known[tuple[str, ...]](())
+    notes = Unserialized[tuple[str, ...]](())
     """What a certificate proves of the tree, where one was asked for."""
 
-    proof_ending = Known[Ending](Ending.DONE)
+    proof_ending = Unserialized[Ending](Ending.DONE)
     """How the proof ended, where one was asked for."""
 
-    simulation = Known[Simulation]()
+    simulation = Unserialized[Simulation]()
     """What the simulation of the tree found."""
 
     def remark(self, format_: str) -> str:
-        """Return what a certificate proves."""
+        """Return the notes on the certificate."""
         return "\n".join(self.notes)
 
     def drawing(self) -> Drawing | None:
-        """Return what the picture shows."""
+        """Return the drawing of the tree; ``None`` without one."""
         return self.tree.drawing()
 
     def __repr__(self) -> str:
@@ -169,7 +169,7 @@ def _simulated(tree: Tree) -> Simulation:
         "tree",
         "The task tree: FOON text, or an answer in JSON.",
         Kind.FILE,
-        Part.PROBLEM,
+        Role.PROBLEM,
         metavar="TREE",
         positional=True,
     ),
@@ -207,7 +207,7 @@ def check(
         Objectives,
         OBJECTIVES._replace(help="What is best, for a certificate: the most important first.", default=()),
     ] = (),
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Checked:
     """Simulate a task tree for the goals of a problem: does it execute, and in which order?
 
@@ -236,7 +236,7 @@ def check(
         >>> [broken.text for broken in checked.breaks] == [rule]
         True
     """
-    rules, used_up = settings_of(how), problem.items is not None
+    rules, used_up = settings_of(options), problem.items is not None
     if rules.replaced is not None:
         raise UserError(f"{rules.replaced}: a tree is checked without encodings: leave them out")
     if objectives and certificate is None:
@@ -245,12 +245,12 @@ def check(
     if certificate is not None or (breaking is not None and not breaking.local):
         problem = whole(problem)
     chosen = () if certificate is None else chosen_objectives(problem, objectives or "units")
-    given = posed_tree(problem, tree)
-    checked = Checked.of(given, chosen)
+    listed = posed_tree(problem, tree)
+    checked = Checked.of(listed, chosen)
     if breaking is not None:
         broken = None
         if checked.executes and not checked.not_in_network:
-            broken = tuple(rule.listed for rule in breaking.broken(given.problem, given.ids))
+            broken = tuple(rule.listed for rule in breaking.broken(listed.problem, listed.ids))
         checked = structs.replace(checked, breaks=broken).knowing(**checked.__dict__)
     in_order = checked.in_order
     if certificate is not None and in_order is not None and checked.ending is Ending.DONE:

@@ -1,4 +1,4 @@
-"""Which constraints cannot hold together, and which to drop."""
+"""Clashing constraints: a smallest clash, and the cheapest constraints to drop."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -123,68 +123,70 @@ class Clash(Value, frozen=True, kw_only=True):
             yield from note
 
 
-def find_clash(problem: Problem, how: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
-    """Find a smallest clash and the cheapest constraints to drop, of those in some settings.
+def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
+    """Find a smallest clash of the constraints in ``settings`` (smallest MUS), and the cheapest ones to drop.
 
     ``own_weights`` says what it costs to drop a rule of a constraint, 1 where it says nothing. The smallest
     clash is found by implicit hitting sets (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS
     Extraction with Minimal Hitting Set Dualization, CP 2015): a smallest set with one of every correction
     known so far, until it is a clash itself.
     """
-    deadline = how.begun
-    how = how._replace(deadline=deadline)
-    constraints, relaxed = relax(how.constraints, how.constants, soft=False, deadline=deadline)
+    deadline = settings.begun
+    settings = settings._replace(deadline=deadline)
+    constraints, relaxed = relax(settings.constraints, settings.constants, soft=False, deadline=deadline)
     weight_of = {find_constraint(c): weight for c, weight in own_weights.items()}
     by_number = {
-        each.number: WeightedConstraint(**asdict(each.listed), weight=weight_of.get(each.constraint, 1))
-        for each in constraints
+        rule.number: WeightedConstraint(**asdict(rule.listed), weight=weight_of.get(rule.constraint, 1))
+        for rule in constraints
     }
-    weights = {number: each.weight for number, each in by_number.items()}
-    how = how._replace(relaxed=relaxed)
-    program = assemble(how, caller().reporter.warning, problem=problem)
+    weights = {number: constraint.weight for number, constraint in by_number.items()}
+    settings = settings._replace(relaxed=relaxed)
+    program = assemble(settings, caller().reporter.warning, problem=problem)
     blame = (question_encoding("blame.lp"),)
 
-    def clash(**known: Any) -> Clash:
-        return Clash(constraints=tuple(by_number.values()), **known)
+    def clash(**fields: Any) -> Clash:
+        return Clash(constraints=tuple(by_number.values()), **fields)
 
-    def those(numbers: Iterable[int]) -> tuple[WeightedConstraint, ...]:
+    def constraints_of(numbers: Iterable[int]) -> tuple[WeightedConstraint, ...]:
         return tuple(by_number[number] for number in sorted(numbers))
 
-    first = prepare(problem, _OBJECTIVES, how, program)
-    if first.stopped:
+    prepared = prepare(problem, _OBJECTIVES, settings, program)
+    if prepared.stopped:
         return clash(complete=False)
-    if first.tree is None:
+    if prepared.tree is None:
         return clash(tree_exists_without_constraints=False)
     dropping = "optimize(_dropping,1).\n"
     corrections: list[tuple[int, ...]] = []
     blamed: tuple[int, ...] = ()
     while True:
-        ended = first.run(dropping + write_constraints(weights, blamed), predicates=[("_dropped", 1)])
+        ended = prepared.run(dropping + write_constraints(weights, blamed), predicates=[("_dropped", 1)])
         if ended.units is None or not ended.exhausted:
             break
         corrections.append(tuple(sorted(ended.atoms["_dropped"])))
         if not corrections[-1]:
             break
-        hit = write_constraints(weights, ()) + write_corrections(corrections)
-        hitting = run(blame, hit, CLINGO_OPTIONS, deadline, predicates=[("_blamed", 1)])
+        rules = write_constraints(weights, ()) + write_corrections(corrections)
+        hitting = run(blame, rules, CLINGO_OPTIONS, deadline, predicates=[("_blamed", 1)])
         if hitting.units is None or not hitting.exhausted:
             break
         blamed = tuple(sorted(hitting.atoms["_blamed"]))
     clashes = ended.units is None and ended.exhausted
     if not corrections:
-        enough = ended.atoms["_dropped"] if ended.atoms else ()  # to drop, but perhaps not the cheapest
+        sufficient = ended.atoms["_dropped"] if ended.atoms else ()  # to drop, but perhaps not the cheapest
         return clash(
-            complete=clashes, tree_exists_without_constraints=not clashes, cheapest_to_drop=those(enough)
+            complete=clashes,
+            tree_exists_without_constraints=not clashes,
+            cheapest_to_drop=constraints_of(sufficient),
         )
     dropped = corrections[0]
     kept = write_constraints(weights, set(weights).difference(dropped))
-    outcome = solve_prepared(first, _OBJECTIVES, kept)
+    outcome = solve_prepared(prepared, _OBJECTIVES, kept)
     if outcome.status is Status.INFEASIBLE:
         raise BugError("dropping the constraints does not leave a tree")
     return clash(
-        smallest_clash=those(blamed) if clashes else (),
+        smallest_clash=constraints_of(blamed) if clashes else (),
         smallest_proved=clashes,
-        cheapest_to_drop=those(dropped),
+        cheapest_to_drop=constraints_of(dropped),
         answer=Answer.of(outcome),
     )
 

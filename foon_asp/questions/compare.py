@@ -23,17 +23,17 @@ from foon_asp.pictures.comparison_chart import write_comparison_chart
 from foon_asp.problem import Problem
 from foon_asp.questions.arguments import asked_with, at_least
 from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.compared import comparison_table, published_table, summary_tables, tidy_rows
-from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import How, limits_of, settings_of
+from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
 from foon_asp.questions.options import CHART, CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
 from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved
 from foon_asp.questions.searching import COUNT, DEPTH, TIES, known_searches, search_settings, searched
 from foon_asp.resources import published_table as published_file
-from foon_asp.results.document import AboutGoals, Known
-from foon_asp.results.table import Part as Shown
+from foon_asp.results.document import AboutGoals, Unserialized
+from foon_asp.results.table import Block
 from foon_asp.results.values_of import head_of
 from foon_asp.searches import Search, SearchSettings, search_names
 from foon_asp.text.json_value import Json, schema_name
@@ -60,10 +60,10 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
     comparisons: tuple[Comparison, ...]
     published: PublishedTable | UnsetType = UNSET
 
-    retrieved = Known[tuple[Retrieved, ...]]()
+    retrieved = Unserialized[tuple[Retrieved, ...]]()
     """What each search returned for each goal, where trees are asked for, or there is but one."""
 
-    summed_up = Known[bool]()
+    summed_up = Unserialized[bool]()
     """Whether a summary alone is shown."""
 
     @property
@@ -73,10 +73,10 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
 
     @property
     def ending(self) -> Ending:
-        """Done when every optimum is proved."""
+        """``DONE`` if every optimum is proved."""
         return Ending.DONE if self.proved else Ending.LIMIT
 
-    def show(self) -> Iterator[Shown]:
+    def show(self) -> Iterator[Block]:
         """Return the table, and for many goals a summary; trees, where they are asked for."""
         if isinstance(self.published, PublishedTable):
             yield from published_table(self.published, self.comparisons)
@@ -86,7 +86,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
             yield ""
             yield from comparison_table(self.comparisons, self.items == "lasting")
             if self.comparisons[0].searches[0].tree is not UNSET:
-                yield from (part for retrieved in self.retrieved for part in ("", *retrieved.show()))
+                yield from (block for retrieved in self.retrieved for block in ("", *retrieved.show()))
             if len(self.comparisons) == 1:
                 return
             yield ""
@@ -94,8 +94,8 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
 
     def table_rows(self) -> Iterator[Json]:
         """Return a row for each goal and search: optima with their status, ratios, whether it executes."""
-        how = {"containers": self.containers, "items": self.items, "level": self.level}
-        return (row | how for comparison in self.comparisons for row in tidy_rows(comparison))
+        conditions = {"containers": self.containers, "items": self.items, "level": self.level}
+        return (row | conditions for comparison in self.comparisons for row in tidy_rows(comparison))
 
     def foon(self) -> str:
         """Return the tree of one search for one goal as FOON text, in the order listed.
@@ -132,7 +132,7 @@ def _posed(
     stock: File | None,
     stays: File | None,
 ) -> tuple[Problem]:
-    """Pose the goals, and refuse what cannot be shown beside them before anything is solved."""
+    """Pose the goals; raises :class:`UserError` for options that do not fit, before anything is solved."""
     if published:
         table = read_published(published_file())
         goals_named = goals_named or tuple(table.goals)
@@ -144,8 +144,8 @@ def _posed(
                 f"add --containers {table.containers}"
             )
     if all_makeable:
-        how = items_of(command.dataset, items, stock, stays)
-        return (command.dataset.problem((0,), containers, everything=True, items=how),)
+        used_up = items_of(command.dataset, items, stock, stays)
+        return (command.dataset.problem((0,), containers, everything=True, items=used_up),)
     return one_problem(command, goals_named, containers, items, stock, stays, all_goals=True)
 
 
@@ -181,14 +181,14 @@ def compare(
     searches: Annotated[Iterable[str], Option(flags=("--search",), many=True, choices=search_names)] = (),
     *,
     trees: Annotated[bool, Option()] = False,
-    all_makeable: Annotated[bool, Option(part=Part.PROBLEM | Part.QUESTION)] = False,
-    published: Annotated[bool, Option(part=Part.PROBLEM | Part.QUESTION)] = False,
+    all_makeable: Annotated[bool, Option(role=Role.PROBLEM | Role.QUESTION)] = False,
+    published: Annotated[bool, Option(role=Role.PROBLEM | Role.QUESTION)] = False,
     ties: Annotated[str, TIES] = "first",
     count: Annotated[str, COUNT] = "ingredients",
     depth_limit: Annotated[int | None, DEPTH] = None,
     jobs: Annotated[int, JOBS] = 1,
     results: Annotated[File | None, Option(kind=Kind.WRITTEN)] = None,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Compared:
     """Run searches for each goal of a problem by itself, and prove the optimum beside them.
 
@@ -221,10 +221,10 @@ def compare(
     if problem.rates is None and not searches:
         chosen = known_searches(rated=False)
         caller().reporter.warning("greedy-success is left out, and so is success: no success rates are known")
-    each_limit = limits_of(how)
-    asked = search_settings(ties, count, depth_limit, published, *each_limit)
+    each_limit = limits_of(options)
+    settings = search_settings(ties, count, depth_limit, published, *each_limit)
     at_least(jobs, 1, "jobs")
-    rules = settings_of(how)._replace(deadline=None)
+    rules = settings_of(options)._replace(deadline=None)
     if rules.replaced is not None:
         raise UserError(f"{rules.replaced}: searches know nothing of other encodings: leave them out")
     problem = asked_with(problem, rules)
@@ -241,26 +241,28 @@ def compare(
     table = read_published(published_file()) if published else None
     if table is not None and not table.goals.keys() >= {node.label for node in problem.goal_nodes}:
         table = None
-    comparisons = list(_compared_goals(problem, chosen, asked, rules, jobs, results))
-    known = {search.name: search for search in chosen}
+    comparisons = list(_compared_goals(problem, chosen, settings, rules, jobs, results))
+    search_of = {search.name: search for search in chosen}
     retrieved: list[Retrieved] = []
     if trees or alone:
         for goal, row in zip(problem.goals, comparisons, strict=True):
             asked_of = replace(problem, goals=(goal,))
-            for each in row.searches:
-                ids = problem.network.units_of_numbers(each.units or ())
-                retrieved.append(Retrieved.of(asked_of, known[each.search], each.ending, ids, each.stuck_at))
+            for result in row.searches:
+                ids = problem.network.units_of_numbers(result.units or ())
+                retrieved.append(
+                    Retrieved.of(asked_of, search_of[result.search], result.ending, ids, result.stuck_at)
+                )
     if trees:
         steps = iter(retrieved)
         comparisons = [
             structs.replace(
                 row,
-                searches=tuple(structs.replace(each, tree=next(steps).units) for each in row.searches),
+                searches=tuple(structs.replace(result, tree=next(steps).units) for result in row.searches),
             )
             for row in comparisons
         ]
     return Compared(
-        **head_of(problem, dict.fromkeys(each for row in comparisons for each in row.optimum)),
+        **head_of(problem, dict.fromkeys(objective for row in comparisons for objective in row.optimum)),
         comparisons=tuple(comparisons),
         published=table or UNSET,
     ).knowing(retrieved=tuple(retrieved), summed_up=all_makeable)
@@ -274,7 +276,7 @@ def _compared_goals(
     jobs: int,
     results: File | None,
 ) -> Iterator[Comparison]:
-    """Return the comparison of each goal; those that a file of results has already are taken from it."""
+    """Return the comparison of each goal, read from the file of results if it is there."""
     goals = {str(node): goal for node, goal in zip(problem.goal_nodes, problem.goals, strict=True)}
     with contextlib.ExitStack() as stack:
         done: dict[object, Comparison] = {}
@@ -285,10 +287,10 @@ def _compared_goals(
             done = file.done
             for text in file.twice:
                 caller().reporter.warning(text)
-        left = [goal for name, goal in goals.items() if name not in done]
-        before = len(goals) - len(left)
+        remaining = [goal for name, goal in goals.items() if name not in done]
+        before = len(goals) - len(remaining)
         caller().reporter.step("comparing", before, len(goals))
-        rows = compare_goals(problem, left, searches, settings, settings.time_limit, jobs, rules)
+        rows = compare_goals(problem, remaining, searches, settings, settings.time_limit, jobs, rules)
         for number, row in enumerate(rows, 1):
             if file is None:
                 done[row.goal.node] = row

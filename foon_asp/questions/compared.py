@@ -1,4 +1,4 @@
-"""Comparisons of searches as tables: a row for each goal and search, and what many goals sum up to."""
+"""Comparisons of searches as tables: a row for each goal and search, and summaries over goals."""
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
@@ -11,7 +11,7 @@ from foon_asp.network import counted
 from foon_asp.problem import Objective, multiplies
 from foon_asp.proof.simulation import Verdict
 from foon_asp.results.plain import flat_row, plain
-from foon_asp.results.table import Cell, Part, Table
+from foon_asp.results.table import Block, Cell, Table
 from foon_asp.results.values import Figure
 from foon_asp.text.json_value import Json
 
@@ -61,7 +61,7 @@ def tidy_rows(comparison: Comparison) -> Iterator[Json]:
         yield flat_row(plain(row))
 
 
-def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> Iterator[Part]:
+def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> Iterator[Block]:
     """Return a table of comparisons, and notes for the signs in it.
 
     Parameters:
@@ -74,8 +74,8 @@ def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> 
     for comparison in comparisons:
         optima = [comparison.optimum.get(objective) for objective in MEASURED]
         figures = [
-            "" if best is None or best.value is None else _figure_text(each, best.value) + _NO_RATIO
-            for each, best in zip(MEASURED, optima, strict=True)
+            "" if best is None or best.value is None else _figure_text(objective, best.value) + _NO_RATIO
+            for objective, best in zip(MEASURED, optima, strict=True)
         ]
         status = " ".join(dict.fromkeys(best.status for best in optima if best))
         rows += ["", comparison.goal.node]
@@ -118,8 +118,8 @@ def _cell(result: SearchResult, objective: Objective) -> str:
     return f"{text} {float(ratio):>5.2f}×" if ratio >= Fraction(1, 100) else f"{text} {float(ratio):.0e}×"
 
 
-def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Part]:
-    """Return what a paper would say of many goals: which trees execute, and how far they are off.
+def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Block]:
+    """Return summary tables over many goals: how many trees execute, and their ratios to the optimum.
 
     Parameters:
         summaries: One for each search.
@@ -156,8 +156,8 @@ def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Part]
         yield Table(("search", "objective", *figures, "worst goal"), distances, frozenset({0, 1, 7}))
 
 
-def published_table(table: PublishedTable, comparisons: Sequence[Comparison]) -> Iterator[Part]:
-    """Return published figures beside those measured, and how many agree."""
+def published_table(table: PublishedTable, comparisons: Sequence[Comparison]) -> Iterator[Block]:
+    """Return a table of published and measured numbers of units, and how many agree."""
     yield from ("Functional units, published → measured; = where they agree", "")
     agree = dict.fromkeys(table.columns, 0)
     rows = []
@@ -166,10 +166,10 @@ def published_table(table: PublishedTable, comparisons: Sequence[Comparison]) ->
         units = {result.search: result.measures.get(Objective.UNITS) for result in comparison.searches}
         cells = []
         for search in table.columns:
-            published, here = table.goals[label][search], units.get(search)
-            agree[search] += here == published
-            measured = "no tree" if here is None else str(here)
-            cells.append(f"{published} =" if here == published else f"{published} → {measured}")
+            published, measured_units = table.goals[label][search], units.get(search)
+            agree[search] += measured_units == published
+            measured = "no tree" if measured_units is None else str(measured_units)
+            cells.append(f"{published} =" if measured_units == published else f"{published} → {measured}")
         rows.append((label, *cells, best.status if best.value is None else str(best.value)))
     yield Table(("goal", *table.columns, "optimum"), rows, frozenset({0}))
     counts = ", ".join(f"{search} {number} of {len(rows)}" for search, number in agree.items())

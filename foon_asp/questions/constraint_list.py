@@ -4,7 +4,7 @@ import shlex
 from collections.abc import Iterator
 
 from foon_asp.results.document import Document
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.results.values import Value
 from foon_asp.rules.constraint_library import library_constraints
 from foon_asp.text.json_value import schema_name
@@ -46,8 +46,8 @@ class ConstraintList(Document, frozen=True, kw_only=True, tag=schema_name("const
 
     constraints: tuple[ReadyMadeConstraint, ...]
 
-    def show(self) -> Iterator[Part]:
-        """Return for each constraint its name, what it demands, and how it is called."""
+    def show(self) -> Iterator[Block]:
+        """Return the name, the meaning and the usage of each constraint."""
         for number, constraint in enumerate(self.constraints):
             call = f"--constraint {constraint.name}"
             for parameter in constraint.parameters:
@@ -60,9 +60,9 @@ def list_constraints() -> ConstraintList:
     """Return the ready-made constraints, in order of name."""
     listed = []
     for name, file, title, purpose, parameters in library_constraints():
-        own = tuple(
-            ConstraintParameter(each, None if value in _NOT_SET else value, example)
-            for each, value, example in parameters
+        constants = tuple(
+            ConstraintParameter(parameter, None if value in _NOT_SET else value, example)
+            for parameter, value, example in parameters
         )
-        listed.append(ReadyMadeConstraint(name, str(file), title, purpose, own))
+        listed.append(ReadyMadeConstraint(name, str(file), title, purpose, constants))
     return ConstraintList(constraints=tuple(listed))

@@ -15,7 +15,7 @@ from foon_asp.questions.posing import Pose, one_problem
 from foon_asp.questions.result import Result
 
 TABLES = ("text", "json", "csv", "markdown")
-"""The formats of a result that lists things: a row for each."""
+"""The formats of a result that has rows."""
 
 _DEFAULTS = {"constraints": (), "goal": (), "containers": "strict"}
 
@@ -25,7 +25,7 @@ R = TypeVar("R", bound=Result)
 
 
 class Kind(StrEnum):
-    """What the text of an option is read as."""
+    """The type that the text of an option is parsed as."""
 
     TEXT = "text"
     WHOLE = "whole number"
@@ -39,8 +39,8 @@ class Kind(StrEnum):
     OPTIONS = "options of another program"
 
 
-class Part(Flag):
-    """What an option belongs to, which may be several."""
+class Role(Flag):
+    """The roles of an option, as flags: what it belongs to."""
 
     PROBLEM = auto()
     """The problem that is asked about, which has it in Python (goals, containers): it is posed by it."""
@@ -48,20 +48,20 @@ class Part(Flag):
     """The question: it is a parameter of the function."""
     COMMAND = auto()
     """A parameter that holds for a whole command: limits and rules."""
-    MORE = auto()
-    """What else can be said for another parameter, and is among its values there: rules, for constraints."""
+    EXTRA_VALUES = auto()
+    """More values of another parameter, as rules are of constraints; in Python, it takes them itself."""
     CHART = auto()
     """Files for a picture of what was found."""
 
 
 class Option(NamedTuple):
-    """One thing that can be chosen, as plain data.
+    """An option of a question, for the command line and Python, as plain data.
 
     In the annotation of a parameter (``Annotated[int, Option(...)]``) the parameter gives the name and the
     default, and the first sentence of its entry in the docstring the help, where the option has none.
 
-    ``name`` is the parameter. ``flags`` are those of the command line, by default ``--name`` with dashes for
-    underscores. A ``positional`` option has no flag and must be given, unless it is ``many``: such an option
+    ``name`` is the parameter. ``flags`` are the flags of the command line, by default ``--name`` with dashes
+    for underscores. A ``positional`` option has no flag and must be given, unless it is ``many``: it
     may be repeated. ``help`` describes the option on the command line and in Python; ``python`` adds what
     only Python accepts. ``choices`` are the values allowed, or a function that lists them, if other packages
     may add some. ``least`` is the smallest number allowed, ``metavar`` the word for the
@@ -71,7 +71,7 @@ class Option(NamedTuple):
     name: str = ""
     help: str = ""
     kind: Kind = Kind.TEXT
-    part: Part = Part.QUESTION
+    role: Role = Role.QUESTION
     default: object = None
     flags: tuple[str, ...] = ()
     many: bool = False
@@ -130,34 +130,33 @@ def question(
     """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
-        own = {option.name for option in options}
-        every = (*options, *(each for each in _options_of(ask) if each.name not in own))
-        if not used_up and "items" not in {option.name for option in every}:
+        named = {option.name for option in options}
+        all_options = (*options, *(option for option in _options_of(ask) if option.name not in named))
+        if not used_up and "items" not in {option.name for option in all_options}:
             ask = _for_lasting_items(ask)
         typed_in = command or ask  # a command line has read its values already, rules among them
-        asked = asked_in_python(ask, every)
-        asked.__dict__["question"] = Question(every, help_, formats, suffixes or {}, pose, typed_in)
-        return asked
+        wrapped = asked_in_python(ask, all_options)
+        wrapped.__dict__["question"] = Question(all_options, help_, formats, suffixes or {}, pose, typed_in)
+        return wrapped
 
     return decorate
 
 
 def asked_in_python(ask: Callable[P, T], options: Sequence[Option] | None = None) -> Callable[P, T]:
-    """Make a function take what every question takes in Python, and complete its docstring.
+    """Wrap a function so that it accepts paths and data for problems, and complete its docstring.
 
-    ``options`` describe parameters; without them, it is those in the annotations. The command of a function
-    without :func:`question` is that of another question.
+    ``options`` describe the parameters, by default the options in the annotations.
     """
     signature = _without_metadata(expanded_signature(ask))
-    given = _options_of(ask) if options is None else options
-    texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in given}
-    asked = in_hand(ask, signature)
-    asked.__doc__ = complete_docstring(ask, signature, texts)
-    return asked
+    described = _options_of(ask) if options is None else options
+    texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in described}
+    wrapped = in_hand(ask, signature)
+    wrapped.__doc__ = complete_docstring(ask, signature, texts)
+    return wrapped
 
 
 def expanded_signature(ask: Callable[..., object]) -> inspect.Signature:
-    """Return the signature of a function with the keywords of ``**how: Unpack[How]`` one by one."""
+    """Return the signature of a function with each keyword of ``**options: Unpack[CommonOptions]``."""
     signature = inspect.signature(ask)
     parameters: list[inspect.Parameter] = []
     for parameter in signature.parameters.values():
@@ -172,18 +171,20 @@ def expanded_signature(ask: Callable[..., object]) -> inspect.Signature:
 
 
 def _keywords(annotation: object) -> Mapping[str, object]:
-    """Return the annotations of the keywords in ``Unpack[...]``; none where anything is passed on."""
-    return {name: kind for each in get_args(annotation) for name, kind in each.__annotations__.items()}
+    """Return the annotations of the keywords in ``Unpack[...]``; empty for ``**kwargs`` of any type."""
+    return {
+        name: kind for typed_dict in get_args(annotation) for name, kind in typed_dict.__annotations__.items()
+    }
 
 
 def _without_metadata(signature: inspect.Signature) -> inspect.Signature:
-    """Return a signature with the types alone of what is annotated with options."""
+    """Return a signature whose annotations are the types without option metadata."""
     parameters = signature.parameters.values()
-    kinds = (getattr(each.annotation, "__origin__", None) for each in parameters)
+    kinds = (getattr(parameter.annotation, "__origin__", None) for parameter in parameters)
     return signature.replace(
         parameters=[
-            each.replace(annotation=kind) if hasattr(each.annotation, "__metadata__") else each
-            for each, kind in zip(parameters, kinds, strict=True)
+            parameter.replace(annotation=kind) if hasattr(parameter.annotation, "__metadata__") else parameter
+            for parameter, kind in zip(parameters, kinds, strict=True)
         ]
     )
 
@@ -198,7 +199,7 @@ def _options_of(ask: Callable[..., object]) -> Iterator[Option]:
 
 
 def _completed(option: Option, parameter: inspect.Parameter, texts: Mapping[str, str]) -> Option:
-    if option.name:  # one that several questions share, which may have another default
+    if option.name:  # an option shared by questions, whose default may differ
         default = parameter.default if isinstance(parameter.default, str | int) else option.default
         return option._replace(default=(default,) if option.many and isinstance(default, str) else default)
     kind = option.kind
@@ -212,15 +213,15 @@ def _completed(option: Option, parameter: inspect.Parameter, texts: Mapping[str,
 
 
 def _for_lasting_items(ask: Callable[P, R]) -> Callable[P, R]:
-    """Refuse problems whose items are used up, by the name of the question."""
+    """Wrap a question so that it raises :class:`UserError` for problems whose items are used up."""
 
     @functools.wraps(ask)
-    def asked(*about: P.args, **named: P.kwargs) -> R:
-        if any(isinstance(each, Problem) and each.items is not None for each in about):
+    def wrapped(*about: P.args, **named: P.kwargs) -> R:
+        if any(isinstance(argument, Problem) and argument.items is not None for argument in about):
             raise not_built(ask.__module__.removeprefix("foon_asp.questions."))
         return ask(*about, **named)
 
-    return asked
+    return wrapped
 
 
 def not_built(name: str) -> UserError:
@@ -230,5 +231,5 @@ def not_built(name: str) -> UserError:
 
 def question_of(ask: Callable[..., object]) -> Question:
     """Return the description of a question for a command line."""
-    found: Question = ask.__dict__["question"]
-    return found
+    description: Question = ask.__dict__["question"]
+    return description

@@ -15,13 +15,13 @@ from foon_asp.rules.constraint import Constraint
 
 
 def cross_checked(
-    answer: Answer, how: Settings, weights: Mapping[Constraint, int], engines: Sequence[Engine]
+    answer: Answer, settings: Settings, weights: Mapping[Constraint, int], engines: Sequence[Engine]
 ) -> Answer:
-    """Ask other engines about an answer; its notes say by what each of them agrees.
+    """Check an answer with other engines, and return it with a note and a result for each engine.
 
     Parameters:
         answer: The answer.
-        how: The settings that it was found under.
+        settings: The settings that it was found under.
         weights: The soft constraints that it was found under, with their weights.
         engines: The engines to ask besides bare clingo.
 
@@ -29,11 +29,13 @@ def cross_checked(
         BugError: where one disagrees; for a command, all that is needed to look into it is in a new file.
     """
     penalty = answer.penalty if isinstance(answer.penalty, int) else None
-    asked = Asked(answer.outcome, how, weights, penalty)
+    request = Asked(answer.outcome, settings, weights, penalty)
     try:
-        checks = ask_engines(asked, engines=tuple(engines))
-    except DisagreementError as found:
-        raise BugError(str(found) if is_python() else write_disagreement(asked, found)) from None
+        checks = ask_engines(request, engines=tuple(engines))
+    except DisagreementError as disagreement:
+        raise BugError(
+            str(disagreement) if is_python() else write_disagreement(request, disagreement)
+        ) from None
     return answer.having(
         [f"cross-check: {_line(answer, check)}" for check in checks],
         cross_check=tuple(
@@ -52,7 +54,7 @@ def cross_checked(
 
 
 def _line(answer: Answer, check: Check) -> str:
-    """Return by what an engine agrees, or why it has not checked the answer."""
+    """Return the objectives by which an engine agrees, or its reason for not checking."""
     engine = check.engine if check.package is None else f"{check.engine} ({check.package})"
     if check.reason is not None:
         return f"{engine}: not checked: {check.reason}"

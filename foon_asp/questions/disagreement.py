@@ -24,14 +24,16 @@ from foon_asp.whole_file import write_whole
 _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy")
 
 
-def write_disagreement(asked: Asked, found: DisagreementError) -> str:
-    """Write all that is needed to look into a disagreement to a new file; return what to tell the user."""
-    name = disagreement_name(asked.outcome)
+def write_disagreement(request: Asked, disagreement: DisagreementError) -> str:
+    """Write a disagreement report to a new file; return the message for the user."""
+    name = disagreement_name(request.outcome)
     try:
-        write_whole(Path(name), json_text(disagreement_json(asked, found)).encode("utf-8", "surrogatepass"))
+        write_whole(
+            Path(name), json_text(disagreement_json(request, disagreement)).encode("utf-8", "surrogatepass")
+        )
     except UserError as error:  # what was found counts more than where it is written
-        return f"{found}; the report could not be written: {error}"
-    return f"{found}; question, data and answers are in {name}: attach it to your report"
+        return f"{disagreement}; the report could not be written: {error}"
+    return f"{disagreement}; question, data and answers are in {name}: attach it to your report"
 
 
 def disagreement_name(outcome: Outcome) -> str:
@@ -42,18 +44,18 @@ def disagreement_name(outcome: Outcome) -> str:
     )
 
 
-def disagreement_json(asked: Asked, found: DisagreementError) -> Json:
+def disagreement_json(request: Asked, disagreement: DisagreementError) -> Json:
     """Return a disagreement in plain values: question, data and rules as text, and both answers.
 
     Rules have in them what they include. ``bare_clingo`` has the program that clingo was given, and its
     arguments.
     """
-    outcome, settings = asked.outcome, asked.settings
-    problem, answer = outcome.problem, found.answer
-    program = bare_program(problem, outcome.objectives, settings, asked.soft)
+    outcome, settings = request.outcome, request.settings
+    problem, answer = outcome.problem, disagreement.answer
+    program = bare_program(problem, outcome.objectives, settings, request.soft)
     encodings = (f"#program base.\n{read_encoding(file).text}\n" for file in program.files)
     return {
-        "message": str(found),
+        "message": str(disagreement),
         "question": {
             "goals": [str(problem.network.objects[o]) for o in problem.goals],
             "containers": str(problem.containers),
@@ -62,7 +64,8 @@ def disagreement_json(asked: Asked, found: DisagreementError) -> Json:
             "objectives": list(map(str, outcome.objectives)),
             "constraints": list(_texts(settings.constraints).values()),
             "soft": [
-                {"rules": text, "weight": asked.soft[each]} for each, text in _texts(asked.soft).items()
+                {"rules": text, "weight": request.soft[constraint]}
+                for constraint, text in _texts(request.soft).items()
             ],
             "constants": list(settings.constants),
         },
@@ -75,7 +78,7 @@ def disagreement_json(asked: Asked, found: DisagreementError) -> Json:
                 "units": None if outcome.units is None else list(outcome.units),
                 "costs": plain(outcome.costs),
                 "lower_bound": plain(exact_measures(outcome.bounds)),
-                **({"penalty": asked.penalty} if asked.soft else {}),
+                **({"penalty": request.penalty} if request.soft else {}),
             },
             answer.engine: {
                 "objectives": list(map(str, answer.objectives)),
@@ -95,15 +98,15 @@ def disagreement_json(asked: Asked, found: DisagreementError) -> Json:
 def _texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
     """Return the texts of constraints."""
     texts: dict[Constraint, str] = {}
-    for each in constraints:
-        named = find_constraint(each)
+    for constraint in constraints:
+        named = find_constraint(constraint)
         file = named.file if isinstance(named, LibraryUse) else named
-        texts[each] = file.text if isinstance(file, RuleText) else read_encoding(file).text
+        texts[constraint] = file.text if isinstance(file, RuleText) else read_encoding(file).text
     return texts
 
 
 def _data(problem: Problem) -> dict[str, str]:
-    """Return the files of a data folder by name; below level 3 they are what the network was made from."""
+    """Return the files of a data folder by name; below level 3, of the level-3 network behind it."""
     network = problem.network
     whole = network.detailed or network
     kitchen = sorted(problem.kitchen)

@@ -14,11 +14,11 @@ _ENTRY = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
 
 
 def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
-    """Return what the docstring of a function says of its parameters, by name."""
+    """Return the entries of the ``Parameters`` section of a docstring, by name."""
     if ask.__doc__ is None:  # python -OO
         return {}
-    own = inspect.cleandoc(ask.__doc__).partition("Parameters:\n")[2].partition("\n\n")[0]
-    return {name: " ".join(text.split()) for name, text in _ENTRY.findall(own)}
+    section = inspect.cleandoc(ask.__doc__).partition("Parameters:\n")[2].partition("\n\n")[0]
+    return {name: " ".join(text.split()) for name, text in _ENTRY.findall(section)}
 
 
 def complete_docstring(
@@ -27,12 +27,12 @@ def complete_docstring(
     """Return the docstring of a function with a description of each parameter, in their order.
 
     ``texts`` has descriptions by name. The docstring as written has the sections ``Parameters``, ``Returns``,
-    ``Raises`` and ``Example``. What its first section says of a parameter is taken instead of the text; if
-    that section is missing, it is put before ``Returns``.
+    ``Raises`` and ``Example``. An entry of the first section replaces the text of the parameter; a missing
+    section is inserted before ``Returns``.
     """
     if ask.__doc__ is None:  # python -OO
         return None
-    known = {"problem": _PROBLEM, **texts, **docstring_entries(ask)}
+    text_of = {"problem": _PROBLEM, **texts, **docstring_entries(ask)}
     written = inspect.cleandoc(ask.__doc__)
     before, heading, after = written.partition("Parameters:\n")
     if heading:
@@ -40,7 +40,7 @@ def complete_docstring(
     else:
         before, heading, after = written.partition("Returns:\n")
         after = heading + after
-    entries = (_entry(name, known[name]) for name in signature.parameters if name in known)
+    entries = (_entry(name, text_of[name]) for name in signature.parameters if name in text_of)
     return f"{before}Parameters:\n{''.join(entries)}\n{after}\n"
 
 

@@ -1,4 +1,4 @@
-"""What rules do, one by one, and what that means together."""
+"""The effect of rules, one by one and together."""
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
@@ -9,7 +9,7 @@ from foon_asp.asp.reporter import Reporter
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.results.document import Document
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.results.values import Value
 from foon_asp.rules.constraint import Constraint
 from foon_asp.rules.rule_kind import Kind
@@ -38,7 +38,7 @@ _TOGETHER = {
 
 
 class Remark(Value, frozen=True):
-    """What is said of a rule, and the place that it is about."""
+    """A remark on a rule, and its place."""
 
     text: str
     file: str
@@ -46,7 +46,7 @@ class Remark(Value, frozen=True):
 
 
 class ExplainedRule(Value, frozen=True):
-    """A rule, and what it does.
+    """A rule and its effect.
 
     Attributes:
         constraint: How a ready-made constraint was named that has constants of its own; null for others.
@@ -68,46 +68,46 @@ class ExplainedRule(Value, frozen=True):
     looks_beyond: Remark | None
 
     @classmethod
-    def of(cls, shown: ShownRule) -> "ExplainedRule":
-        """Return what is known of a rule as a value."""
-        rule, (file, line, *_) = shown.rule, shown.source
-        reason = _remark(rule.reason, shown.reason_source)
-        beyond = _remark(rule.further, shown.further_source)
-        named = shown.use or None
-        return cls(shown.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
+    def of(cls, explained: ShownRule) -> "ExplainedRule":
+        """Return an analysed rule as a value."""
+        rule, (file, line, *_) = explained.rule, explained.source
+        reason = _remark(rule.reason, explained.reason_source)
+        beyond = _remark(rule.further, explained.further_source)
+        named = explained.use or None
+        return cls(explained.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
 
-    def lines(self, more: int) -> Iterator[str]:
-        """Return its place and text, what it does and how far it sees; ``more`` facts are like it."""
+    def lines(self, similar: int) -> Iterator[str]:
+        """Return lines on the place, text, effect and scope of the rule; ``similar`` counts facts like it."""
         yield str(Source(self.file, self.line))
         if self.constraint:
             yield f"  {self.constraint}"
         yield f"    {self.text}"
-        if more:
-            yield f"    ... and {more} more of these facts"
+        if similar:
+            yield f"    ... and {similar} more of these facts"
         if self.one_of_a_set:
             yield f"  {self.kind}: {_ASKS_FOR_ONE}"
         else:
-            yield f"  {self.kind}: {_KINDS[self.kind] if self.reason is None else self._said(self.reason)}"
+            yield f"  {self.kind}: {_KINDS[self.kind] if self.reason is None else self._located(self.reason)}"
         if self.kind is Kind.HELPER or (self.reason is not None and self.kind is not Kind.OTHER):
             return
         if self.looks_beyond is None:
             yield "  local: it looks at nothing beyond the tree"
         else:
-            yield f"  not local: {self._said(self.looks_beyond)}"
+            yield f"  not local: {self._located(self.looks_beyond)}"
 
-    def _said(self, remark: Remark) -> str:
-        here = (remark.file, remark.line) == (self.file, self.line)
-        return remark.text + ("" if here else f" ({Source(remark.file, remark.line)})")
+    def _located(self, remark: Remark) -> str:
+        in_same_place = (remark.file, remark.line) == (self.file, self.line)
+        return remark.text + ("" if in_same_place else f" ({Source(remark.file, remark.line)})")
 
     @property
     def likeness(self) -> tuple[bool, str]:
-        """Whether it is a fact, and what other facts have to share to be listed with it."""
+        """A key for grouping: whether the rule is a fact, and the fields that listed facts share."""
         is_fact = self.kind is Kind.HELPER and ":-" not in self.text
         return is_fact, f"{self.file} {self.text.partition('(')[0]}" if is_fact else ""
 
 
 class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules")):
-    """What rules do, and what that means together.
+    """The effect of rules, one by one and together.
 
     Attributes:
         rules: Each rule, in order.
@@ -121,20 +121,20 @@ class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules
     together: Together
     meaning: str
 
-    def show(self) -> Iterator[Part]:
-        """Return what each rule does, of facts of one predicate the first, and then what follows."""
+    def show(self) -> Iterator[Block]:
+        """Return the effect of each rule, of facts of one predicate the first, and of all rules together."""
         for (alike, _), group in groupby(self.rules, lambda rule: rule.likeness):
             together = list(group)
             shown = [(together[0], len(together) - 1)] if alike else [(rule, 0) for rule in together]
-            for rule, more in shown:
-                yield from (*rule.lines(more), "")
+            for rule, similar in shown:
+                yield from (*rule.lines(similar), "")
         yield f"together: {self.meaning}"
 
 
 def explain_rules(
     constraints: Sequence[Constraint], constants: Sequence[str], reporter: Reporter
 ) -> ExplainedRules:
-    """Return what rules do, each and together.
+    """Return the effect of each rule, and of all rules together.
 
     Raises :class:`UserError` where the built-in encodings were changed, so that nothing is known of rules.
     """
@@ -142,7 +142,7 @@ def explain_rules(
     rules = assemble(settings, reporter.warning).understood
     if rules is None:
         raise UserError("the built-in encodings were changed, so nothing is known of rules beside them")
-    far = next((str(shown.source) for shown in rules.shown if not shown.rule.local), "")
+    far = next((str(explained.source) for explained in rules.shown if not explained.rule.local), "")
     return ExplainedRules(
         rules=tuple(map(ExplainedRule.of, rules.shown)),
         together=rules.reductions_kept,

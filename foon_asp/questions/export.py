@@ -1,4 +1,4 @@
-"""A question for planners: PDDL, and what its names stand for."""
+"""Export for planners: PDDL, and the map of its names."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -15,13 +15,13 @@ from foon_asp.planning.planning_task import PlanningTask, planning_task
 from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
 from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
-from foon_asp.questions.contract import Kind, Option, Part, asked_in_python, question
-from foon_asp.questions.how import Posed, begin
+from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.contract import Kind, Option, Role, asked_in_python, question
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.result import Result
-from foon_asp.results.document import AboutGoals, Known
-from foon_asp.results.table import Part as Shown
+from foon_asp.results.document import AboutGoals, Unserialized
+from foon_asp.results.table import Block
 from foon_asp.results.values_of import head_of
 from foon_asp.text.json_value import schema_name
 from foon_asp.whole_file import write_whole
@@ -30,16 +30,16 @@ FILES = ("domain.pddl", "problem.pddl", "map.json")
 """What is written into a folder."""
 _FORMATS = ("pddl",)
 _MERGED = "set"
-_HOW = ("lasting", _MERGED, "used-up")
+_ITEM_RULES = ("lasting", _MERGED, "used-up")
 
 
 class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("export")):
-    """A planning task in PDDL, and what its names stand for.
+    """A planning task in PDDL, and the map of its names.
 
     Attributes:
         domain_file: The domain, in PDDL: a constant for each object node, an action for each unit.
-        problem_file: The problem, in PDDL: what is at hand, and the goals.
-        name_map: What the names of the planning task stand for.
+        problem_file: The problem, in PDDL: the kitchen, and the goals.
+        name_map: The object nodes and units behind the names of the planning task.
 
     Example:
         >>> exported = foon_asp.export(foon_asp.load().problem("ice"))
@@ -51,14 +51,14 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
     problem_file: str = field(name="problem")
     name_map: MapFile = field(name="map")
 
-    task = Known[PlanningTask]()
-    """The same as values."""
+    task = Unserialized[PlanningTask]()
+    """The planning task as values."""
 
-    written = Known[Path | None](None)
+    written = Unserialized[Path | None](None)
     """The folder that the files were written into, if they were."""
 
-    def show(self) -> Iterator[Shown]:
-        """Return the problem; or what was written, where the files were."""
+    def show(self) -> Iterator[Block]:
+        """Return the PDDL text, or the names of the files written."""
         if self.written is None:
             yield from self.problem_file.splitlines()
             return
@@ -101,14 +101,14 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
 
 
 def _export_and_write(
-    problem: Problem, *about: Any, folder_written: Path | None = None, **asked: Any
+    problem: Problem, *about: Any, folder_written: Path | None = None, **options: Any
 ) -> Exported:
     """Export as the command does, into a folder or to be printed."""
-    found = export(problem, *about, **asked)
+    exported = export(problem, *about, **options)
     if folder_written is not None:
-        found.write(folder_written)
-        found.knowing(written=folder_written)
-    return found
+        exported.write(folder_written)
+        exported.knowing(written=folder_written)
+    return exported
 
 
 def _posed(
@@ -119,9 +119,9 @@ def _posed(
 
 
 def _merged(problem: Problem, items: str | None) -> bool:
-    """Whether copies are merged; raises :class:`UserError` where that is not how the problem was posed."""
-    if items not in {None, *_HOW}:
-        raise UserError(f"found items={items!r}, expected one of {', '.join(_HOW)}")
+    """Return whether copies are merged; raises :class:`UserError` if the problem was posed otherwise."""
+    if items not in {None, *_ITEM_RULES}:
+        raise UserError(f"found items={items!r}, expected one of {', '.join(_ITEM_RULES)}")
     if items is not None and (items == "lasting") is not (problem.items is None):
         raise UserError(f"found items={items!r}, but the problem is posed with {problem.conditions}")
     return items == _MERGED
@@ -138,8 +138,8 @@ def _merged(problem: Problem, items: str | None) -> bool:
         default=None,
         help="Whether items last (by default), are used up, with copies as numbers (used-up), or as set: "
         "STRIPS with deletes, in which all copies of a node are one.",
-        part=Part.PROBLEM | Part.QUESTION,
-        choices=_HOW,
+        role=Role.PROBLEM | Role.QUESTION,
+        choices=_ITEM_RULES,
         python="In Python by default as in the problem; ``set`` is for one in which items are used up.",
     ),
     *ITEMS[1:],
@@ -182,7 +182,7 @@ def export(
     target: Annotated[str, Option(flags=("--to",), choices=_FORMATS)] = "pddl",
     every_unit: Annotated[bool, Option(flags=("--whole",))] = False,
     items: str | None = None,
-    **how: Unpack[Posed],
+    **options: Unpack[Posed],
 ) -> Exported:
     """Write the goals of a problem as a planning task for other planners.
 
@@ -207,7 +207,7 @@ def export(
     chosen = chosen_objectives(problem, objectives)
     if every_unit:
         problem = whole(problem)
-    with begin(how).watched("writing"):
+    with begin(options).watched("writing"):
         task = planning_task(problem, chosen, every_unit, _merged(problem, items))
         exported = Exported(
             **head_of(task.problem, task.objectives),
@@ -225,7 +225,7 @@ def to_unified_planning(
     *,
     every_unit: bool = False,
     items: str | None = None,
-    **how: Unpack[Posed],
+    **options: Unpack[Posed],
 ) -> Any:
     """Return the goals of a problem as a problem of unified-planning, with the names that PDDL has.
 
@@ -254,5 +254,5 @@ def to_unified_planning(
     """
     chosen = chosen_objectives(problem, objectives)
     problem = whole(problem) if every_unit else problem
-    with begin(how).watched("writing"):
+    with begin(options).watched("writing"):
         return unified_problem(problem, chosen, every_unit, _merged(problem, items))

@@ -1,4 +1,4 @@
-"""What the solver is given for a goal, for bare clingo."""
+"""Facts and rules of a problem for bare clingo."""
 
 from collections.abc import Mapping, Sequence
 
@@ -12,7 +12,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Facts(AboutGoals, frozen=True, kw_only=True, tag=schema_name("facts")):
-    """What the solver is given.
+    """The facts and rules that the solver gets.
 
     Attributes:
         facts: Facts of clingo, some on a line, and with soft constraints rules.
@@ -27,9 +27,9 @@ class Facts(AboutGoals, frozen=True, kw_only=True, tag=schema_name("facts")):
 
 
 def facts_of(
-    problem: Problem, objectives: Sequence[Objective], how: Settings, soft: Mapping[Constraint, int]
+    problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> Facts:
-    """Return what the solver is given for a problem under rules; ``soft`` ones have a weight each."""
-    program = printed_program(problem, objectives, how, soft).text
+    """Return the facts and rules that the solver gets; ``soft`` maps soft constraints to weights."""
+    program = printed_program(problem, objectives, settings, soft).text
     lines = program.rstrip("\n").split("\n")  # a name may hold what other letters end a line
     return Facts(**head_of(problem, objectives), facts=tuple(lines))

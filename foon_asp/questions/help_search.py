@@ -19,14 +19,14 @@ _BEST = (Objective.SUCCESS, Objective.UNITS)
 class PricedHelp:
     """Lagrangian relaxation of the number of helped units: help for a unit costs a factor of success.
 
-    Let S be the best success at such a price q. A tree with help for M units succeeds no more often than
-    S / q^M, since at the price it would be better than the best. If the best tree at the price succeeds that
-    often with help for M units, it is the best with M; by fewest units too, which decide between equals at
-    the price. Where no price has such a tree, trees are listed in order of success at the price with the
-    least bound, until the best one seen is as good as any that may follow.
+    Let S be the optimal success at a price q. A tree with help for M units has at most the success S / q^M,
+    or it would beat the optimum at that price. If the optimal tree at the price reaches this bound with help
+    for M units, it is optimal for M, also by fewest units, which break ties at the price. If no price closes
+    the gap, trees are enumerated in order of success at the price with the least bound, until the best tree
+    seen is as good as any later one can be.
 
-    The prices tried are those at which help for another motion becomes worth it. The logarithm of the bound
-    is convex in that of the price, so that the least bound is found where it rises for the first time.
+    The prices tried are the breakpoints at which help for another motion pays. The logarithm of the bound is
+    convex in the logarithm of the price, so the least bound is found where the bound first rises.
     """
 
     def __init__(
@@ -39,65 +39,67 @@ class PricedHelp:
         self._prices = sorted({*self._worth.values(), Fraction(1)})
         self._outcomes: dict[Fraction, Outcome] = {}
 
-    def best(self, most: int) -> Outcome:
-        """Return the best tree with help for at most ``most`` units."""
+    def best(self, max_helped: int) -> Outcome:
+        """Return the best tree with help for at most ``max_helped`` units."""
         bounds: dict[Fraction, Fraction] = {}
         for price in self._prices:
-            found = self._at(price)
-            if found.status is Status.INFEASIBLE:
-                return found
-            if found.status is not Status.OPTIMAL or found.units is None:
-                return self._stopped(most)
-            tree = self._helped(most, found.units)
-            bounds[price] = Fraction(found.bounds[Objective.SUCCESS]) / price**most
+            outcome = self._at(price)
+            if outcome.status is Status.INFEASIBLE:
+                return outcome
+            if outcome.status is not Status.OPTIMAL or outcome.units is None:
+                return self._stopped(max_helped)
+            tree = self._helped(max_helped, outcome.units)
+            bounds[price] = Fraction(outcome.bounds[Objective.SUCCESS]) / price**max_helped
             if -_key(tree)[0] == bounds[price]:
                 return _proved(tree)
             if bounds[price] > min(bounds.values()):
                 break
-        return self._listed(most, min(bounds, key=bounds.__getitem__))
+        return self._listed(max_helped, min(bounds, key=bounds.__getitem__))
 
     def any_number(self) -> Outcome:
         """Return the best tree with help for any number of its units."""
         return self._at(Fraction(1))
 
-    def helped(self, most: int, units: Iterable[int]) -> list[int]:
-        """Return those of a tree's units that the person does best: where that makes most of a difference."""
+    def helped(self, max_helped: int, units: Iterable[int]) -> list[int]:
+        """Return the units of a tree, at most ``max_helped``, where help raises the success rate most."""
         motions = self._problem.network.motions
         worth = sorted((self._worth[motions[u]], u) for u in units if motions[u] in self._worth)
-        return [unit for _, unit in worth[:most]]
+        return [unit for _, unit in worth[:max_helped]]
 
-    def _listed(self, most: int, price: Fraction) -> Outcome:
+    def _listed(self, max_helped: int, price: Fraction) -> Outcome:
         """Return the best of the trees in order of success at a price, as many as may be better."""
         best: Outcome | None = None
         ranked = Ranked(self._at_price(price), _SUCCESS, self._settings, Reporter())
         for units, costs in ranked:
-            tree = self._helped(most, units)
+            tree = self._helped(max_helped, units)
             best = tree if best is None else min(best, tree, key=_key)
-            if _key(best) <= (costs.key(_SUCCESS)[0] / price**most, costs.units):
+            if _key(best) <= (costs.key(_SUCCESS)[0] / price**max_helped, costs.units):
                 return _proved(best)
-        return self._stopped(most) if best is None or not ranked.complete else _proved(best)
+        return self._stopped(max_helped) if best is None or not ranked.complete else _proved(best)
 
-    def _stopped(self, most: int) -> Outcome:
+    def _stopped(self, max_helped: int) -> Outcome:
         """Return the best tree that was found before a limit."""
         outcomes = self._outcomes.values()
-        trees = [self._helped(most, found.units) for found in outcomes if found.units is not None]
+        trees = [self._helped(max_helped, outcome.units) for outcome in outcomes if outcome.units is not None]
         bounds = [
-            Fraction(found.bounds[Objective.SUCCESS]) / price**most
-            for price, found in self._outcomes.items()
-            if found.bounds
+            Fraction(outcome.bounds[Objective.SUCCESS]) / price**max_helped
+            for price, outcome in self._outcomes.items()
+            if outcome.bounds
         ]
         best = min(trees, key=_key, default=next(iter(outcomes)))
         return best._replace(bounds={Objective.SUCCESS: min(bounds)} if bounds else {})
 
-    def _helped(self, most: int, units: tuple[int, ...]) -> Outcome:
+    def _helped(self, max_helped: int, units: tuple[int, ...]) -> Outcome:
         motions = self._problem.network.motions
-        own = {unit: self._better[motions[unit]] for unit in self.helped(most, units)}
-        problem = replace(self._problem, own_rates=own)
+        own_rates = {unit: self._better[motions[unit]] for unit in self.helped(max_helped, units)}
+        problem = replace(self._problem, own_rates=own_rates)
         return Outcome(problem, _SUCCESS, Status.FEASIBLE, units, problem.costs(units), {}, {})
 
     def _at(self, price: Fraction) -> Outcome:
         if price not in self._outcomes:
-            reporter = Reporter() if self._outcomes else self._reporter  # the others ask something else
+            reporter = (
+                Reporter() if self._outcomes else self._reporter
+            )  # later searches have other objectives or bounds
             self._outcomes[price] = solve(self._at_price(price), _SUCCESS, self._settings, reporter)
         return self._outcomes[price]
 
@@ -120,22 +122,24 @@ class CountedHelp:
         network = problem.network
         units = [unit for unit in sorted(reach(problem).units) if network.motions[unit] in better]
         self._originals = dict(enumerate(units, len(network)))
-        own = {twin: better[network.motions[unit]] for twin, unit in self._originals.items()}
-        self._twins = replace(problem, network=network.with_copies(units), own_rates=own)
+        own_rates = {twin: better[network.motions[unit]] for twin, unit in self._originals.items()}
+        self._twins = replace(problem, network=network.with_copies(units), own_rates=own_rates)
 
-    def best(self, most: int) -> Outcome:
-        """Return the best tree with help for at most ``most`` units."""
+    def best(self, max_helped: int) -> Outcome:
+        """Return the best tree with help for at most ``max_helped`` units."""
         number = self._twins.network.unit_number
         twins = {number(twin): number(unit) for twin, unit in self._originals.items()}
-        settings = self._settings._replace(bounded=assisted(twins, most))
-        found = solve(self._twins, _SUCCESS, settings, self._reporter)
-        self._reporter = Reporter()  # the others ask something else
-        if found.units is None:
-            return found._replace(problem=self._problem)
-        units = tuple(self._originals.get(unit, unit) for unit in found.units)
-        own = {self._originals[u]: self._twins.own_rates[u] for u in found.units if u in self._originals}
-        problem = replace(self._problem, own_rates=own)
-        return found._replace(problem=problem, units=units, costs=problem.costs(units))
+        settings = self._settings._replace(bounded=assisted(twins, max_helped))
+        outcome = solve(self._twins, _SUCCESS, settings, self._reporter)
+        self._reporter = Reporter()  # later searches have other objectives or bounds
+        if outcome.units is None:
+            return outcome._replace(problem=self._problem)
+        units = tuple(self._originals.get(unit, unit) for unit in outcome.units)
+        own_rates = {
+            self._originals[u]: self._twins.own_rates[u] for u in outcome.units if u in self._originals
+        }
+        problem = replace(self._problem, own_rates=own_rates)
+        return outcome._replace(problem=problem, units=units, costs=problem.costs(units))
 
     def any_number(self) -> Outcome:
         """Return the best tree with help for any number of its units."""
@@ -145,9 +149,9 @@ class CountedHelp:
 class HelpedTrees(NamedTuple):
     """The best trees with help for at most 0, 1, 2, ... units.
 
-    The problem of each outcome has the person's rates of the helped units as their own. ``greatest`` is the
-    best success with help for any number, ``None`` where there is no tree at all and where a limit came
-    first. ``complete`` says that every row is proved and none is left out.
+    The problem of each outcome has the person's rates for the helped units. ``greatest`` is the best success
+    with help for any number of units; ``None`` without a tree or at a limit. ``complete`` says that every row
+    is proved and no row is missing.
     """
 
     rows: tuple[Outcome, ...]
@@ -160,13 +164,13 @@ def helped_trees(
     person: Mapping[str, Fraction] | None,
     settings: Settings,
     reporter: Reporter,
-    most: int | None,
+    max_helped: int | None,
     wanted: Fraction | None,
 ) -> HelpedTrees:
     """Find the best trees with help for 0, 1, 2, ... units.
 
-    They end with ``most``, with the first that succeeds as often as ``wanted``, or where more help changes
-    nothing. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+    They end with ``max_helped`` units, with the first tree that succeeds as often as ``wanted``, or where
+    more help changes nothing. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     better = {
         motion: rate
@@ -195,14 +199,18 @@ def helped_trees(
             if any_number.status not in _PROVED:
                 break
             reached = wanted is not None and -_key(row)[0] >= wanted
-            # a number that is asked for is answered, since with more help fewer units may do
-            done = _key(row) == _key(any_number) if most is not None else _key(row)[0] == _key(any_number)[0]
-            complete = reached or done or any_number.units is None or len(rows) - 1 == most
+            # a requested number is always solved, since more help may need fewer units
+            done = (
+                _key(row) == _key(any_number)
+                if max_helped is not None
+                else _key(row)[0] == _key(any_number)[0]
+            )
+            complete = reached or done or any_number.units is None or len(rows) - 1 == max_helped
     except KeyboardInterrupt:
         if not rows:
             raise
-    known = any_number is not None and any_number.status in _PROVED and any_number.costs
-    return HelpedTrees(tuple(rows), known.success if known else None, complete)
+    costs = any_number is not None and any_number.status in _PROVED and any_number.costs
+    return HelpedTrees(tuple(rows), costs.success if costs else None, complete)
 
 
 def _key(outcome: Outcome) -> tuple[int | Fraction, ...]:
@@ -212,18 +220,22 @@ def _key(outcome: Outcome) -> tuple[int | Fraction, ...]:
 
 def _proved(tree: Outcome) -> Outcome:
     assert tree.costs is not None
-    return tree._replace(status=Status.OPTIMAL, bounds={each: tree.costs.measure(each) for each in _BEST})
+    return tree._replace(
+        status=Status.OPTIMAL, bounds={objective: tree.costs.measure(objective) for objective in _BEST}
+    )
 
 
-def _require_sound(most: int, row: Outcome, before: Outcome, settings: Settings) -> None:
+def _require_sound(max_helped: int, row: Outcome, before: Outcome, settings: Settings) -> None:
     """Require that the person does few enough units, that the costs say so, and that help never hurts."""
     if row.units is None:
         return
     holds = Postconditions(row.problem, _BEST, settings)
     helped = row.problem.own_rates.keys()
     holds.require(
-        len(helped) <= most and helped <= set(row.units),
-        lambda: f"the tree {row.units} with help for {most} units at most has help for {sorted(helped)}",
+        len(helped) <= max_helped and helped <= set(row.units),
+        lambda: (
+            f"the tree {row.units} with help for {max_helped} units at most has help for {sorted(helped)}"
+        ),
     )
     holds.outcome(row)
-    holds.no_better(before, row, f"with help for {most} units")
+    holds.no_better(before, row, f"with help for {max_helped} units")

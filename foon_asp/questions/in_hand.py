@@ -1,4 +1,4 @@
-"""What every function takes in Python: a time limit, who hears of progress, and a token that ends it."""
+"""The wrapper of public functions: paths or data for a problem, limits, progress and cancelling."""
 
 import functools
 import inspect
@@ -33,7 +33,7 @@ HELP = {
 
 
 class _Listener(Reporter):
-    """Passes on what is found to a function, and warnings to who asks."""
+    """A reporter that passes progress to a function, and warnings to the caller."""
 
     def __init__(self, tell: OnProgress, warned: Reporter) -> None:
         self._tell, self._warned = tell, warned
@@ -45,17 +45,17 @@ class _Listener(Reporter):
 
     def tree(self, costs: Costs) -> None:
         """Report a tree."""
-        self._told(self._progress._replace(costs=costs))
+        self._report(self._progress._replace(costs=costs))
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
         """Report a bound."""
-        self._told(self._progress._replace(bounds={**self._progress.bounds, objective: bound}))
+        self._report(self._progress._replace(bounds={**self._progress.bounds, objective: bound}))
 
     def step(self, word: str, done: int, total: int) -> None:
         """Report an answer."""
-        self._told(self._progress._replace(done=done, total=total))
+        self._report(self._progress._replace(done=done, total=total))
 
-    def _told(self, progress: Progress) -> None:
+    def _report(self, progress: Progress) -> None:
         self._progress = progress
         self._tell(progress)
 
@@ -68,7 +68,7 @@ def in_hand(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]
     name, check = ask.__name__, checker(ask, signature)
 
     @functools.wraps(ask)
-    def asked(*about: P.args, **named: P.kwargs) -> T:
+    def wrapped(*about: P.args, **named: P.kwargs) -> T:
         if is_python():  # commands hand over what they have read
             about = posed_in_python(name, signature.parameters, about, named)
             check(about, named)
@@ -85,8 +85,8 @@ def in_hand(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]
         ):
             return ask(*about, **named)
 
-    asked.__dict__["__signature__"] = signature
-    return asked
+    wrapped.__dict__["__signature__"] = signature
+    return wrapped
 
 
 def posed_in_python(
@@ -94,8 +94,8 @@ def posed_in_python(
 ) -> Any:
     """Return the arguments of a question, with a problem in place of a path or of data.
 
-    Takes the names that pose the problem out of ``named``. Raises :class:`UserError` for a call that lacks
-    what the question is about, or names a goal beside a problem, which has its own.
+    Removes the names that pose the problem from ``named``. Raises :class:`UserError` for a call without a
+    subject, or with a goal beside a problem, which has its own.
     """
     from foon_asp.foon import Foon, load  # noqa: PLC0415 (commands ask about what they have read)
 
@@ -107,9 +107,9 @@ def posed_in_python(
     first = about[0] if about else named.pop(subject, None)
     if first is None:
         raise UserError(f"{name} of what? {name}('eggs.txt'), or {name}(foon_asp.load(), goal='macaroni')")
-    is_whole = subject == "about" and "goal" not in named  # what is asked about is the data
-    names = [each for each in _POSING if each in named and each in parameters and not is_whole]
-    posing = {each: named.pop(each) for each in names}
+    is_whole = subject == "about" and "goal" not in named  # the data themselves are the subject
+    names = [option for option in _POSING if option in named and option in parameters and not is_whole]
+    posing = {option: named.pop(option) for option in names}
     if isinstance(first, Problem) and posing:
         raise UserError(f"{name}: a problem has its own {' and '.join(posing)}; Foon.problem takes them")
     if not isinstance(first, str | PathLike | Foon):

@@ -1,4 +1,4 @@
-"""The catalog of questions, for help, completion and names: it imports nothing of ours."""
+"""The catalog of questions, for help, completion and names: it imports no other module of the package."""
 
 from collections.abc import Mapping
 from typing import Final, NamedTuple

@@ -1,4 +1,4 @@
-"""What is wrong in FOON files, or doubtful."""
+"""Linting of FOON files: errors and doubtful places."""
 
 import dataclasses
 from collections import Counter
@@ -20,7 +20,7 @@ from foon_asp.linting.settings import find_settings
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.lint_findings import annotations, finding_lines, sarif, statistics, summary
 from foon_asp.results.plain import flat_row, plain
-from foon_asp.results.table import Part, rendered
+from foon_asp.results.table import Block, rendered
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
 from foon_asp.text.json_value import Json, json_text, schema_name
@@ -30,7 +30,7 @@ _MAX_TEXT = 1000  # letters of a line: thousands of findings on one would repeat
 
 
 class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
-    r"""What is wrong in FOON files.
+    r"""The findings of the linter in FOON files.
 
     Attributes:
         files: How many files were linted.
@@ -59,11 +59,11 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
 
     @property
     def ending(self) -> Ending:
-        """How it ended: negative where there are errors or warnings, for which notes do not count."""
+        """``NEGATIVE`` if there are errors or warnings; notes do not count."""
         bad = self.counts[Severity.ERROR] + self.counts[Severity.WARNING]
         return Ending.NEGATIVE if bad else Ending.DONE
 
-    def show(self) -> Iterator[Part]:
+    def show(self) -> Iterator[Block]:
         """Return the findings with their lines, those of one kind in a file folded, and a line of counts."""
         yield from finding_lines(self.findings)
         yield self._summary()
@@ -82,10 +82,11 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
     def json_dict(self) -> Json:
         """Return every finding, and the counts, as plain values; long lines are left out."""
         short = [
-            structs.replace(each, text=_short(each.text), fix=_short(each.fix)) for each in self.findings
+            structs.replace(finding, text=_short(finding.text), fix=_short(finding.fix))
+            for finding in self.findings
         ]
-        found: Json = plain(structs.replace(self, findings=tuple(short)))
-        return found
+        values: Json = plain(structs.replace(self, findings=tuple(short)))
+        return values
 
     def table_rows(self) -> Iterator[Json]:
         """Return a row for each finding."""
@@ -106,12 +107,12 @@ def _short(line: str | None) -> str | None:
     return line if line is not None and len(line) <= _MAX_TEXT else None
 
 
-class Found(NamedTuple):
-    """What was found in files, with the fixes; of a baseline, how many it left out, and how many are gone."""
+class Findings(NamedTuple):
+    """Findings in files, with the fixes, and the numbers of known and of gone findings of a baseline."""
 
     files: Sequence[Path]
     findings: list[Diagnostic]
-    known: int = 0
+    baselined: int = 0
     gone: int = 0
 
     def linted(self, mended: int = 0) -> Linted:
@@ -123,7 +124,7 @@ class Found(NamedTuple):
             counts={str(severity): severities[severity] for severity in Severity},
             codes=dict(sorted(codes.items())),
             mended=mended,
-            known=self.known,
+            known=self.baselined,
             gone=self.gone,
             findings=tuple(map(Finding.of, self.findings)),
         )
@@ -148,14 +149,14 @@ def lint(
         select: The codes to report; all by default.
         ignore: Codes to leave out.
         baseline: A file of known findings, which are left out.
-        vocabulary: A file of names that are spelt correctly, in place of ours.
+        vocabulary: A file of names that are spelt correctly, in place of the bundled one.
         contents: The content of files that are not to be read from disk, by path.
 
     Returns:
         The findings, by file and line.
 
     Raises:
-        UserError: for a file that cannot be read, and a code that is none.
+        UserError: for a file that cannot be read, and an unknown code.
 
     Example:
         >>> recipe = b"//\nO\tegg\nM\tfry\nO\tegg \nS\tfried\n//\n"
@@ -181,8 +182,8 @@ def find(
     ignore: Sequence[str],
     baseline: Path | None,
     vocabulary: Path | None,
-) -> Found:
-    """Return what :func:`lint` finds, with the fixes."""
+) -> Findings:
+    """Return the findings of :func:`lint`, with the fixes."""
     for code in (*select, *ignore):
         if code not in CATALOG:
             raise UserError(unknown_code(code))
@@ -193,16 +194,16 @@ def find(
     if select:
         settings = dataclasses.replace(settings, select=tuple(select), ignore=())
     settings = dataclasses.replace(settings, ignore=(*settings.ignore, *ignore))
-    known = None if baseline is None else read_baseline(baseline)
-    found = settings.applied(linter.lint(files, contents, vocabulary))
-    if baseline is None or known is None:
-        return Found(files, found)
-    new, gone = known.compared(baseline, found)
-    return Found(files, new, len(found) - len(new), gone)
+    baselined = None if baseline is None else read_baseline(baseline)
+    findings = settings.applied(linter.lint(files, contents, vocabulary))
+    if baseline is None or baselined is None:
+        return Findings(files, findings)
+    new, gone = baselined.compared(baseline, findings)
+    return Findings(files, new, len(findings) - len(new), gone)
 
 
 def linted_files(paths: Iterable[Path], contents: Iterable[Path] = ()) -> Sequence[Path]:
-    """Return the files that are linted for these paths: those of folders, tables, and what is not on disk."""
+    """Return the files that are linted for some paths: files of folders, tables, and missing files."""
     named = list(paths)
     on_disk = with_tables(named, (file for file, _ in foon_files(named)))
     return list(dict.fromkeys([*on_disk, *contents]))

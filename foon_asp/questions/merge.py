@@ -9,8 +9,8 @@ from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder, counted
 from foon_asp.network.near_units import units_kept_apart
 from foon_asp.questions.result import Result
-from foon_asp.results.document import Known
-from foon_asp.results.table import Part
+from foon_asp.results.document import Unserialized
+from foon_asp.results.table import Block
 from foon_asp.results.values_of import differences_of, listed_unit
 from foon_asp.text.data_folder import DataFiles, find_data
 from foon_asp.text.diagnostics import summarize
@@ -46,16 +46,16 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
     prices: int = 0
     left_out: int
 
-    network = Known[Network | None](None)
+    network = Unserialized[Network | None](None)
     """The network; ``None`` where it was written into a store."""
 
-    store = Known[Path | None](None)
+    store = Unserialized[Path | None](None)
     """The store that it was written into, if it was."""
 
-    warnings = Known[tuple[str, ...]]()
+    warnings = Unserialized[tuple[str, ...]]()
     """What was assumed."""
 
-    def show(self) -> Iterator[Part]:
+    def show(self) -> Iterator[Block]:
         """Return the counts in one line."""
         read = str(self.store or counted(len(self.files), "file", ","))
         parts = [f"{read}: {counted(self.units, 'unit', ',')} of {self.copies:,} read"]
@@ -78,7 +78,7 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
         comment = f"Universal FOON: {counted(self.units, 'functional unit', ',')} from {of}"
         return "".join(merged_text(self.network, comment))
 
-    def kept_apart(self) -> Iterator[Part]:
+    def kept_apart(self) -> Iterator[Block]:
         """Return the pairs of units that differ in one thing alone, each with its places."""
         if self.network is None:
             return
@@ -87,8 +87,8 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
         for pair in pairs:
             yield ""
             for letter, unit in (("A", pair.left), ("B", pair.right)):
-                place = self.network.sources[self.network.unit_id(unit) or 0][0]
-                first, *others = listed_unit(self.network, unit, place).lines()
+                source = self.network.sources[self.network.unit_id(unit) or 0][0]
+                first, *others = listed_unit(self.network, unit, source).lines()
                 yield from (f"{letter}{first[1:]}", *others)
             yield from (f"    {difference}" for difference in differences_of(pair))
         yield ""
@@ -136,17 +136,17 @@ def merge(
         raise UserError("name the networks to merge")
     folder = named[0] if isinstance(paths, str | PathLike) and named[0].is_dir() else None
     prices = None if unit_prices is None else as_path(unit_prices)
-    found = find_data(folder, () if folder else named, unit_prices=prices)
-    return merge_files(found, None if store is None else as_path(store), lenient)
+    data_files = find_data(folder, () if folder else named, unit_prices=prices)
+    return merge_files(data_files, None if store is None else as_path(store), lenient)
 
 
-def merge_files(found: DataFiles, store: Path | None, lenient: bool) -> Merged:
+def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Merged:
     """Merge networks in memory, or with what stands beside them into a store."""
-    network_files = tuple(dict.fromkeys(found.network))
+    network_files = tuple(dict.fromkeys(data_files.network))
     if store is not None:
         from foon_asp.store.import_files import import_files  # noqa: PLC0415 (slow to import)
 
-        imported = import_files(found._replace(network=network_files), store, lenient)
+        imported = import_files(data_files._replace(network=network_files), store, lenient)
         warnings = *summarize(imported.warnings), *imported.remarks
         merged = Merged(
             files=network_files,
@@ -165,7 +165,7 @@ def merge_files(found: DataFiles, store: Path | None, lenient: bool) -> Merged:
             copies += 1
     warnings = tuple(summarize(reader.diagnostics))
     reader.raise_errors()
-    reader.prices.settled(read_unit_prices(found.unit_prices).units if found.unit_prices else {})
+    reader.prices.settled(read_unit_prices(data_files.unit_prices).units if data_files.unit_prices else {})
     network = builder.build()
     if not len(network):
         raise UserError("there is no functional unit in these files")

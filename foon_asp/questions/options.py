@@ -2,12 +2,12 @@
 
 from foon_asp.problem import ITEMS as ITEM_WORDS
 from foon_asp.problem import ContainerRule, Objective
-from foon_asp.questions.contract import Kind, Option, Part
+from foon_asp.questions.contract import Kind, Option, Role
 
 GOALS = Option(
     "goals_named",
     "A goal, by label or in one-line notation; one tree makes all the goals given.",
-    part=Part.PROBLEM,
+    role=Role.PROBLEM,
     flags=("--goal",),
     many=True,
     metavar="NAME",
@@ -20,7 +20,7 @@ CONTAINERS = Option(
     "containers",
     "Whether a unit needs all its inputs (strict), or need not be given a container whose only ingredient is "
     "an input too (implied).",
-    part=Part.PROBLEM,
+    role=Role.PROBLEM,
     default="strict",
     choices=tuple(map(str, ContainerRule)),
 )
@@ -28,7 +28,7 @@ ITEMS = (
     Option(
         "items",
         "Whether what is there can be used again and again (lasting), or a plan uses it up (used-up).",
-        part=Part.PROBLEM,
+        role=Role.PROBLEM,
         default="lasting",
         choices=ITEM_WORDS,
     ),
@@ -36,14 +36,14 @@ ITEMS = (
         "stock",
         "If items are used up: how many copies the kitchen has of some object nodes; others never run out.",
         Kind.FILE,
-        Part.PROBLEM,
+        Role.PROBLEM,
         metavar="FILE",
     ),
     Option(
         "stays",
         "If items are used up: labels and object nodes that stay, or are used up, whatever the rule says.",
         Kind.FILE,
-        Part.PROBLEM,
+        Role.PROBLEM,
         metavar="FILE",
     ),
 )
@@ -51,7 +51,7 @@ PLAN_ITEMS = (
     ITEMS[0]._replace(
         help="Whether the plan uses up what is there (used-up), or all of it can be used again and again "
         "(lasting).",
-        part=Part.PROBLEM | Part.QUESTION,
+        role=Role.PROBLEM | Role.QUESTION,
         default="used-up",
         python="With ``used-up``, a problem whose items are used up says what stays and what is in stock.",
     ),
@@ -71,7 +71,7 @@ CONSTRAINTS = Option(
     "constraints",
     "A file with rules of yours, or a ready-made constraint, which may have constants of its own.",
     Kind.CONSTRAINT,
-    Part.COMMAND,
+    Role.COMMAND,
     flags=("--constraint",),
     many=True,
     metavar="FILE.lp|NAME[:CONSTANT=VALUE,...]",
@@ -81,7 +81,7 @@ CONSTRAINTS = Option(
 RULE = Option(
     "rules",
     "A rule of yours, such as ':- use(U), motion(U,\"fry\").'.",
-    part=Part.MORE,
+    role=Role.EXTRA_VALUES,
     flags=("--rule",),
     many=True,
     metavar="RULE",
@@ -90,13 +90,13 @@ ENCODINGS = Option(
     "encodings",
     "A folder of encodings to use instead of the built-in ones.",
     Kind.FILE,
-    Part.COMMAND,
+    Role.COMMAND,
     metavar="DIR",
 )
 CONSTANTS = Option(
     "constants",
     "The value of a #const in a constraint or an encoding.",
-    part=Part.COMMAND,
+    role=Role.COMMAND,
     flags=("-c",),
     many=True,
     metavar="NAME=VALUE",
@@ -118,25 +118,25 @@ LIMITS = (
         "time_limit",
         "Stop after this many seconds, with what was found by then.",
         Kind.SECONDS,
-        Part.COMMAND,
+        Role.COMMAND,
         metavar="SECONDS",
     ),
     Option(
         "memory_limit",
         "Stop at this much memory (500M, 2G), with what was found by then; on Linux only.",
         Kind.SIZE,
-        Part.COMMAND,
+        Role.COMMAND,
         metavar="SIZE",
         python="A number counts bytes.",
     ),
 )
-EACH_LIMITS = tuple(limit._replace(part=Part.QUESTION) for limit in LIMITS)
+EACH_LIMITS = tuple(limit._replace(role=Role.QUESTION) for limit in LIMITS)
 """The limits of each of many answers, none of which holds for the whole command."""
 CHART = Option(
     "charts",
     "A file for a chart (.svg or .png).",
     Kind.WRITTEN,
-    Part.CHART,
+    Role.CHART,
     flags=("--chart",),
     many=True,
 )

@@ -1,4 +1,4 @@
-"""What is in a page: an answer, and what is shown beside it."""
+"""The data of a page: an answer and its further parts."""
 
 from fractions import Fraction
 
@@ -23,7 +23,7 @@ class UnitRate(Value, frozen=True):
 
 
 class PageData(Document, frozen=True, kw_only=True, tag=schema_name("view")):
-    """What a page shows.
+    """The data that a page shows.
 
     Attributes:
         answer: null for a whole network.

@@ -17,16 +17,15 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, usual_objectives
 from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Option, question
-from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
-from foon_asp.results.document import AboutGoals, Known
+from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import costs_text, figure_text, success_texts
-from foon_asp.results.table import Part as Shown
-from foon_asp.results.table import Table
+from foon_asp.results.table import Block, Table
 from foon_asp.results.values import (
     CostedTree,
     Measures,
@@ -40,7 +39,7 @@ from foon_asp.results.values import (
 from foon_asp.results.values_of import costed_tree, head_of
 from foon_asp.text.json_value import schema_name
 
-_FEWEST, _MOST = 2, 3  # objectives
+_MIN_OBJECTIVES, _MAX_OBJECTIVES = 2, 3
 
 Box = tuple[int | Fraction | None, ...]
 """For each objective but the first, what plans cost less than; ``None`` allows any cost."""
@@ -95,33 +94,33 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
     points: tuple[Point, ...]
     seconds: float
 
-    problem = Known[Problem]()
+    problem = Unserialized[Problem]()
     """The problem that was asked about."""
 
-    lists_trees = Known[bool]()
+    lists_trees = Unserialized[bool]()
     """Whether the units of the trees are listed."""
 
     @property
     def values(self) -> tuple[tuple[int | Fraction, ...], ...]:
-        """Where the points stand: for each its measure by every objective, exact."""
+        """The exact measures of each point by every objective."""
         return tuple(tuple(map(point.costs.measure, self.objectives)) for point in self.points)
 
     @property
     def task_trees(self) -> tuple[Tree, ...]:
-        """The trees as values for other questions, in the same order."""
+        """The trees as :class:`Tree` values for other questions, in the order of ``points``."""
         ids = (self.problem.network.units_of_numbers(point.ids) for point in self.points)
         claims = (f"point {number}: {costs_text(point.costs)}" for number, point in enumerate(self.points, 1))
-        return tuple(Tree.of(self.problem, *each) for each in zip(ids, claims, strict=True))
+        return tuple(Tree.of(self.problem, *ids_and_claim) for ids_and_claim in zip(ids, claims, strict=True))
 
     @property
     def ending(self) -> Ending:
-        """Done when the front is whole."""
+        """``DONE`` if the front is complete, ``NEGATIVE`` if no tree exists."""
         if not self.complete:
             return Ending.LIMIT
         return Ending.DONE if self.points else Ending.NEGATIVE
 
-    def show(self) -> Iterator[Shown]:
-        """Return the points as a table, each with what its tree does differently from the one above.
+    def show(self) -> Iterator[Block]:
+        """Return the points as a table, each with the differences of its tree from the tree above.
 
         Where trees were asked for, the units of the first follow, and those that go and come with the others.
         """
@@ -178,9 +177,9 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
         return steps_not_in(self.points[number].units, self.points[number - 1].units) if number else []
 
     def _used_up_lines(self) -> Iterator[str]:
-        """Return a line that names the points whose trees would not run if items were used up."""
-        runs = (each.used_up is None or each.used_up.runs is not False for each in self.points)
-        points = [str(number) for number, each in enumerate(runs, 1) if not each]
+        """Return a note with the points whose trees would not run if items were used up."""
+        runs = (point.used_up is None or point.used_up.runs is not False for point in self.points)
+        points = [str(number) for number, run in enumerate(runs, 1) if not run]
         if points:
             several = f"trees of points {', '.join(points)} do"
             which = several if len(points) > 1 else f"tree of point {points[0]} does"
@@ -206,7 +205,7 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
 
 
 class _Point(NamedTuple):
-    """A tree of the front by unit ids in an order that executes, and what it costs."""
+    """A tree of the front by unit ids in an order that executes, and its costs."""
 
     units: tuple[int, ...]
     costs: Costs
@@ -241,7 +240,7 @@ def pareto(
     objectives: Objectives = (),
     *,
     trees: Annotated[bool, Option()] = False,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Front:
     """Find all trade-offs between two or three objectives (the Pareto front), with a tree for each.
 
@@ -265,53 +264,52 @@ def pareto(
     """
     usual = usual_objectives(problem, objectives, ("units", "success"), ("units", "inputs"))
     chosen = chosen_objectives(problem, usual)
-    if not _FEWEST <= len(chosen) <= _MOST:
+    if not _MIN_OBJECTIVES <= len(chosen) <= _MAX_OBJECTIVES:
         raise UserError(
             f"found {counted(len(chosen), 'objective')}, "
-            f"expected {_FEWEST} or {_MOST} to trade against each other"
+            f"expected {_MIN_OBJECTIVES} or {_MAX_OBJECTIVES} to trade against each other"
         )
-    settings = settings_of(how)
+    settings = settings_of(options)
     problem = asked_with(problem, settings)
-    # One objective leads: success, which no sum can bound, if it is there, else one that is a fraction
-    # and may have to be rounded, else the first. Each tree is
-    # the best by the leading objective, then by the others, among those that are better than every tree
-    # before it by one of the others. What would be better than a tree everywhere, or as good and
-    # somewhere better, would be among those too, and come before it: so no tree found is dominated. When
-    # no tree is left, each tree there is was left out first with some tree that is as good as it by the
-    # others, and no worse by the leading objective, by which that tree was the best of those that were
-    # left. So every point of the front is there.
+    # Lexicographic epsilon-constraint method. The leading objective is success, if it is chosen, since no
+    # sum can bound it; else an objective with fractions, which a bound would round; else the first. Each
+    # tree is optimal by the leading objective, then by the others, among the trees that are better than
+    # every tree before by some other objective. A tree that dominates it would be among these, too, and
+    # would come first: so no tree found is dominated. In the end every tree is excluded, each first by a
+    # tree that is as good by the others, and no worse by the leading objective, by which that tree was
+    # optimal among the trees not excluded. So every point of the front is found.
     leading = min(chosen, key=lambda objective: (not multiplies(objective), objective.row.whole))
     order = leading, *(objective for objective in chosen if objective is not leading)
     began = time.monotonic()
-    found: list[_Point] = []
+    points: list[_Point] = []
     complete = True
     next_best = _best_trees if problem.items is None else _best_plans
     try:
-        for outcome in next_best(problem, order, settings, found):
+        for outcome in next_best(problem, order, settings, points):
             if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:
                 complete = False
                 break
             point = _Point(outcome.units, outcome.costs)
-            _require_apart(Postconditions(problem, chosen, settings), point, found)
-            found.append(point)
+            _require_apart(Postconditions(problem, chosen, settings), point, points)
+            points.append(point)
     except KeyboardInterrupt:
-        complete = False  # what was found stands
-    found.sort(key=lambda point: point.costs.key(chosen))
+        complete = False  # the points found so far are on the front
+    points.sort(key=lambda point: point.costs.key(chosen))
     seconds = round(time.monotonic() - began, 6)
     front = Front(
         **head_of(problem, chosen),
         encodings=settings.replaced,
         complete=complete,
-        points=tuple(_points(problem, chosen, found)),
+        points=tuple(_points(problem, chosen, points)),
         seconds=seconds,
     )
     return front.knowing(problem=problem, lists_trees=trees)
 
 
-def _points(problem: Problem, objectives: Sequence[Objective], found: Sequence[_Point]) -> Iterator[Point]:
-    """Return trees as points of the front, each with what it does differently from the one before."""
+def _points(problem: Problem, objectives: Sequence[Objective], points: Sequence[_Point]) -> Iterator[Point]:
+    """Return trees as points of the front, each with its differences from the point before."""
     before: CostedTree | None = None
-    for units, costs in found:
+    for units, costs in points:
         tree = costed_tree(problem, units, costs)
         gone = () if before is None else tuple(step.id for step in steps_not_in(before.units, tree.units))
         new = () if before is None else tuple(step.id for step in steps_not_in(tree.units, before.units))
@@ -321,31 +319,32 @@ def _points(problem: Problem, objectives: Sequence[Objective], found: Sequence[_
 
 
 def _best_trees(
-    problem: Problem, order: tuple[Objective, ...], settings: Settings, found: Sequence[_Point]
+    problem: Problem, order: tuple[Objective, ...], settings: Settings, points: Sequence[_Point]
 ) -> Iterator[Outcome]:
-    """Yield the best tree that is better than each point found by one of the objectives but the first.
+    """Yield the best tree that is better than each point by some objective but the first.
 
-    It takes one search more than there are points. An outcome without a proof is the last.
+    One search more than there are points is run (lexicographic epsilon-constraint method). An outcome without
+    a proof is the last.
     """
     reporter = caller().reporter
     while True:
-        now = settings
-        if found:
-            known = _nearest([point.costs for point in found], order[1:])
-            now = settings._replace(bounded=better_than(known, order[1:]))
-        outcome = solve(problem, order, now, _Silent(reporter) if found else reporter)
+        bounded_settings = settings
+        if points:
+            nearest_costs = _nearest([point.costs for point in points], order[1:])
+            bounded_settings = settings._replace(bounded=better_than(nearest_costs, order[1:]))
+        outcome = solve(problem, order, bounded_settings, _Silent(reporter) if points else reporter)
         if outcome.status is Status.INFEASIBLE:
             return
         yield outcome
 
 
 def _best_plans(
-    problem: Problem, order: tuple[Objective, ...], settings: Settings, found: Sequence[_Point]
+    problem: Problem, order: tuple[Objective, ...], settings: Settings, points: Sequence[_Point]
 ) -> Iterator[Outcome]:
-    """Yield the best plan as :func:`_best_trees` gives trees.
+    """Yield the best plan of one box after another, as :func:`_best_trees` yields trees.
 
-    What is better than each point found is divided into boxes, which are below one cost by each objective.
-    The best plan of a box stays the best of it until the box is divided.
+    Boxes, each bounded by one cost for each objective, cover the costs that are better than each point. The
+    best plan of a box is kept until the box is divided.
     """
     reporter, others = caller().reporter, order[1:]
     boxes: list[Box] = [(None,) * len(others)]
@@ -353,16 +352,19 @@ def _best_plans(
     while True:
         for box in boxes:
             if box not in solved:
-                below = tuple({o: most} for o, most in zip(others, box, strict=True) if most is not None)
-                now = settings._replace(bounded=Bounded(below=below))
-                solved[box] = solve(problem, order, now, _Silent(reporter) if found else reporter)
+                below = tuple({o: bound} for o, bound in zip(others, box, strict=True) if bound is not None)
+                bounded_settings = settings._replace(bounded=Bounded(below=below))
+                solved[box] = solve(
+                    problem, order, bounded_settings, _Silent(reporter) if points else reporter
+                )
                 if solved[box].status not in {Status.OPTIMAL, Status.INFEASIBLE}:
                     yield solved[box]
         boxes = [box for box in boxes if solved[box].costs is not None]
         if not boxes:
             return
         best = min(
-            (solved[box] for box in boxes), key=lambda each: each.costs.key(order) if each.costs else ()
+            (solved[box] for box in boxes),
+            key=lambda outcome: outcome.costs.key(order) if outcome.costs else (),
         )
         assert best.costs is not None
         yield best
@@ -370,30 +372,31 @@ def _best_plans(
 
 
 def _divided(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list[Box]:
-    """Divide boxes that a point is in, and leave out those that are within another."""
-    parts = set[Box]()
+    """Divide the boxes that a point is in, and drop boxes inside another one."""
+    divided = set[Box]()
     for box in boxes:
-        if all(most is None or cost < most for cost, most in zip(point, box, strict=True)):
-            parts.update((*box[:n], cost, *box[n + 1 :]) for n, cost in enumerate(point))
+        if all(bound is None or cost < bound for cost, bound in zip(point, box, strict=True)):
+            divided.update((*box[:n], cost, *box[n + 1 :]) for n, cost in enumerate(point))
         else:
-            parts.add(box)
+            divided.add(box)
 
-    def holds(box: Box, part: Box) -> bool:
-        return box != part and all(
-            most is None or (less is not None and less <= most) for most, less in zip(box, part, strict=True)
+    def holds(box: Box, inner: Box) -> bool:
+        return box != inner and all(
+            bound is None or (inner_bound is not None and inner_bound <= bound)
+            for bound, inner_bound in zip(box, inner, strict=True)
         )
 
-    return [part for part in parts if not any(holds(box, part) for box in parts)]
+    return [inner for inner in divided if not any(holds(box, inner) for box in divided)]
 
 
-def _require_apart(holds: Postconditions, point: _Point, found: Sequence[_Point]) -> None:
-    """Require that a point of the front is as good as no other, and that no other is as good as it."""
+def _require_apart(holds: Postconditions, point: _Point, points: Sequence[_Point]) -> None:
+    """Require that a point of the front neither weakly dominates another point nor is weakly dominated."""
     key = point.costs.key(holds.levels)
-    for other in found:
-        theirs = other.costs.key(holds.levels)
+    for other in points:
+        other_key = other.costs.key(holds.levels)
         holds.require(
-            any(a < b for a, b in zip(key, theirs, strict=True))
-            and any(a > b for a, b in zip(key, theirs, strict=True)),
+            any(a < b for a, b in zip(key, other_key, strict=True))
+            and any(a > b for a, b in zip(key, other_key, strict=True)),
             partial(
                 "of two points of the front, {} and {}, one is as good as the other everywhere".format,
                 list(point.units),
@@ -402,21 +405,21 @@ def _require_apart(holds: Postconditions, point: _Point, found: Sequence[_Point]
         )
 
 
-def _nearest(known: Sequence[Costs], objectives: Sequence[Objective]) -> list[Costs]:
-    """Leave out the costs that are no less than others everywhere: what beats those beats these by one."""
+def _nearest(candidates: Sequence[Costs], objectives: Sequence[Objective]) -> list[Costs]:
+    """Return the costs that are Pareto-minimal by ``objectives``; the others give no further bound."""
 
     def key(costs: Costs) -> tuple[int | Fraction, ...]:
         return tuple(map(costs.measure, objectives))
 
     best: list[Costs] = []
-    for costs in sorted(known, key=key):
+    for costs in sorted(candidates, key=key):
         if not any(all(a <= b for a, b in zip(key(other), key(costs), strict=True)) for other in best):
             best.append(costs)
     return best
 
 
 class _Silent(Reporter):
-    """Passes on the progress of one search after another, and no warning, which came with the first."""
+    """A reporter that forwards progress, and no warnings: the first search gave them."""
 
     def __init__(self, reporter: Reporter) -> None:
         self._reporter = reporter

@@ -1,4 +1,4 @@
-"""What a question is about, made of what a command line says and the data it names."""
+"""Posing: from the options and data of a command line to the problem of a question."""
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
@@ -21,7 +21,7 @@ class Command(Protocol):
 
     @property
     def dataset(self) -> Dataset:
-        """The data that it names; read when it is first looked at."""
+        """The data that the command names, read on first access."""
 
     @property
     def level(self) -> int:
@@ -29,10 +29,10 @@ class Command(Protocol):
 
     @property
     def names_data(self) -> bool:
-        """Whether it names a network."""
+        """Whether the command names a network."""
 
     def given(self, option: str) -> bool:
-        """Whether an option, by name, stands in its own words."""
+        """Return whether an option, by name, stands on the command line itself."""
 
     def unnamed_goals(self) -> list[ObjectNode]:
         """Return the goals that are answered one by one where none is named."""
@@ -63,20 +63,20 @@ def one_problem(
 ) -> tuple[Problem]:
     """Pose one problem, whose tree makes all goals that are named.
 
-    With ``all_goals``, its goals are a question of their own each: those that are named, or all of the goals
-    file. What the goals can need of a large store is read when it is looked at.
+    With ``all_goals``, each goal is a question of its own: the named goals, or all of the goals
+    file. Of a large store, the units that the goals can need are read on first access.
     """
     dataset = command.dataset
     with command.reading():
         named = dataset.each_goal(goals_named) if all_goals else dataset.goals(goals_named)
         if not named:
             raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
-        how = items_of(dataset, items, stock, stays)
-        return (dataset.nearby(tuple(dict.fromkeys(named)), containers, how),)
+        used_up = items_of(dataset, items, stock, stays)
+        return (dataset.nearby(tuple(dict.fromkeys(named)), containers, used_up),)
 
 
 def the_data(command: Command) -> "tuple[Foon]":
-    """Ask about the data as a whole."""
+    """Return the data as the subject of a question."""
     from foon_asp.foon import Foon  # noqa: PLC0415 (for few questions)
 
     return (Foon(command.dataset, "the data"),)
@@ -99,5 +99,5 @@ def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
 
 
 def no_data(command: Command, **named: object) -> tuple[object, ...]:
-    """Ask about something that the question names itself; its command has no options for data."""
+    """Return the values of the question's own options; its command has no options for data."""
     return tuple(named.values())

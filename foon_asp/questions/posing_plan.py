@@ -1,4 +1,4 @@
-"""What a file with a tree or plan is about: the data, where none are named, and the goals."""
+"""Posing the problem of a file with a tree or plan: its goals, and its data if none are named."""
 
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
@@ -35,8 +35,8 @@ def a_plan(
         containers = answer.containers or containers
     dataset = command.dataset
     with command.reading():
-        how = items_of(dataset, items, stock, stays)
-        tree = listed_tree(dataset, plan, answer, goals_named, containers, how)
+        used_up = items_of(dataset, items, stock, stays)
+        tree = listed_tree(dataset, plan, answer, goals_named, containers, used_up)
     return tree.problem, tree
 
 
@@ -48,7 +48,7 @@ def listed_tree(
     containers: str,
     items: UsedUp | None = None,
 ) -> Tree:
-    """Return the tree that a file lists, for the goals that are named, or those of an answer.
+    """Return the tree that a file lists, for the named goals or the goals of an answer.
 
     Without an answer and a goal it is for the only goal of the data, or for what the last step makes.
     """
@@ -69,7 +69,7 @@ def listed_tree(
     if not goals_named and not answer.goals and (len(dataset.listed) != 1 or dataset.goals_from):
         shown = " + ".join(map(str, problem.goal_nodes))
         caller().reporter.warning(f"No --goal: using what the last step makes: {shown}")
-    return Tree.given(problem, [unit for unit, _ in listed], [place for _, place in listed])
+    return Tree.given(problem, [unit for unit, _ in listed], [source for _, source in listed])
 
 
 def settle_data(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
@@ -80,27 +80,27 @@ def settle_data(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
 
 
 def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence[Path]:
-    """Return the files with trees that are their own network, where no data are named.
+    """Return the files with trees that are their own network, if no data are named.
 
-    None is returned where the bundled kitchen has half of their units: a recipe may have one in common with
-    it, and a tree of it units that a program made up. An answer does not have all of the data that it is of:
-    raises :class:`UserError` for one of other data.
+    Returns no file if the bundled kitchen has at least half of the units: a recipe may share a unit with the
+    kitchen, and a tree of the kitchen may have units that a program made up. Raises :class:`UserError` for an
+    answer about other data, since an answer holds only a part of its data.
     """
-    listed = [each for tree in files.values() for each in tree.units or ()]
-    known = units_in(kitchen, [unit for unit, _ in listed])
+    listed = [listed_unit for tree in files.values() for listed_unit in tree.units or ()]
+    bundled = units_in(kitchen, [unit for unit, _ in listed])
     names = ", ".join(map(str, files))
-    if known == len(listed):
+    if bundled == len(listed):
         return ()
-    if 2 * known >= len(listed):
+    if 2 * bundled >= len(listed):
         caller().reporter.warning(
-            f"{names}: no network is named, so it is the bundled kitchen, which has {known} of "
+            f"{names}: no network is named, so it is the bundled kitchen, which has {bundled} of "
             f"{counted(len(listed), 'unit')}; another one is named with --network"
         )
         return ()
     if texts := [file for file, tree in files.items() if not tree.goals]:
         caller().reporter.warning(f"no network is named, so it is {' and '.join(map(str, texts))}")
         return texts
-    places = ", ".join(dict.fromkeys(place.file for _, place in listed))
+    places = ", ".join(dict.fromkeys(source.file for _, source in listed))
     raise UserError(f"{names}: not of the bundled kitchen; name the data with --network: {places}")
 
 

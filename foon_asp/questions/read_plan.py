@@ -15,14 +15,13 @@ from foon_asp.problem import ITEMS, Problem
 from foon_asp.proof.simulation import Verdict
 from foon_asp.questions.arguments import whole
 from foon_asp.questions.check import Checked
-from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.contract import Part as Belongs
-from foon_asp.questions.how import Posed, begin
+from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.contract import Kind, Option, Role, question
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import units_in
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.plain_file import read_plain_text
 
@@ -48,7 +47,7 @@ class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan"))
         """Done for a sound plan."""
         return Ending.DONE if self.sound else Ending.NEGATIVE
 
-    def show(self) -> Iterator[Part]:
+    def show(self) -> Iterator[Block]:
         """Return whether the plan executes, what stops it at which line, and what it costs."""
         first, *others = super().show()
         yield from (first if self.sound else f"refused: {first}", *others)
@@ -68,18 +67,18 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
         raise UserError(
             "name the map of names with --map: foon-asp export wrote it beside the PDDL (map.json)"
         )
-    found, dataset = read_name_map(names), command.dataset
-    units = set(found.units.values())
+    name_map, dataset = read_name_map(names), command.dataset
+    units = set(name_map.units.values())
     if not command.names_data and 2 * units_in(dataset.data.network, units) < len(units):
         raise UserError(f"{names}: it is not of the bundled kitchen: name the data that were exported")
-    if dataset.names.level != found.level:
+    if dataset.names.level != name_map.level:
         raise UserError(
-            f"{names}: is about level {found.level}, and the data are read at level {dataset.names.level}: "
-            f"add --level {found.level}"
+            f"{names}: is about level {name_map.level}, and the data are read at level "
+            f"{dataset.names.level}: add --level {name_map.level}"
         )
     with command.reading():
-        how = found.items and items_of(dataset, ITEMS[1], found.items.stock, found.items.told)
-        return (dataset.problem(dataset.named_goals(found.goals), found.containers, items=how),)
+        used_up = name_map.items and items_of(dataset, ITEMS[1], name_map.items.stock, name_map.items.told)
+        return (dataset.problem(dataset.named_goals(name_map.goals), name_map.containers, items=used_up),)
 
 
 @question(
@@ -88,7 +87,7 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
         "names",
         "The map of names that `foon-asp export` wrote beside the PDDL.",
         Kind.FILE,
-        Belongs.PROBLEM | Belongs.QUESTION,
+        Role.PROBLEM | Role.QUESTION,
         flags=("--map",),
         metavar="map.json",
         python="Without it, the names are those that :func:`foon_asp.export` gives to the whole network.",
@@ -115,7 +114,7 @@ def read_plan(
     plan: str | PathLike[str] | object,
     *,
     names: File | None = None,
-    **how: Unpack[Posed],
+    **options: Unpack[Posed],
 ) -> PlanRead:
     r"""Read the plan of another planner back into a task tree, and execute it.
 
@@ -143,7 +142,7 @@ def read_plan(
         named = map_of(planning_task(problem, whole=True))
     else:
         named = read_name_map(Path(names))
-    with begin(how).watched("reading"):
+    with begin(options).watched("reading"):
         if isinstance(plan, str | PathLike):
             steps = read_plan_text(read_plain_text(Path(plan)), str(plan), named)
         else:  # as unified-planning writes it
@@ -151,7 +150,7 @@ def read_plan(
     if problem.items is None:
         places = dict(reversed(steps))  # of the first execution
         steps = [PlanStep(unit, places[unit]) for unit in dict.fromkeys(unit for unit, _ in steps)]
-    tree = Tree.given(problem, [unit for unit, _ in steps], [place for _, place in steps])
+    tree = Tree.given(problem, [unit for unit, _ in steps], [source for _, source in steps])
     checked = Checked.of(tree)
     sound = checked.verdict is Verdict.AS_LISTED and not checked.not_in_network
     return PlanRead.of(tree, sound=sound)

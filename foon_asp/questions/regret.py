@@ -1,6 +1,6 @@
-"""What every unit of the best tree, and every item that it takes, is worth: the optimum without it.
+"""The regret of every unit and kitchen item of the best tree: the optimum without it.
 
-Motions and pairs of items are asked about too, where somebody wants to know.
+Motions and pairs of items are left out, too, on request.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -20,19 +20,19 @@ from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, whole
 from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import ITEMS, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text, success_text
-from foon_asp.results.table import Part as Shown
+from foon_asp.results.table import Block
 from foon_asp.results.values import Measures, Mention, Node, Value
 from foon_asp.results.values_of import head_of, mention_of, node_of
 from foon_asp.text.json_value import schema_name
 
 
-class Part(StrEnum):
-    """What is left out: a unit of the network, all of one motion, one item of the kitchen, or two."""
+class Removal(StrEnum):
+    """The kind of part left out: a unit, all units of a motion, one kitchen item, or two."""
 
     UNIT = "unit"
     MOTION = "motion"
@@ -41,24 +41,24 @@ class Part(StrEnum):
 
 
 _TITLES = {
-    Part.UNIT: "without the unit",
-    Part.MOTION: "without all units of the motion",
-    Part.ITEM: "without from the kitchen",
-    Part.PAIR: "without both from the kitchen, where each alone can be done without",
+    Removal.UNIT: "without the unit",
+    Removal.MOTION: "without all units of the motion",
+    Removal.ITEM: "without from the kitchen",
+    Removal.PAIR: "without both from the kitchen, where each alone can be done without",
 }
-_WIDTH = 8  # of a loss
+_WIDTH = 8  # columns of a loss
 
 
 class Regret(Value, frozen=True):
-    """The best that is left without one part of a question.
+    """The optimum without one part of a problem.
 
     Attributes:
         unit: The unit that is left out, or null.
         motion: The motion all units of which are left out, or null.
         item: The kitchen item that is left out, or null.
         second_item: The other kitchen item of a pair, or null.
-        costs: What the best tree costs then; null where there is no tree.
-        loss: By how much the best tree is then worse, or for success by what share.
+        costs: The costs of the best tree without the part; null without a tree.
+        loss: The loss of the best tree by each objective: a difference, or for success a share.
     """
 
     unit: Mention | None
@@ -70,11 +70,11 @@ class Regret(Value, frozen=True):
     loss: Measures | None
 
     @property
-    def part(self) -> Part:
-        """What is left out."""
+    def part(self) -> Removal:
+        """The kind of the part left out."""
         if self.item is not None:
-            return Part.ITEM if self.second_item is None else Part.PAIR
-        return Part.MOTION if self.unit is None else Part.UNIT
+            return Removal.ITEM if self.second_item is None else Removal.PAIR
+        return Removal.MOTION if self.unit is None else Removal.UNIT
 
     def __str__(self) -> str:
         if self.unit is not None:
@@ -85,8 +85,8 @@ class Regret(Value, frozen=True):
         """Return in a few words how much worse the best tree is by an objective.
 
         Parameters:
-            objective: The objective, one of those asked for.
-            what: What there is none of without the part, a tree or a plan.
+            objective: One of the objectives of the question.
+            what: The word for a solution, tree or plan.
         """
         if self.status is Status.INFEASIBLE:
             return f"no {what}"
@@ -98,11 +98,11 @@ class Regret(Value, frozen=True):
         if multiplies(objective):
             text = success_text(Fraction(loss * 100))
             return f"≈ -{text[2:]} %" if text.startswith("≈") else f"-{text} %"
-        return f"{int(loss):+} {objective}"  # less by ``kitchen`` where an item is made that is not at hand
+        return f"{int(loss):+} {objective}"  # less by ``kitchen`` if a missing item is made
 
 
 class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
-    """What each unit and each item of the best tree is worth.
+    """The regret of each unit and each kitchen item of the best tree.
 
     Attributes:
         regrets: The greatest loss first; empty if there is no tree, or if it was not proved the best.
@@ -123,16 +123,16 @@ class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
 
     @property
     def ending(self) -> Ending:
-        """Done when every answer is proved."""
+        """``DONE`` if every optimum is proved."""
         proved = all(regret.status in {Status.OPTIMAL, Status.INFEASIBLE} for regret in self.regrets)
         return self.answer.ending if proved else Ending.LIMIT
 
-    def show(self) -> Iterator[Shown]:
-        """Return the optimum, and under it what is missed most first."""
+    def show(self) -> Iterator[Block]:
+        """Return the optimum and the regrets, the greatest loss first."""
         yield from (*self.goal_lines(), *self.answer.headlines())
         what = "tree" if self.items == "lasting" else "plan"
-        for part, title in _TITLES.items():
-            regrets = [regret for regret in self.regrets if regret.part is part]
+        for removal, title in _TITLES.items():
+            regrets = [regret for regret in self.regrets if regret.part is removal]
             if regrets:
                 yield from ("", title)
             for regret in regrets:
@@ -162,7 +162,7 @@ def regret(
     units: Annotated[Iterable[int], Option(kind=Kind.WHOLE, flags=("--unit",), many=True, metavar="ID")] = (),
     motions: Annotated[str | Iterable[str], Option(flags=("--motion",), many=True, metavar="MOTION")] = (),
     pairs: Annotated[bool, Option()] = False,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Regrets:
     """Find the optimum without each unit of the best tree, and without each kitchen item that it uses.
 
@@ -186,20 +186,21 @@ def regret(
         >>> str(worst.item), str(worst.status)
         ('ice; cubed; in [ice cube tray]', 'infeasible')
     """
-    chosen, settings = chosen_objectives(problem, objectives), settings_of(how)
+    chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
     numbers, moved = tuple(units), tuple([motions] if isinstance(motions, str) else motions)
     problem = whole(problem) if numbers or moved else asked_with(problem, settings)
     network = problem.network
-    found = [network.unit_of_number(number) for number in numbers]
-    if None in found:
-        raise UserError(f"there is no unit {numbers[found.index(None)]} in the network")
+    asked_units = [network.unit_of_number(number) for number in numbers]
+    if None in asked_units:
+        raise UserError(f"there is no unit {numbers[asked_units.index(None)]} in the network")
     of_motion = {motion: _units_of(problem, motion) for motion in moved}
     best = find(problem, chosen, settings, caller().reporter)
     head, answer = head_of(problem, chosen), Answer.of(best)
     if best.units is None or best.status is not Status.OPTIMAL:
         return Regrets(**head, answer=answer, regrets=())
     regrets: list[Regret] = []
-    own = settings.constraints == () and settings.replaced is None  # else rules may ask for what is missing
+    # under rules, the optimum may be better without a part: they may require what is missing
+    unrestricted = settings.constraints == () and settings.replaced is None
     holds = Postconditions(problem, levels(chosen), settings)
 
     def without(leave_out: Callable[[], Problem], **parts: Any) -> Regret:
@@ -207,26 +208,28 @@ def regret(
             with settings.begun.watched("leaving out a part"):  # which takes a while in a large network
                 fewer = leave_out()
         except KeyboardInterrupt:
-            left = None
+            remaining = None
         else:
-            left = find(fewer, chosen, settings, Reporter())
-        regrets.append(_regret(best, left, **parts))
-        # an item that is not at hand is not taken, so a tree that makes it has fewer by ``kitchen``
-        if left and own and ("item" not in parts or Objective.KITCHEN not in chosen):
-            holds.no_better(left, best, f"without {regrets[-1]}")
+            remaining = find(fewer, chosen, settings, Reporter())
+        regrets.append(_regret(best, remaining, **parts))
+        # a missing item is not taken from the kitchen, so a tree that makes it costs less by ``kitchen``
+        if remaining and unrestricted and ("item" not in parts or Objective.KITCHEN not in chosen):
+            holds.no_better(remaining, best, f"without {regrets[-1]}")
         return regrets[-1]
 
-    for unit in sorted({*best.units, *(unit for unit in found if unit is not None)}):
+    for unit in sorted({*best.units, *(unit for unit in asked_units if unit is not None)}):
         without(partial(_without_units, problem, [unit]), unit=mention_of(network, unit))
     for motion, of_one in of_motion.items():
         without(partial(_without_units, problem, of_one), motion=motion)
-    taken = sorted({o for unit in best.units for o in problem.needs[unit] if o in problem.kitchen})
-    alone = {o: without(partial(_kitchen_without, problem, o), item=node_of(network, o)) for o in taken}
-    spared = [o for o in taken if alone[o].costs is not None]
+    kitchen_items = sorted({o for unit in best.units for o in problem.needs[unit] if o in problem.kitchen})
+    alone = {
+        o: without(partial(_kitchen_without, problem, o), item=node_of(network, o)) for o in kitchen_items
+    }
+    spared = [o for o in kitchen_items if alone[o].costs is not None]
     for o, other in combinations(spared if pairs else (), 2):
         nodes = {"item": node_of(network, o), "second_item": node_of(network, other)}
         without(partial(_kitchen_without, problem, o, other), **nodes)
-    regrets.sort(key=lambda each: _worst_first(each, (*chosen, Objective.UNITS)))
+    regrets.sort(key=lambda entry: _worst_first(entry, (*chosen, Objective.UNITS)))
     return Regrets(**head, answer=answer, regrets=tuple(regrets))
 
 
@@ -234,65 +237,67 @@ def regret_of(best: Answer, settings: Settings, unit: int | None = None, item: i
     """Find the optimum without one unit or one kitchen item, by id, of a problem that was answered."""
     network, outcome = best.problem.network, best.outcome
     if unit is not None:
-        left = find(_without_units(best.problem, [unit]), best.objectives, settings, Reporter())
-        return _regret(outcome, left, unit=mention_of(network, unit))
+        remaining = find(_without_units(best.problem, [unit]), best.objectives, settings, Reporter())
+        return _regret(outcome, remaining, unit=mention_of(network, unit))
     assert item is not None
-    left = find(_kitchen_without(best.problem, item), best.objectives, settings, Reporter())
-    return _regret(outcome, left, item=node_of(network, item))
+    remaining = find(_kitchen_without(best.problem, item), best.objectives, settings, Reporter())
+    return _regret(outcome, remaining, item=node_of(network, item))
 
 
 def _regret(
     best: Outcome,
-    left: Outcome | None,
+    remaining: Outcome | None,
     unit: Mention | None = None,
     motion: str | None = None,
     item: Node | None = None,
     second_item: Node | None = None,
 ) -> Regret:
-    """Return what is left of the best without some parts; ``None`` is left where a limit came first."""
-    status, costs = (Status.UNKNOWN, None) if left is None else (left.status, left.costs)
+    """Return the regret of some parts; ``remaining`` is the optimum without them, ``None`` at a limit."""
+    status, costs = (Status.UNKNOWN, None) if remaining is None else (remaining.status, remaining.costs)
     loss: Measures | None = None
     if costs is not None and status is Status.OPTIMAL and best.costs is not None:
-        loss = {each: _loss(best.costs, costs, each) for each in best.objectives}
+        loss = {objective: _loss(best.costs, costs, objective) for objective in best.objectives}
     return Regret(unit, motion, item, second_item, status, costs, loss)
 
 
-def _loss(best: Costs, left: Costs, objective: Objective) -> int | Fraction:
-    """Return by how much it is worse by an objective, or for ``success`` by what share."""
-    ours, theirs = best.measure(objective), left.measure(objective)
+def _loss(best: Costs, remaining: Costs, objective: Objective) -> int | Fraction:
+    """Return the loss by an objective: a difference, or for ``success`` a share."""
+    best_figure, figure = best.measure(objective), remaining.measure(objective)
     if multiplies(objective):
-        return 1 - Fraction(theirs) / Fraction(ours) if ours else Fraction(0)
-    return theirs - ours
+        return 1 - Fraction(figure) / Fraction(best_figure) if best_figure else Fraction(0)
+    return figure - best_figure
 
 
-def _kitchen_without(problem: Problem, *gone: int) -> Problem:
+def _kitchen_without(problem: Problem, *removed: int) -> Problem:
     if problem.network.object_numbers and problem.origin is not None:  # what makes the items is read
-        return problem.vary(without=[problem.network.objects[o] for o in gone])
-    return replace(problem, kitchen=problem.kitchen.difference(gone))
+        return problem.vary(without=[problem.network.objects[o] for o in removed])
+    return replace(problem, kitchen=problem.kitchen.difference(removed))
 
 
-def _without_units(problem: Problem, gone: Sequence[int]) -> Problem:
-    """Return a problem over the network without some units; rates of their own go with the others."""
-    kept = [unit for unit in range(len(problem.network)) if unit not in gone]
+def _without_units(problem: Problem, removed: Sequence[int]) -> Problem:
+    """Return a problem over the network without some units; the other units keep their own rates."""
+    kept = [unit for unit in range(len(problem.network)) if unit not in removed]
     rates = problem.own_rates
-    own = {place: rates[unit] for place, unit in enumerate(kept) if unit in rates} if rates else {}
-    return replace(problem, network=problem.network.without(gone), own_rates=own)
+    own_rates = (
+        {position: rates[unit] for position, unit in enumerate(kept) if unit in rates} if rates else {}
+    )
+    return replace(problem, network=problem.network.without(removed), own_rates=own_rates)
 
 
 def _units_of(problem: Problem, motion: str) -> list[int]:
     """Return the units of a motion; raises :class:`UserError` if there are none."""
     motions = problem.network.motions
-    found = [unit for unit, each in enumerate(motions) if each == motion]
-    if not found:
-        near = near_labels(motion, dict.fromkeys(motions), 3)
-        similar = f"; similar are {', '.join(map(repr, near))}" if near else ""
+    units = [unit for unit, name in enumerate(motions) if name == motion]
+    if not units:
+        candidates = near_labels(motion, dict.fromkeys(motions), 3)
+        similar = f"; similar are {', '.join(map(repr, candidates))}" if candidates else ""
         raise UserError(f"no unit has the motion {motion!r}{similar}")
-    return found
+    return units
 
 
 def _worst_first(
     regret: Regret, objectives: tuple[Objective, ...]
-) -> tuple[bool, tuple[int | Fraction, ...], Part]:
+) -> tuple[bool, tuple[int | Fraction, ...], Removal]:
     costs = regret.costs
     key = () if costs is None else tuple(-figure for figure in costs.key(objectives))
     return costs is not None, key, regret.part

@@ -17,13 +17,13 @@ from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.questions.answer import Answer, answered, of_status
 from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import Limits, begin
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.how import Limits, begin
 from foon_asp.questions.posing import no_data
 from foon_asp.questions.result import Ending, Result
-from foon_asp.results.document import Known
+from foon_asp.results.document import Unserialized
 from foon_asp.results.plain import fraction_text
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.results.values import Value
 from foon_asp.text.json_value import schema_name
 from foon_asp.whole_file import write_whole
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class PlannedAction(Value, frozen=True):
-    """An action of a plan, and what it costs."""
+    """An action of a plan, and its cost."""
 
     action: str
     cost: Fraction
@@ -43,19 +43,19 @@ class PlannedAction(Value, frozen=True):
 
 
 class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
-    """The cheapest plan of a planning task without its deletes.
+    """The cheapest plan of the delete relaxation of a planning task.
 
     Attributes:
         task: The name of the file.
-        facts: How many there are.
-        actions: How many can ever run.
+        facts: The number of facts.
+        actions: The number of reachable actions.
         status: optimal: proved that no plan is cheaper, however many actions it has; infeasible: proved that
             there is no plan; feasible and unknown: stopped at a limit with or without one.
         stopped: For feasible and unknown: at which limit, and while doing what.
         certificate: The file with a proof, where one was written.
-        cost: What the plan costs; null where there is none.
-        lower_bound: What no plan costs less than: proved.
-        plan: The actions, in an order that executes where nothing is deleted; null where there is no plan.
+        cost: The cost of the plan; null without a plan.
+        lower_bound: A proved lower bound on the cost of all plans.
+        plan: The actions, in an order that executes if nothing is deleted; null without a plan.
         seconds: The time of each phase.
 
     Example:
@@ -82,7 +82,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
 
     @classmethod
     def of(cls, task: StripsTask, answer: Answer) -> Self:
-        """Return what the answer to a task as a problem says of it.
+        """Return the result for a task from the answer to its problem.
 
         Parameters:
             task: The task.
@@ -112,10 +112,10 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
             seconds=answer.seconds,
         ).knowing(answer=answer, strips=task)
 
-    answer = Known[Answer]()
+    answer = Unserialized[Answer]()
     """The answer, in which facts are object nodes and actions are units."""
 
-    strips = Known[StripsTask]()
+    strips = Unserialized[StripsTask]()
     """The task that was read."""
 
     @property
@@ -135,7 +135,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
 
     @property
     def claim(self) -> str:
-        """What is proved of the cost, in one line."""
+        """The claim about the cost, in one line."""
         if self.status is Status.INFEASIBLE:
             return "infeasible: proved that there is no plan, even where nothing is deleted"
         if self.cost is None:
@@ -146,8 +146,8 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
         bound = "nothing" if self.lower_bound is None else fraction_text(self.lower_bound)
         return f"h+ is at most {cost}, and at least {bound}: stopped at {self.stopped or 'a limit'}"
 
-    def show(self) -> Iterator[Part]:
-        """Return the cost, what is proved of it, and the plan."""
+    def show(self) -> Iterator[Block]:
+        """Return the cost, its proof, and the plan."""
         yield f"task: {self.task}, {counted(self.facts, 'fact')}, {counted(self.actions, 'action')}"
         yield self.claim
         if self.certificate is not None:
@@ -158,7 +158,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
             yield f"{number:>3}  {step}" + ("" if step.cost == 1 else f"    [{fraction_text(step.cost)}]")
 
     def pddl(self) -> str:
-        """Return the plan as planners write them; empty where there is none."""
+        """Return the plan in the format of planners; empty without a plan."""
         if self.cost is None:
             return ""
         kind = "unit cost" if self.strips.unit_cost else "general cost"
@@ -195,7 +195,7 @@ def relax(
     certificate_file: Annotated[
         File | None, Option(kind=Kind.WRITTEN, flags=("--certificate",), metavar="FILE")
     ] = None,
-    **how: Unpack[Limits],
+    **limits: Unpack[Limits],
 ) -> Relaxed:
     """Find the cheapest plan of a planning task without its deletes, and prove that none is cheaper.
 
@@ -218,16 +218,16 @@ def relax(
         >>> str(relaxed.cost), str(relaxed.status)
         ('9', 'optimal')
     """
-    deadline = begin(how)
-    found = solved(read_task(files(task), deadline), deadline)
+    deadline = begin(limits)
+    relaxed = solved(read_task(files(task), deadline), deadline)
     if certificate_file is None:
-        return found
-    certificate = _certificate(found, deadline)
+        return relaxed
+    certificate = _certificate(relaxed, deadline)
     if certificate is None:
         caller().reporter.warning("no certificate was found, and nothing is written")
-        return found
+        return relaxed
     write_whole(Path(certificate_file), certificate.text().encode())
-    return structs.replace(found, certificate=str(certificate_file)).knowing(**found.__dict__)
+    return structs.replace(relaxed, certificate=str(certificate_file)).knowing(**relaxed.__dict__)
 
 
 def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
@@ -235,14 +235,14 @@ def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
 
     Among plans that cost the same, the shortest is looked for, but no longer than the cost takes to prove.
     """
-    own = Deadline(within=deadline)
-    reporter = _Enough(caller().reporter, task.objective, own)
-    answer = answered(task.problem(), (task.objective,), Settings(deadline=own), reporter)
+    proof_deadline = Deadline(within=deadline)
+    reporter = _Enough(caller().reporter, task.objective, proof_deadline)
+    answer = answered(task.problem(), (task.objective,), Settings(deadline=proof_deadline), reporter)
     return Relaxed.of(task, answer)
 
 
 class _Enough(Reporter):
-    """Passes on what it hears, and stops the search when the cost of the best plan is proved."""
+    """A reporter that stops the search when the cost of the best plan is proved."""
 
     def __init__(self, reporter: Reporter, objective: Objective, deadline: Deadline) -> None:
         self._reporter, self._objective, self._deadline = reporter, objective, deadline
@@ -256,7 +256,7 @@ class _Enough(Reporter):
         self._compare()
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Record what no plan costs less than."""
+        """Record a lower bound on the cost."""
         self._reporter.bound(objective, bound)
         if objective is self._objective:
             self._least = bound
@@ -267,19 +267,19 @@ class _Enough(Reporter):
             self._deadline.enough()
 
 
-def _certificate(found: Relaxed, deadline: Deadline) -> "Certificate | None":
-    """Look for a proof of the cost alone; at a limit or ctrl-C there is none."""
+def _certificate(relaxed: Relaxed, deadline: Deadline) -> "Certificate | None":
+    """Return a certificate of the cost alone; ``None`` at a limit or ctrl-C."""
     from foon_asp.certificate import certify, certify_infeasible  # noqa: PLC0415 (slow to import)
 
-    answer, units = found.answer, found.answer.ids
+    answer, units = relaxed.answer, relaxed.answer.ids
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
-        if found.status is Status.OPTIMAL and units is not None:
+        if relaxed.status is Status.OPTIMAL and units is not None:
             return certify(
                 *(answer.problem, answer.objectives, units),
                 expired=lambda: deadline.passed,
                 cuts=answer.outcome.cuts,
                 cases=answer.outcome.cases,
             )
-        if found.status is Status.INFEASIBLE:
+        if relaxed.status is Status.INFEASIBLE:
             return certify_infeasible(answer.problem)
     return None

@@ -77,7 +77,7 @@ class Result(Document, frozen=True, kw_only=True):
         raise UserError("this is no tree, whose steps could be listed")
 
     def remark(self, format_: str) -> str:
-        """Return what a format other than text cannot tell; empty if there is nothing to add.
+        """Return the remarks that a format other than text cannot express; empty without any.
 
         Parameters:
             format_: The name of the format, for example ``foon``.
@@ -97,13 +97,13 @@ class Result(Document, frozen=True, kw_only=True):
         """
         from foon_asp.whole_file import utf_8, write_whole  # noqa: PLC0415 (most results are printed)
 
-        known = {suffix: form for suffix, form in self.SUFFIXES.items() if hasattr(self, _method(form))}
-        form = format_ or known.get(Path(file).suffix.lower())
+        formats = {suffix: form for suffix, form in self.SUFFIXES.items() if hasattr(self, _method(form))}
+        form = format_ or formats.get(Path(file).suffix.lower())
         if form is None:
-            raise UserError(f"{file}: the name says no format: end it in {' '.join(known)}")
-        if form not in known.values():
+            raise UserError(f"{file}: the name says no format: end it in {' '.join(formats)}")
+        if form not in formats.values():
             raise UserError(
-                f"found the format {form!r}, expected one of {', '.join(dict.fromkeys(known.values()))}"
+                f"found the format {form!r}, expected one of {', '.join(dict.fromkeys(formats.values()))}"
             )
         content: str | bytes = getattr(self, _method(form))()
         write_whole(Path(file), utf_8(content) if isinstance(content, str) else content)
@@ -122,7 +122,7 @@ class Result(Document, frozen=True, kw_only=True):
         raise UserError(f"{file}: there is no chart of this")
 
     def drawing(self) -> "Drawing | None":
-        """Return what the picture shows, or ``None`` where there is no tree to draw."""
+        """Return the drawing of the tree; ``None`` without a tree."""
         return None
 
     def svg(self) -> str:
@@ -150,11 +150,11 @@ class Result(Document, frozen=True, kw_only=True):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Return what a notebook shows."""
+        """Return the notebook display by media type."""
         return self._in_notebook()
 
     def _in_notebook(self) -> dict[str, str]:
-        """Return what a notebook shows by media type: the text, and below it the picture if there is one."""
+        """Return the notebook display by media type: the text, and the picture if there is a tree."""
         from foon_asp.pictures.notebook import page_bundle  # noqa: PLC0415
 
         pictures = [] if (drawing := self.drawing()) is None else [drawing]

@@ -55,9 +55,11 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
         for number, (done, after, id_) in enumerate(zip(replay.steps, waits(replay), plan, strict=True), 1):
             mention, unit = mention_of(network, id_), done.unit
             origins, destinations = _places(unit.inputs), _places(unit.outputs)
-            taken = [node for node in unit.inputs if node.label not in {*origins, *destinations}]
+            others = [node for node in unit.inputs if node.label not in {*origins, *destinations}]
             tools, acted_on = (
-                tuple(named_node(network, node) for node in taken if (node.label in problem.utensils) is tool)
+                tuple(
+                    named_node(network, node) for node in others if (node.label in problem.utensils) is tool
+                )
                 for tool in (True, False)
             )
             steps.append(
@@ -80,5 +82,5 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
 
 
 def _places(nodes: Iterable[ObjectNode]) -> tuple[str, ...]:
-    """Return the labels of what nodes are in, on or at."""
+    """Return the labels of the objects that nodes are in, on or at."""
     return tuple(sorted({relation.object for node in nodes for relation in node.relations}))

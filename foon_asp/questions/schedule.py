@@ -25,15 +25,14 @@ from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.questions.answer import of_status
 from foon_asp.questions.arguments import at_least, read_as
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import Posed, begin
+from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
 from foon_asp.questions.options import CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
 from foon_asp.results.document import AboutGoals
-from foon_asp.results.table import Part as Shown
-from foon_asp.results.table import Table
+from foon_asp.results.table import Block, Table
 from foon_asp.results.timed_step import TimedStep, Tool
 from foon_asp.results.values import Value
 from foon_asp.results.values_of import head_of, lack_of
@@ -71,8 +70,8 @@ class LackingTool(Value, frozen=True):
 
     Attributes:
         tool: A label, or a vessel with what is in it.
-        there: How many there are.
-        needed: How many there have to be, at least (infeasible), or how many are enough (unknown).
+        there: The number available.
+        needed: The least number that a schedule needs (infeasible), or a sufficient one (unknown).
     """
 
     tool: str
@@ -84,14 +83,14 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
     """When the steps of a plan are done, and by whom.
 
     Attributes:
-        status: optimal: proved a shortest schedule; infeasible: proved that there is none; feasible and
-            unknown: stopped at a limit with or without one.
+        status: optimal: proved a shortest schedule; infeasible: proved that no schedule exists; feasible and
+            unknown: stopped at a limit with or without a schedule.
         stopped: The limit that came first, and what was being done; null if none did.
-        makespan: How long it takes, in seconds; null without a schedule.
-        lower_bound: No schedule takes less, in seconds.
-        agents: How many there are.
-        durations: Of each motion of the plan.
-        timetable: The steps of the plan, in its order; none without a schedule.
+        makespan: The makespan in seconds; null without a schedule.
+        lower_bound: A proved lower bound on the makespan, in seconds.
+        agents: The number of agents.
+        durations: The duration of each motion of the plan.
+        timetable: The steps of the plan, in its order; empty without a schedule.
         lacking: Without a schedule, the tools of which there are too few.
 
     Example:
@@ -115,7 +114,7 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
 
     @property
     def ending(self) -> Ending:
-        """Done when the schedule is proved to be a shortest one."""
+        """``DONE`` if the schedule is proved shortest."""
         return of_status(self.status)
 
     @property
@@ -123,13 +122,13 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
         """The steps as a chart shows them."""
         return Gantt(" + ".join(map(str, self.goals)), self.timetable, self.makespan or Fraction(0))
 
-    def show(self) -> Iterator[Shown]:
-        """Return how long it takes, what is proved, a table of the steps, and what each agent does."""
+    def show(self) -> Iterator[Block]:
+        """Return the makespan, the claim, a table of the steps, and the working time of each agent."""
         yield from self.goal_lines()
         agents = counted(self.agents, "agent")
         if self.makespan is not None:
-            found, proved = ("shortest", ", proved") if self.status is Status.OPTIMAL else ("best found", "")
-            yield f"{found} for {agents}: {time_text(self.makespan)}{proved}"
+            claim, proved = ("shortest", ", proved") if self.status is Status.OPTIMAL else ("best found", "")
+            yield f"{claim} for {agents}: {time_text(self.makespan)}{proved}"
             alone = sum((step.end - step.start for step in self.timetable), Fraction(0))
             yield f"{counted(len(self.timetable), 'step')}, one after the other {time_text(alone)}"
         elif self.status is Status.INFEASIBLE:
@@ -146,10 +145,10 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
             (str(step.step), time_text(step.start), time_text(step.end), str(step.agent or "-"), step.name)
             for step in self.gantt.in_order
         ]
-        yield from ("", Table(("step", "start", "end", "agent", ""), rows, left=frozenset({4})), "")
+        yield from ("", Table(("step", "start", "end", "agent", ""), rows, left_aligned=frozenset({4})), "")
         for agent in range(1, self.agents + 1):
-            own = (step.end - step.start for step in self.timetable if step.agent == agent)
-            yield f"agent {agent} works {time_text(sum(own, Fraction(0)))} of {time_text(self.makespan)}"
+            times = (step.end - step.start for step in self.timetable if step.agent == agent)
+            yield f"agent {agent} works {time_text(sum(times, Fraction(0)))} of {time_text(self.makespan)}"
 
     def write_chart(self, file: File) -> None:
         """Draw a Gantt chart into a file.
@@ -178,24 +177,26 @@ class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durat
     file: Path
     unknown: int
 
-    def show(self) -> Iterator[Shown]:
-        """Return what to do with it."""
+    def show(self) -> Iterator[Block]:
+        """Return the next step: which durations to fill in."""
         todo = f"say {counted(self.unknown, 'duration')} in place of SECONDS" if self.unknown else "change it"
         yield f"wrote {self.file}: {todo}, and give it as --durations"
 
 
 def _schedule_or_template(
-    problem: Problem, plan: Tree, *, durations_template: Path | None = None, **asked: Any
+    problem: Problem, plan: Tree, *, durations_template: Path | None = None, **options: Any
 ) -> Result:
     """Schedule as ``foon-asp schedule`` does, or write which durations it needs."""
     if durations_template is None:
-        return schedule(problem, plan, **asked)
+        return schedule(problem, plan, **options)
     if durations_template.exists():
         raise UserError(f"{durations_template} is there already: name a new file, or remove it")
-    known = _known_durations(plan, asked["durations"], asked["from_video"], asked["default_duration"])
-    template = {unit.motion: known.get(unit.motion) for unit in plan.units}
+    known_durations = _known_durations(
+        plan, options["durations"], options["from_video"], options["default_duration"]
+    )
+    template = {unit.motion: known_durations.get(unit.motion) for unit in plan.units}
     write_whole(durations_template, utf_8(template_text(template)))
-    unknown = sum(each is None for each in template.values())
+    unknown = sum(duration is None for duration in template.values())
     return WrittenDurations(file=durations_template, unknown=unknown)
 
 
@@ -204,7 +205,7 @@ def _schedule_or_template(
         "plan",
         "The plan or task tree: FOON text, or an answer in JSON.",
         Kind.FILE,
-        Part.PROBLEM,
+        Role.PROBLEM,
         metavar="PLAN",
         positional=True,
     ),
@@ -271,7 +272,7 @@ def schedule(
         ),
     ] = None,
     items: str = "used-up",
-    **how: Unpack[Posed],
+    **options: Unpack[Posed],
 ) -> Schedule:
     """Find the shortest schedule of a plan: when each step starts, who does it, and with which tools.
 
@@ -303,7 +304,7 @@ def schedule(
         >>> str(found.status), str(found.makespan)
         ('optimal', '40')
     """
-    deadline = begin(how)
+    deadline = begin(options)
     at_least(agents, 1, "agents")
     problem = read_as(problem, items)
     tree = _in_order(posed_tree(problem, plan))
@@ -313,26 +314,26 @@ def schedule(
         raise NoTreeError(_shortage_text(tree, replay.shortage))
     means = Means(_durations(tree, durations, from_video, default_duration), agents, _tools(tools))
     task = schedule_task(replayed, tree.units, replay, means)
-    found = shortest(task, deadline)
-    timed = () if found.starts is None else tuple(timed_steps(task, found.starts))
-    if found.starts is not None and (fault := timetable_fault(replayed, tree.units, timed, means)):
+    solution = shortest(task, deadline)
+    timed = () if solution.starts is None else tuple(timed_steps(task, solution.starts))
+    if solution.starts is not None and (fault := timetable_fault(replayed, tree.units, timed, means)):
         raise BugError(f"the schedule does not hold: {fault}")
-    after = [tuple(earlier + 1 for earlier in sorted(each)) for each in waits(replay)]
+    after = [tuple(earlier + 1 for earlier in sorted(earlier_steps)) for earlier_steps in waits(replay)]
     return Schedule(
         **head_of(tree.problem),
-        status=_status(found),
-        stopped=None if found.proved else deadline.stopped,
-        makespan=None if found.starts is None else max((step.end for step in timed), default=Fraction(0)),
-        lower_bound=found.bound * task.tick,
+        status=_status(solution),
+        stopped=None if solution.proved else deadline.stopped,
+        makespan=None if solution.starts is None else max((step.end for step in timed), default=Fraction(0)),
+        lower_bound=solution.bound * task.tick,
         agents=agents,
         durations=tuple(
-            MotionTime(motion, Fraction(each.seconds), each.passive)
-            for motion, each in means.durations.items()
+            MotionTime(motion, Fraction(duration.seconds), duration.passive)
+            for motion, duration in means.durations.items()
         ),
         timetable=tuple(_timed_steps(tree, timed, after)),
         lacking=tuple(
             LackingTool(str(name), means.number_of(tree.problem, name), needed)
-            for name, needed in found.lacking.items()
+            for name, needed in solution.lacking.items()
         ),
     )
 
@@ -355,14 +356,14 @@ def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, 
         )
 
 
-def _status(found: BestSchedule) -> Status:
-    if found.proved:
-        return Status.INFEASIBLE if found.starts is None else Status.OPTIMAL
-    return Status.UNKNOWN if found.starts is None else Status.FEASIBLE
+def _status(solution: BestSchedule) -> Status:
+    if solution.proved:
+        return Status.INFEASIBLE if solution.starts is None else Status.OPTIMAL
+    return Status.UNKNOWN if solution.starts is None else Status.FEASIBLE
 
 
 def _in_order(tree: Tree) -> Tree:
-    """Return a tree in an order that executes; one in which items last is as it is listed, if it has none."""
+    """Return a tree in an order that executes; if items last and no order does, in the order listed."""
     if tree.problem.items is None:
         simulation = simulate_for(tree.problem, tree)
         order = simulation.order if simulation.verdict is Verdict.REORDERED else range(len(tree))
@@ -380,14 +381,14 @@ def _shortage_text(tree: Tree, shortage: Shortage) -> str:
 
 
 def _durations(
-    tree: Tree, given: Durations | None, from_video: bool, default: Number | None
+    tree: Tree, stated: Durations | None, from_video: bool, default: Number | None
 ) -> dict[str, Duration]:
-    """Return the durations of the motions of a plan; raises :class:`UserError` with all that have none."""
-    known = _known_durations(tree, given, from_video, default)
+    """Return the durations of the motions of a plan; raises :class:`UserError` for motions without one."""
+    known_durations = _known_durations(tree, stated, from_video, default)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
-    missing = [motion for motion in motions if motion not in known]
+    missing = [motion for motion in motions if motion not in known_durations]
     if missing:
-        place = "in a file for --durations (durations=)" if given is None else "in the durations"
+        where = "in a file for --durations (durations=)" if stated is None else "in the durations"
         ways = [
             *(
                 []
@@ -400,65 +401,65 @@ def _durations(
         lines = "".join(f"\n  {escaped(motion)}\tSECONDS" for motion in missing)
         raise UserError(
             f"no duration is known of {counted(len(missing), 'motion')} of the plan: say how long they take, "
-            f"{place}, a tab before the seconds{lines}\n" + "\n".join(ways)
+            f"{where}, a tab before the seconds{lines}\n" + "\n".join(ways)
         )
-    return {motion: known[motion] for motion in motions}
+    return {motion: known_durations[motion] for motion in motions}
 
 
 def _known_durations(
-    tree: Tree, given: Durations | None, from_video: bool, default: Number | None
+    tree: Tree, stated: Durations | None, from_video: bool, default: Number | None
 ) -> dict[str, Duration]:
-    """Return the durations that are known: stated, of clips, or the default; a warning tells the last two."""
-    if isinstance(given, str | PathLike):
-        known = dict(DURATIONS.read(Path(given)))
+    """Return the known durations by motion: stated, of clips, or the default; warnings name the last two."""
+    if isinstance(stated, str | PathLike):
+        durations = dict(DURATIONS.read(Path(stated)))
     else:
-        known = {motion: _duration(each, motion) for motion, each in (given or {}).items()}
+        durations = {motion: _duration(duration, motion) for motion, duration in (stated or {}).items()}
     motions = dict.fromkeys(unit.motion for unit in tree.units)
     if from_video:
         problem = tree.problem.whole
         files = dict.fromkeys(Path(copy.file) for copies in problem.network.sources for copy in copies)
         clips = median_clips((file for file in files if file.is_file()), caller().lenient)
-        timed = [motion for motion in motions if motion in clips and motion not in known]
+        timed = [motion for motion in motions if motion in clips and motion not in durations]
         if timed:
             shown = ", ".join(f"{escaped(motion)} {time_text(Fraction(clips[motion]))}" for motion in timed)
             caller().reporter.warning(
                 f"warning: these durations are medians of clips, and not of what happens in them: {shown}"
             )
-        known |= {motion: Duration(clips[motion]) for motion in timed}
+        durations |= {motion: Duration(clips[motion]) for motion in timed}
     if default is not None:
-        each = (
+        duration = (
             Duration(read_default_duration(default))
             if isinstance(default, str)
             else _duration(default, "default")
         )
-        others = [motion for motion in motions if motion not in known]
+        others = [motion for motion in motions if motion not in durations]
         if others:
-            time = time_text(Fraction(each.seconds))
+            time = time_text(Fraction(duration.seconds))
             motions_named = ", ".join(map(escaped, others))
             caller().reporter.warning(f"warning: these motions count as {time} each: {motions_named}")
-        known |= dict.fromkeys(others, each)
-    return known
+        durations |= dict.fromkeys(others, duration)
+    return durations
 
 
-def _duration(given: Number | Duration, motion: str) -> Duration:
-    number, passive = given if isinstance(given, Duration) else (given, False)
+def _duration(stated: Number | Duration, motion: str) -> Duration:
+    number, passive = stated if isinstance(stated, Duration) else (stated, False)
     seconds = exact(number, f"the duration of {motion!r}")
     if seconds <= 0:
-        raise UserError(f"found the duration {given} of {motion!r}, expected one above 0")
+        raise UserError(f"found the duration {stated} of {motion!r}, expected one above 0")
     return Duration(seconds, passive)
 
 
-def _tools(given: Tools | None) -> dict[ToolName, int | None]:
-    if given is None:
+def _tools(stated: Tools | None) -> dict[ToolName, int | None]:
+    if stated is None:
         return {}
-    if isinstance(given, str | PathLike):
-        return TOOLS.read(Path(given))
-    found: dict[ToolName, int | None] = {}
-    for name, count in given.items():
+    if isinstance(stated, str | PathLike):
+        return TOOLS.read(Path(stated))
+    tools: dict[ToolName, int | None] = {}
+    for name, count in stated.items():
         if count is not None and (isinstance(count, bool) or not isinstance(count, int) or count < 1):
             raise UserError(f"found the number {count!r} of {str(name)!r}, expected a whole number from 1")
         try:
-            found[stated_name(name) if isinstance(name, str) else name] = count
+            tools[stated_name(name) if isinstance(name, str) else name] = count
         except LineError as error:
             raise UserError(f"tools: {error}") from None
-    return found
+    return tools

@@ -10,16 +10,16 @@ from foon_asp.comparison.comparison import simulated
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof.simulation import Simulation, Verdict
+from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.contract import question
-from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import COUNT, DEPTH, TIES, search_settings, searched
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.questions.verdict import Stop, found_of, verdict_lines
-from foon_asp.results.document import AboutGoals, Known
+from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import costs_text
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Step, UsedUpRun
 from foon_asp.results.values_of import head_of, node_of, steps_of
 from foon_asp.searches import Ending as Searched
@@ -31,7 +31,7 @@ _NO_TREE: Any = dict.fromkeys(("verdict", "as_listed", "in_any_order", "order", 
 
 
 class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("search")):
-    """What a search returned for a problem.
+    """The tree that a search returned for a problem.
 
     Attributes:
         search: The name of the search.
@@ -72,7 +72,7 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
     def of(
         cls, problem: Problem, search: Search, ended: Searched, ids: tuple[int, ...], stuck_at: Node | None
     ) -> Self:
-        """Return what a search found for a problem, with its tree simulated.
+        """Return the result of a search, with its tree simulated.
 
         Parameters:
             problem: The problem.
@@ -97,19 +97,19 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
             problem=problem, ids=ids, promise=search.promise, tree=tree, simulation=simulation
         )
 
-    problem = Known[Problem]()
+    problem = Unserialized[Problem]()
     """The problem that was asked about."""
 
-    ids = Known[tuple[int, ...]]()
+    ids = Unserialized[tuple[int, ...]]()
     """The units of the tree by id in the network of the problem, as listed; none without a tree."""
 
-    promise = Known[str]()
+    promise = Unserialized[str]()
     """What the search promises of its trees."""
 
-    tree = Known[Tree | None]()
+    tree = Unserialized[Tree | None]()
     """The tree in the order listed; ``None`` without a tree."""
 
-    simulation = Known[Simulation | None]()
+    simulation = Unserialized[Simulation | None]()
     """What the simulation of the tree found; ``None`` without a tree."""
 
     @property
@@ -124,8 +124,8 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
             return Ending.LIMIT
         return Ending.DONE if self.executes else Ending.NEGATIVE
 
-    def show(self) -> Iterator[Part]:
-        """Return what the search promises, whether its tree executes, and the steps as they were listed."""
+    def show(self) -> Iterator[Block]:
+        """Return the promise of the search, whether its tree executes, and the steps in the order listed."""
         yield from (*self.goal_lines(), f"{self.search} promises {self.promise}")
         if self.tree is None or self.simulation is None or self.units is None:
             yield self._without()
@@ -145,7 +145,7 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
         return write_units(units, comments + (used_up_note(self.problem, units) if self.executes else []))
 
     def drawing(self) -> Drawing | None:
-        """Return what the picture shows."""
+        """Return the drawing of the tree; ``None`` without a tree."""
         return None if self.tree is None else self.tree.drawing()
 
     def __repr__(self) -> str:
@@ -171,7 +171,7 @@ def search(
     count: Annotated[str, COUNT] = "ingredients",
     depth_limit: Annotated[int | None, DEPTH] = None,
     published: bool = False,
-    **how: Unpack[Posed],
+    **options: Unpack[Posed],
 ) -> Retrieved:
     """Retrieve a task tree with a published search, and find out whether it executes.
 
@@ -195,8 +195,8 @@ def search(
         <Retrieved: bfs, executes in another order>
     """
     (wanted,) = searched([search])
-    deadline = begin(how)
+    deadline = begin(options)
     settings = search_settings(ties, count, depth_limit, published, deadline.left, deadline.memory)
-    found = wanted.run(replace(problem, items=None), settings)
-    stuck_at = None if found.stuck_at is None else node_of(problem.network, found.stuck_at)
-    return Retrieved.of(problem, wanted, found.ending, found.units, stuck_at)
+    outcome = wanted.run(replace(problem, items=None), settings)
+    stuck_at = None if outcome.stuck_at is None else node_of(problem.network, outcome.stuck_at)
+    return Retrieved.of(problem, wanted, outcome.ending, outcome.units, stuck_at)

@@ -31,16 +31,16 @@ def searched(names: Iterable[str]) -> list[Search]:
 
     Raises :class:`UserError` for another name, and if a package offers one by a name that is taken.
     """
-    known = find_searches()
-    names = list(dict.fromkeys(names)) or list(known)
-    unknown = [name for name in names if name not in known]
+    searches = find_searches()
+    names = list(dict.fromkeys(names)) or list(searches)
+    unknown = [name for name in names if name not in searches]
     if unknown:
-        raise UserError(f"found the search {unknown[0]!r}, expected one of {', '.join(known)}")
-    return [known[name] for name in names]
+        raise UserError(f"found the search {unknown[0]!r}, expected one of {', '.join(searches)}")
+    return [searches[name] for name in names]
 
 
 def known_searches(rated: bool) -> list[Search]:
-    """Return all searches, without the one that needs rates if these are not ``rated``."""
+    """Return all searches; unless ``rated``, without the search that needs success rates."""
     return [search for search in searched(()) if rated or search.name != "greedy-success"]
 
 
@@ -52,10 +52,10 @@ def search_settings(
     time_limit: float | None,
     memory_limit: int | None,
 ) -> SearchSettings:
-    """Return the settings of searches; the limits, in seconds and bytes, are those of each search."""
-    for name, given, known in (("ties", ties, [*map(str, Ties)]), ("count", count, [*map(str, Count)])):
-        if given not in known:
-            raise UserError(f"found {name}={given!r}, expected one of {', '.join(known)}")
+    """Return the settings of searches; the limits, in seconds and bytes, are for each search."""
+    for name, value, choices in (("ties", ties, [*map(str, Ties)]), ("count", count, [*map(str, Count)])):
+        if value not in choices:
+            raise UserError(f"found {name}={value!r}, expected one of {', '.join(choices)}")
     if depth_limit is not None:
         at_least(depth_limit, 0, "depth_limit")
     return SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit, memory_limit)

@@ -12,22 +12,22 @@ from foon_asp.problem import Objective, Problem, success_rate
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.arguments import asked_with
 from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, question
 from foon_asp.questions.envelope import End, Envelope
 from foon_asp.questions.flip import Flip, decimal_text
-from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import success_text
 from foon_asp.results.plain import fraction_text
-from foon_asp.results.table import Part, Table
+from foon_asp.results.table import Block, Table
 from foon_asp.results.values import CostedTree, Value, changed_motions, steps_not_in
 from foon_asp.results.values_of import costed_tree, head_of
 from foon_asp.text.json_value import schema_name
 
 _SUCCESS = (Objective.SUCCESS,)
 
-Side = Literal["below", "above"]
+Direction = Literal["below", "above"]
 
 
 class FlipRate(Value, frozen=True):
@@ -106,7 +106,7 @@ class FirstFlip(Value, frozen=True):
     """The end with the smallest relative change of the rate."""
 
     motion: str
-    side: Side
+    side: Direction
 
 
 class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensitivity")):
@@ -138,22 +138,22 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
         proved = all(interval.proved for interval in self.intervals)
         return self.answer.ending if proved else Ending.LIMIT
 
-    def show(self) -> Iterator[Part]:
-        """Return the motions whose rates can make another tree the best, then those whose rates cannot."""
+    def show(self) -> Iterator[Block]:
+        """Return the motions whose rates can make another tree optimal, then the other motions."""
         yield from (*self.goal_lines(), *self.answer.headlines())
         flipping = [interval for interval in self.intervals if interval.flips]
-        still = [interval for interval in self.intervals if not interval.flips]
+        stable = [interval for interval in self.intervals if not interval.flips]
         if flipping:
-            known = "each proved" if self.ending is Ending.DONE else "as far as they are known"
-            yield f"one rate may be wrong between these ends, {known}"
+            claim = "each proved" if self.ending is Ending.DONE else "as far as they are known"
+            yield f"one rate may be wrong between these ends, {claim}"
             yield ""
             headings = ("rate", "from", "to", "motion", "beyond")
-            yield Table(headings, [*map(self._cells, flipping)], left=frozenset({3, 4}), indent=2)
-        kept = [str(interval) for interval in still if interval.proved and interval.units]
-        foreign = sum(interval.proved and not interval.units for interval in still) + len(self.others)
+            yield Table(headings, [*map(self._cells, flipping)], left_aligned=frozenset({3, 4}), indent=2)
+        kept = [str(interval) for interval in stable if interval.proved and interval.units]
+        foreign = sum(interval.proved and not interval.units for interval in stable) + len(self.others)
         if foreign:
             kept.append(f"{counted(foreign, 'motion')} that the tree does not have")
-        unknown = [str(interval) for interval in still if not interval.proved]
+        unknown = [str(interval) for interval in stable if not interval.proved]
         for title, names in (("at any rate", kept), ("not known", unknown)):
             if names:
                 yield ""
@@ -167,8 +167,8 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
         for end, limit in ((interval.below, "0"), (interval.above, "1")):
             ends.append((decimal_text(end.at.inwards) if end.at else limit) + "?" * (not end.proved))
             if end.at and end.beyond:
-                there = end.beyond.units
-                changes = changed_motions(steps_not_in(best, there), steps_not_in(there, best))
+                rival = end.beyond.units
+                changes = changed_motions(steps_not_in(best, rival), steps_not_in(rival, best))
                 beyond.append(f"{end.at.change}: {changes}")
         return success_text(interval.rate), *ends, str(interval), "; ".join(beyond)
 
@@ -176,10 +176,10 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
         if self.ending is Ending.LIMIT:
             yield "stopped at a limit: an end with ? may be nearer to the rate"
         if self.first is not None:
-            motion, side = self.first.motion, self.first.side
-            end: RateEnd = getattr(self.intervals[0], side)
+            motion, direction = self.first.motion, self.first.side
+            end: RateEnd = getattr(self.intervals[0], direction)
             if end.at:
-                flip = f"{side} {decimal_text(end.at.inwards)} ({end.at.change})"
+                flip = f"{direction} {decimal_text(end.at.inwards)} ({end.at.change})"
                 yield f"flips first: {motion}, {flip}; measure it before others"
         elif self.ending is Ending.DONE:
             yield "no rate makes another tree better by itself: there is nothing to measure"
@@ -200,7 +200,7 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
     Exits with 0 when every end is proved, 1 when there is no tree at all, 3 when a limit came first.
     """,
 )
-def sensitivity(problem: Problem, **how: Unpack[How]) -> Sensitivity:
+def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivity:
     """Find how wrong each success rate may be before another tree is the best by ``success``.
 
     One rate varies while the others stay as given. Constraints see the rates as given. The limits are for
@@ -222,7 +222,7 @@ def sensitivity(problem: Problem, **how: Unpack[How]) -> Sensitivity:
         success_rate((problem.rates or {})[motion], f"the success rate of {motion!r}")
     for rate in problem.own_rates.values():
         success_rate(rate, "the success rate of a unit")
-    settings = settings_of(how)
+    settings = settings_of(options)
     program = assemble(settings, lambda _: None)
     if program.replaced:
         raise UserError(
@@ -241,7 +241,7 @@ def sensitivity(problem: Problem, **how: Unpack[How]) -> Sensitivity:
         return Sensitivity(**head, answer=answer, intervals=(), others=(), first=None)
     envelope = Envelope(problem, outcome.units, settings)
     flipping: list[tuple[Flip, RateInterval]] = []
-    still: list[RateInterval] = []
+    stable: list[RateInterval] = []
     for motion in envelope.motions:
         rate = (problem.rates or {})[motion]
         flips, ends = [], []
@@ -254,13 +254,15 @@ def sensitivity(problem: Problem, **how: Unpack[How]) -> Sensitivity:
         if flips:
             flipping.append((min(flips), interval))
         else:
-            still.append(interval)
-    flipping.sort(key=lambda each: each[0])
-    nearest = [FirstFlip(each.motion, "above" if flip.above else "below") for flip, each in flipping[:1]]
+            stable.append(interval)
+    flipping.sort(key=lambda pair: pair[0])
+    nearest = [
+        FirstFlip(interval.motion, "above" if flip.above else "below") for flip, interval in flipping[:1]
+    ]
     return Sensitivity(
         **head,
         answer=answer,
-        intervals=(*(interval for _, interval in flipping), *still),
+        intervals=(*(interval for _, interval in flipping), *stable),
         others=tuple(sorted({*problem.network.motions}.difference(envelope.motions))),
         first=nearest[0] if nearest else None,
     )
@@ -269,10 +271,10 @@ def sensitivity(problem: Problem, **how: Unpack[How]) -> Sensitivity:
 def _end(best: Answer, end: End, flip: Flip | None) -> RateEnd:
     if flip is None or end.beyond is None:
         return RateEnd(end.proved, None, None)
-    tree, ours = costed_tree(best.problem, end.beyond, best.problem.costs(end.beyond)), best.units or ()
+    tree, best_units = costed_tree(best.problem, end.beyond, best.problem.costs(end.beyond)), best.units or ()
     gone, new = (
         tuple(step.id for step in steps_not_in(steps, others) if step.id is not None)
-        for steps, others in ((ours, tree.units), (tree.units, ours))
+        for steps, others in ((best_units, tree.units), (tree.units, best_units))
     )
     return RateEnd(
         end.proved,

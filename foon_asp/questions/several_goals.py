@@ -1,4 +1,4 @@
-"""Several goals of one tree: what each would cost by itself, and which units serve several of them."""
+"""Several goals of one tree: the optimum for each goal by itself, and the goals that each unit serves."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,18 +12,20 @@ from foon_asp.questions.answer import Alone, Answer, Serving, answered_under
 from foon_asp.results.values_of import node_of, nodes_of
 
 
-def with_goals_apart(answer: Answer, settings: Settings, asked: Problem) -> Answer:
-    """Return an answer for several goals with the optimum for each of them, and the goals of each unit.
+def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answer:
+    """Return an answer for several goals with the optimum for each goal, and the goals of each unit.
 
-    ``asked`` is the problem as it was posed, of which a large store reads what each goal needs.
+    ``posed`` is the problem as it was posed, of which a large store reads what each goal needs.
     """
     together, problem, objectives = answer.outcome, answer.problem, answer.objectives
-    if isinstance(asked, NearbyProblem):
-        single = asked.each_goal()
-        apart = [answered_under(each, objectives, settings, Reporter()).outcome for each in single]
+    if isinstance(posed, NearbyProblem):
+        single = posed.each_goal()
+        apart = [
+            answered_under(goal_problem, objectives, settings, Reporter()).outcome for goal_problem in single
+        ]
     else:
         single = [replace(problem, goals=(goal,)) for goal in problem.goals]
-        apart = [solve(each, objectives, settings, Reporter()) for each in single]
+        apart = [solve(goal_problem, objectives, settings, Reporter()) for goal_problem in single]
     if settings.constraints == () and settings.replaced is None:  # else goals may have rules of their own
         holds = Postconditions(problem, levels(objectives), settings)
         for goal, alone in zip(problem.goals, apart, strict=True):
@@ -43,7 +45,7 @@ def with_goals_apart(answer: Answer, settings: Settings, asked: Problem) -> Answ
 
 
 def _sum(apart: Sequence[Outcome], objective: Objective) -> int | Fraction | None:
-    """Return the sum of what trees cost (``success``: the product); ``None`` if one goal has no tree."""
+    """Return the summed costs of trees (``success``: the product); ``None`` if a goal has no tree."""
     total: int | Fraction = Fraction(1) if multiplies(objective) else 0
     for alone in apart:
         if alone.costs is None:

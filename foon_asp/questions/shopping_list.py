@@ -1,4 +1,4 @@
-"""What it would take: the cheapest things to add to the kitchen so that there is a tree."""
+"""Shopping lists: the cheapest items to add to the kitchen so that a tree exists."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,12 +24,12 @@ from foon_asp.problem.shop import Offer, Shop
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.arguments import Objectives, at_least, chosen_objectives, whole
 from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import TREE
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Value
 from foon_asp.results.values_of import head_of, node_as
 from foon_asp.text.json_value import schema_name
@@ -38,7 +38,7 @@ from foon_asp.text.line_parser import parse_name
 from foon_asp.text.table import Row
 from foon_asp.text.tables import PRICES
 
-_COMPARED = 30  # lists of one price whose trees are compared, at most
+_MAX_COMPARED = 30  # lists of one price whose trees are compared, at most
 
 _REMARKS = {
     Offer.CYCLE: "what is for sale is not enough: something from a cycle that feeds only itself is needed",
@@ -100,14 +100,14 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
 
     @property
     def ending(self) -> Ending:
-        """Done when every list is proved, and the tree to be the best."""
+        """``DONE`` if every list and the tree are proved optimal."""
         if not self.lists:
             return Ending.NEGATIVE if self.complete else Ending.LIMIT
-        proved = all(found.proved for found in self.lists)
+        proved = all(bought.proved for bought in self.lists)
         return Ending.DONE if proved and self.answer and self.answer.ending is Ending.DONE else Ending.LIMIT
 
-    def show(self) -> Iterator[Part]:
-        """Return the first list with what is known of each item, the other lists, and the tree."""
+    def show(self) -> Iterator[Block]:
+        """Return the first list with the consumers of each item, the other lists, and the tree."""
         yield from self.goal_lines()
         if not self.lists:
             yield self._none()
@@ -147,22 +147,22 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
     def _item_lines(self, item: Item) -> Iterator[str]:
         yield f"  {item}" + (f"    {_decimal(item.price)}" if self.offer is Offer.PRICED else "")
         steps = () if self.answer is None else self.answer.units or ()
-        takers = [step for step in steps if any(taken.node == item.node for taken in step.inputs)]
-        if takers:
-            yield f"      for {', '.join(f'{step.motion} [{step.source[0]}]' for step in takers)}"
+        consumers = [step for step in steps if any(used.node == item.node for used in step.inputs)]
+        if consumers:
+            yield f"      for {', '.join(f'{step.motion} [{step.source[0]}]' for step in consumers)}"
 
     def _others(self) -> str:
-        """Return what there is beside the lists shown."""
+        """Return a line on whether more lists exist."""
         if not self.complete:
             return "there are more lists than these: --lists finds more"
-        these = "this list" if len(self.lists) == 1 else "one of these lists"
+        shown = "this list" if len(self.lists) == 1 else "one of these lists"
         return (
-            f"that is all: any other set of things on offer that makes a tree possible holds all of {these}"
+            f"that is all: any other set of things on offer that makes a tree possible holds all of {shown}"
         )
 
-    def _price(self, found: ShoppingList) -> str:
-        things = counted(len(found.items), "object node")
-        return f"{things} for {_decimal(found.price)}" if self.offer is Offer.PRICED else things
+    def _price(self, bought: ShoppingList) -> str:
+        items = counted(len(bought.items), "object node")
+        return f"{items} for {_decimal(bought.price)}" if self.offer is Offer.PRICED else items
 
 
 @question(
@@ -190,7 +190,7 @@ def shopping_list(
     *,
     prices: Annotated[File | Mapping[str, Number] | None, Option(kind=Kind.FILE)] = None,
     lists: Annotated[int, Option(least=1)] = 3,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Shopping:
     """Find the fewest or cheapest object nodes to add to the kitchen so that a task tree exists.
 
@@ -218,13 +218,13 @@ def shopping_list(
         >>> shopping.answer.costs.units
         11
     """
-    chosen, settings = chosen_objectives(problem, objectives), settings_of(how)
-    most = at_least(lists, 1, "lists")
+    chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
+    max_lists = at_least(lists, 1, "lists")
     problem = whole(problem)
     deadline, reporter = settings.begun, caller().reporter
     priced = None if prices is None else _priced(problem, _listed(prices))
     program = assemble(settings, reporter.warning, problem=problem)
-    found: list[_Found] = []
+    priced_lists: list[_PricedList] = []
     complete = True
     made_of = (Offer.FOR_SALE, dict[int, Fraction]()) if priced is None else (Offer.PRICED, priced)
     try:
@@ -232,42 +232,44 @@ def shopping_list(
             shop = Shop(problem)
             offers = _for_sale(problem, shop) if priced is None else [made_of]
         for made_of in offers:
-            first = prepare(problem, chosen, settings, program, for_sale=made_of[1])
-            found, complete = _lists(first, shop, made_of[1], most, chosen != (Objective.UNITS,))
-            if found or not complete:
+            prepared = prepare(problem, chosen, settings, program, for_sale=made_of[1])
+            priced_lists, complete = _lists(
+                prepared, shop, made_of[1], max_lists, chosen != (Objective.UNITS,)
+            )
+            if priced_lists or not complete:
                 break
     except KeyboardInterrupt:
         deadline.interrupt()
         complete = False
     offer, wares = made_of
-    outcomes: list[tuple[_Found, Outcome]] = []
-    for each in found:
-        stocked = replace(problem, kitchen=problem.kitchen.union(each.items))
+    outcomes: list[tuple[_PricedList, Outcome]] = []
+    for candidate in priced_lists:
+        stocked = replace(problem, kitchen=problem.kitchen.union(candidate.items))
         outcome = solve(stocked, chosen, settings, Reporter() if outcomes else reporter)
         if outcome.status is Status.INFEASIBLE:
             _refuse_far_rules(program)
             raise BugError("the shopping list does not make a tree possible")
-        outcomes.append((each, outcome))
+        outcomes.append((candidate, outcome))
     if all(outcome.status is Status.OPTIMAL for _, outcome in outcomes):
-        outcomes.sort(key=lambda pair: _place(pair[0], pair[1], shop))
+        outcomes.sort(key=lambda pair: _sort_key(pair[0], pair[1], shop))
     return Shopping(
         **head_of(problem, chosen),
         offer=offer,
         lists=tuple(
             ShoppingList(
-                tuple(node_as(Item, problem.network, o, price=wares[o]) for o in each.items),
-                each.price,
-                each.proved,
+                tuple(node_as(Item, problem.network, o, price=wares[o]) for o in candidate.items),
+                candidate.price,
+                candidate.proved,
                 outcome.costs,
             )
-            for each, outcome in outcomes[:most]
+            for candidate, outcome in outcomes[:max_lists]
         ),
-        complete=complete and len(outcomes) <= most,
+        complete=complete and len(outcomes) <= max_lists,
         answer=Answer.of(outcomes[0][1], outcomes[0][0].items) if outcomes else None,
     )
 
 
-class _Found(NamedTuple):
+class _PricedList(NamedTuple):
     """A list by ids, its price, and whether it is proved that none is cheaper."""
 
     items: tuple[int, ...]
@@ -275,18 +277,18 @@ class _Found(NamedTuple):
     proved: bool
 
 
-def _place(
-    found: _Found, outcome: Outcome, shop: Shop
+def _sort_key(
+    candidate: _PricedList, outcome: Outcome, shop: Shop
 ) -> tuple[Fraction, int, int, tuple[int | Fraction, ...]]:
-    """Return what lists are ordered by: price, number, second choices, and the costs of the best tree."""
+    """Return the sort key of a list: price, number of items, second choices, costs of the best tree."""
     assert outcome.costs is not None
-    second = sum(map(shop.is_second_choice, found.items))
+    second = sum(map(shop.is_second_choice, candidate.items))
     costs = outcome.costs.key(levels(outcome.objectives))
-    return found.price, len(found.items), second, tuple(costs)
+    return candidate.price, len(candidate.items), second, tuple(costs)
 
 
 def _refuse_far_rules(program: Program) -> None:
-    """Raise :class:`UserError` for a rule that sees more units before it is settled what is bought."""
+    """Raise :class:`UserError` for a rule whose meaning depends on the items bought."""
     for rule in program.understood.rules if program.understood else ():
         if rule.further:
             raise UserError(
@@ -297,26 +299,26 @@ def _refuse_far_rules(program: Program) -> None:
 
 
 def _listed(prices: File | Mapping[str, Number]) -> list[Row[str | ObjectNode, Fraction]]:
-    """Read prices from a file, or as the lines of one are."""
+    """Return the rows of a price list, from a file or a mapping."""
     if isinstance(prices, str | PathLike):
         return PRICES.rows(Path(prices))
-    found = []
-    for number, (name, given) in enumerate(prices.items(), 1):
-        price = exact(given, f"the price of {name!r}")
+    rows = []
+    for number, (name, stated) in enumerate(prices.items(), 1):
+        price = exact(stated, f"the price of {name!r}")
         if price < 0:
-            raise UserError(f"found the price {given} of {name!r}, expected one from 0")
+            raise UserError(f"found the price {stated} of {name!r}, expected one from 0")
         try:
             named = parse_name(name)
         except LineError as error:
             raise UserError(
                 f"the name {name!r} of a price cannot be read: at column {error.column}, {error}"
             ) from None
-        found.append(Row(named, price, Source("prices", number)))
-    return found
+        rows.append(Row(named, price, Source("prices", number)))
+    return rows
 
 
 def _priced(problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]]) -> dict[int, Fraction]:
-    """Return the prices of the object nodes that a price list is about, but for those in the kitchen.
+    """Return the prices by object id of the nodes in a price list that are not in the kitchen.
 
     An entry that matches no node is warned of. A label alone stands for all of its nodes that would be for
     sale without prices.
@@ -325,55 +327,55 @@ def _priced(problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]])
     prices: dict[int, Fraction] = {}
     for entry in sorted(
         listed, key=lambda entry: not isinstance(entry.name, str)
-    ):  # whole nodes have the last word
+    ):  # entries with whole nodes override labels
         if isinstance(entry.name, str):
-            what = "no node for sale has this label"
-            found = [o for o in network.by_label.get(entry.name, ()) if shop.sells(o)]
+            fault = "no node for sale has this label"
+            objects = [o for o in network.by_label.get(entry.name, ()) if shop.sells(o)]
         else:
-            what = "no such object node"
-            known = network.object_id(entry.name)
-            found = [] if known is None else [known]
-        prices.update(dict.fromkeys(found, entry.value))
-        if not found:
+            fault = "no such object node"
+            object_id = network.object_id(entry.name)
+            objects = [] if object_id is None else [object_id]
+        prices.update(dict.fromkeys(objects, entry.value))
+        if not objects:
             node = ObjectNode(entry.name) if isinstance(entry.name, str) else entry.name
-            caller().reporter.warning(f"{entry.source}:{entry.source.column}: warning: {what}: {node}")
+            caller().reporter.warning(f"{entry.source}:{entry.source.column}: warning: {fault}: {node}")
     return {o: price for o, price in prices.items() if o not in problem.kitchen}
 
 
 def _for_sale(problem: Problem, shop: Shop) -> list[tuple[Offer, dict[int, Fraction]]]:
-    """Return what can be bought without a price list: each node counts one."""
+    """Return the offers without a price list: object ids with the price 1 each."""
     offers = shop.offers(dead_ends(problem).roots)
     return [(offer, dict.fromkeys(sold, Fraction(1))) for offer, sold in offers]
 
 
 def _lists(
-    first: Prepared, shop: Shop, wares: Mapping[int, Fraction], most: int, compared: bool
-) -> tuple[list[_Found], bool]:
-    """Find the cheapest lists from some wares, one run each; say whether there are no others.
+    prepared: Prepared, shop: Shop, wares: Mapping[int, Fraction], max_lists: int, compared: bool
+) -> tuple[list[_PricedList], bool]:
+    """Return the cheapest lists from ``wares``, one run each, and whether all lists are found.
 
-    Where trees are to be ``compared`` by more than their size, all lists of the last price come along.
+    If trees are ``compared`` by more than their size, all lists of the last price are found, too.
     """
-    if first.tree is None:
-        return [], not first.stopped
-    problem = first.problem
-    met = {*problem.goals, *(o for unit in first.units for o in problem.needs[unit])}
+    if prepared.tree is None:
+        return [], not prepared.stopped
+    problem = prepared.problem
+    met = {*problem.goals, *(o for unit in prepared.units for o in problem.needs[unit])}
     scale = math.lcm(*(price.denominator for price in wares.values()))
     sold = {o: price for o, price in wares.items() if o in met}
     if any(price * scale >= 2**31 for price in sold.values()):
         raise UserError("prices this far apart do not fit clingo, whose numbers have 32 bits")
     prices = {o: int(price * scale) for o, price in sold.items()}
-    more = write_for_sale(prices, filter(shop.is_second_choice, sold))
+    facts = write_for_sale(prices, filter(shop.is_second_choice, sold))
     encoding = question_encoding("shopping_list.lp")
-    lists: list[_Found] = []
-    while len(lists) < most or (
-        compared and len(lists) < _COMPARED and lists[-1].price == lists[most - 1].price
+    lists: list[_PricedList] = []
+    while len(lists) < max_lists or (
+        compared and len(lists) < _MAX_COMPARED and lists[-1].price == lists[max_lists - 1].price
     ):
-        ended = first.run(more, encodings=(encoding,), predicates=[("_buy", 1)])
+        ended = prepared.run(facts, encodings=(encoding,), predicates=[("_buy", 1)])
         if ended.units is not None:
             items = tuple(sorted(ended.atoms["_buy"]))
             price = sum((wares[o] for o in items), Fraction(0))
-            lists.append(_Found(items, price, ended.exhausted))
-            more += write_list(len(lists), items)
+            lists.append(_PricedList(items, price, ended.exhausted))
+            facts += write_list(len(lists), items)
         if ended.units is None or not ended.exhausted:
             return lists, ended.exhausted
         if not items:

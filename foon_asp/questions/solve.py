@@ -10,8 +10,8 @@ from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.questions.arguments import Objectives, chosen_objectives, constraint_weights, read, whole
-from foon_asp.questions.contract import TABLES, Kind, Option, Part, not_built, question
-from foon_asp.questions.how import How, settings_of
+from foon_asp.questions.common_options import CommonOptions, settings_of
+from foon_asp.questions.contract import TABLES, Kind, Option, Role, not_built, question
 from foon_asp.questions.options import ITEMS, SOFT, TREE
 from foon_asp.questions.result import Result
 from foon_asp.reduce import Reduction, parse_reductions
@@ -27,7 +27,7 @@ def solve_or_each(
     cross_check: bool = False,
     clingo_options: Sequence[str] = (),
     all_goals: bool = False,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Result:
     """Solve as ``foon-asp solve`` does: all goals by one tree, or each by itself."""
     if not all_goals:
@@ -39,7 +39,7 @@ def solve_or_each(
             certificate=certificate,
             cross_check=cross_check,
             clingo_options=clingo_options,
-            **how,
+            **options,
         )
     from foon_asp.questions.all_goals import solve_all_goals  # noqa: PLC0415
 
@@ -48,7 +48,7 @@ def solve_or_each(
             "--all-goals lists what each goal costs: ask for soft constraints, a certificate or a "
             "cross-check of one goal (--goal)"
         )
-    return solve_all_goals(problem, objectives, **how)
+    return solve_all_goals(problem, objectives, **options)
 
 
 @question(
@@ -58,7 +58,7 @@ def solve_or_each(
         "all_goals",
         "Solve every goal that --goal or the goals file names by itself, under each --objective by itself.",
         Kind.FLAG,
-        Part.PROBLEM | Part.QUESTION,
+        Role.PROBLEM | Role.QUESTION,
         default=False,
     ),
     formats=(*TABLES, "foon", "steps"),
@@ -108,12 +108,12 @@ def solve(
         ),
     ] = (),
     reporter: Reporter | None = None,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Answer:
     """Find the best task tree for the goals of a problem, and prove that no other is better.
 
     At a limit, or when interrupted, the answer is the best tree so far, with a bound on the best one. Under
-    ``soft`` constraints it is the best tree of those that pay least for the constraints they break.
+    ``soft`` constraints it is the best of the trees with the least penalty for broken constraints.
 
     Parameters:
         reductions: What reduces the network before the search: ``all``, ``none``, ``safe`` (all that keep
@@ -131,8 +131,8 @@ def solve(
 
     Returns:
         The answer, with its ``status``, ``costs``, ``units`` and ``tree``; under ``soft`` constraints it has
-        the ``penalty`` and in how many ways each is broken, too. Its ``certificate`` is ``None`` where none
-        was asked for or found.
+        the ``penalty`` and the number of ways in which each is broken, too. Its ``certificate`` is ``None``
+        unless one was requested and found.
 
     Raises:
         BugError: if a built-in engine finds a different optimum.
@@ -147,7 +147,7 @@ def solve(
         ['open', 'turn on', 'fill']
     """
     chosen = chosen_objectives(problem, objectives)
-    settings = settings_of(how)._replace(
+    settings = settings_of(options)._replace(
         reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
     )
     weights = constraint_weights(soft or {})
@@ -160,7 +160,8 @@ def solve(
         from foon_asp.questions.cross_check import cross_checked  # noqa: PLC0415
 
         problem, engines = whole(problem), find_engines()
-    several = soft is None and len(shown(problem).goals) > 1  # of a large store no more is read for that
+    # without reading more of a large store
+    has_several_goals = soft is None and len(shown(problem).goals) > 1
     if soft is not None:
         from foon_asp.questions.solve_soft import softly_answered  # noqa: PLC0415
 
@@ -171,7 +172,7 @@ def solve(
         answer = certified(problem, chosen, settings, certificate)
     else:
         answer = answered_under(problem, chosen, settings, reporter)
-    if several:
+    if has_several_goals:
         from foon_asp.questions.several_goals import with_goals_apart  # noqa: PLC0415
 
         answer = with_goals_apart(answer, settings, problem)

@@ -14,11 +14,11 @@ from foon_asp.rules.constraint import Constraint
 
 
 def softly_answered(
-    problem: Problem, objectives: Sequence[Objective], how: Settings, weights: Mapping[Constraint, int]
+    problem: Problem, objectives: Sequence[Objective], settings: Settings, weights: Mapping[Constraint, int]
 ) -> Answer:
     """Solve a problem under soft constraints with their weights."""
     who = caller()
-    outcome, penalty, constraints = find(whole(problem), objectives, how, weights, who.reporter)
+    outcome, penalty, constraints = find(whole(problem), objectives, settings, weights, who.reporter)
     if who.read_seconds is not None:
         outcome.seconds["read"] = who.read_seconds
     listed = tuple(

@@ -15,19 +15,18 @@ from foon_asp.foon import Foon, load
 from foon_asp.network import Network, counted, starting_kitchen
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
 from foon_asp.problem import ContainerRule, UsedUp, container_rule, needed_inputs
-from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import Limits, begin
+from foon_asp.questions.common_options import Limits, begin
+from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
 from foon_asp.questions.options import CONTAINERS, ITEMS
 from foon_asp.questions.posing import the_data
 from foon_asp.questions.result import Result
-from foon_asp.results.table import Part as Shown
-from foon_asp.results.table import Table
+from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Node, Unit, Value, step_lines
 from foon_asp.results.values_of import node_as, node_of, nodes_of, unit_of
 from foon_asp.text.data_folder import Data
 from foon_asp.text.json_value import schema_name
 
-_SHOWN = 10
+_MAX_SHOWN = 10  # rows of each list in the text
 
 # Heading, row name, and the figure of one level.
 _ROWS: tuple[tuple[str, str, Callable[[Statistics], object]], ...] = (
@@ -72,7 +71,7 @@ class FileUnits(Value, frozen=True):
 
 
 class StartingNodes(Value, frozen=True):
-    """What is taken to be available where no kitchen is given, at level 3.
+    """The object nodes assumed to be available without a kitchen, at level 3.
 
     Attributes:
         files: How many files of recipes there are.
@@ -101,7 +100,7 @@ class ObjectUnits(Value, frozen=True):
 
 
 class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
-    """What is in a network.
+    """The size of a network at each level.
 
     Attributes:
         units_read: How many units were read, copies included.
@@ -141,23 +140,26 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
         """
         network = data.network
         sources = [source for copies in network.sources for source in copies]
-        labels, objects = most_connected_labels(network, _SHOWN), most_connected_objects(network, _SHOWN)
+        labels, objects = (
+            most_connected_labels(network, _MAX_SHOWN),
+            most_connected_objects(network, _MAX_SHOWN),
+        )
         return cls(
             units_read=len(sources),
             copies=len(sources) - len(network),
-            files=tuple(FileUnits(*each) for each in Counter(source.file for source in sources).items()),
+            files=tuple(FileUnits(*pair) for pair in Counter(source.file for source in sources).items()),
             videos=tuple(dict.fromkeys(video for source in sources for video in source.videos)),
             reached_from="starting kitchen" if data.starting else "kitchen",
             starting_kitchen=_starting_nodes(network) if data.starting else None,
             levels=tuple(count_levels(data)),
-            most_connected_labels=tuple(LabelUnits(*each) for each in labels),
+            most_connected_labels=tuple(LabelUnits(*pair) for pair in labels),
             most_connected_objects=tuple(
                 ObjectUnits(node_of(network, o), *numbers) for o, *numbers in objects
             ),
         )
 
-    def show(self) -> Iterator[Shown]:
-        """Return a table with a column for each level, and what is most connected at level 3."""
+    def show(self) -> Iterator[Block]:
+        """Return a table with a column for each level, and the most connected labels and nodes."""
         places = f"{counted(len(self.files), 'file', ',')}, {counted(len(self.videos), 'source video', ',')}"
         yield f"{counted(self.units_read, 'unit', ',')} read from {places}"
         are = "is a copy of another" if self.copies == 1 else "are copies of others"
@@ -169,16 +171,17 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
             yield f"  what no unit makes: {counted(len(self.starting_kitchen.not_made), 'node', ',')}"
             yield f"  what units of the {files} also need: {counted(len(made), 'node', ',')}"
         yield from ("", "most connected labels: units with the label among their inputs or outputs")
-        yield from (f"  {each.units:>7,}  {each.label}" for each in self.most_connected_labels)
+        yield from (f"  {label.units:>7,}  {label.label}" for label in self.most_connected_labels)
         yield from ("", "most connected object nodes: units that need it, units that make it")
         for node in self.most_connected_objects:
             yield f"  {node.needed_by:>7,} {node.made_by:>7,}  {node.object}"
         if len(self.files) > 1:
-            most = sorted(self.files, key=lambda file: -file.units)[:_SHOWN]
+            largest = sorted(self.files, key=lambda file: -file.units)[:_MAX_SHOWN]
             yield from ("", "most units: files")
-            yield from (f"  {each.units:>7,}  {escaped(each.file)}" for each in most)
-        if len(self.files) > _SHOWN:
-            yield f"  ... and {counted(len(self.files) - _SHOWN, 'file', ',')} more; --format json lists all"
+            yield from (f"  {file.units:>7,}  {escaped(file.file)}" for file in largest)
+        if len(self.files) > _MAX_SHOWN:
+            others = counted(len(self.files) - _MAX_SHOWN, "file", ",")
+            yield f"  ... and {others} more; --format json lists all"
 
     def _table(self) -> Table:
         rows: list[Sequence[str] | str] = []
@@ -190,7 +193,7 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
             figures = [figure(statistics) for statistics in self.levels]
             shown = [f"{value:,}" if isinstance(value, int) else str(value) for value in figures]
             rows.append([f"  {name}" if group else name, *shown])
-        return Table(["at level", *(str(each.level) for each in self.levels)], rows, frozenset({0}))
+        return Table(["at level", *(str(level.level) for level in self.levels)], rows, frozenset({0}))
 
 
 class ExplainedInput(Node, frozen=True, kw_only=True):
@@ -206,7 +209,7 @@ class ExplainedInput(Node, frozen=True, kw_only=True):
 
 
 class ExplainedUnit(Unit, frozen=True):
-    """A unit, with what becomes of its inputs where that is asked."""
+    """A unit, with the fate of its inputs on request."""
 
     inputs: tuple[ExplainedInput, ...]
 
@@ -231,8 +234,8 @@ class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
     level: int
     units: tuple[ExplainedUnit, ...]
 
-    def show(self) -> Iterator[Shown]:
-        """Return the units, with what becomes of their inputs."""
+    def show(self) -> Iterator[Block]:
+        """Return the units, with the fate of their inputs."""
         for unit in self.units:
             yield from step_lines([unit])
             explained = [node for node in unit.inputs if node.why is not UNSET]
@@ -245,9 +248,9 @@ class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
     Option("units", "List the functional units instead of counting.", Kind.FLAG),
     Option("unit", "List this unit only, by its id.", Kind.WHOLE, many=True, metavar="ID"),
     Option("explain_items", "List units, and say of each input why it stays or is used up.", Kind.FLAG),
-    CONTAINERS._replace(part=Part.QUESTION),
+    CONTAINERS._replace(role=Role.QUESTION),
     ITEMS[2]._replace(
-        help="Labels and object nodes that stay, or are used up, whatever the rule says.", part=Part.QUESTION
+        help="Labels and object nodes that stay, or are used up, whatever the rule says.", role=Role.QUESTION
     ),
     formats=TABLES,
     help_="""
@@ -275,7 +278,7 @@ def stats(
     explain_items: bool = False,
     containers: str = "strict",
     stays: Stays | None = None,
-    **how: Unpack[Limits],
+    **limits: Unpack[Limits],
 ) -> Stats | ListedUnits:
     """Count what is in a network at each level of detail, or list its functional units.
 
@@ -300,7 +303,7 @@ def stats(
         ['       faucet; off  (used up)', '     → faucet; on']
     """
     explains = explain_items or stays is not None
-    with begin(how).watched("counting"):
+    with begin(limits).watched("counting"):
         dataset = (foon if isinstance(foon, Foon) else load(foon)).dataset
         if units or unit or explains:
             return _listed(dataset, tuple(dict.fromkeys(unit)), container_rule(containers), explains, stays)
@@ -310,11 +313,11 @@ def stats(
 def _listed(
     dataset: Dataset, numbers: Sequence[int], rule: ContainerRule, explains: bool, stays: Stays | None
 ) -> ListedUnits:
-    """Return the units that have some ids, or all; and what becomes of their inputs where that is asked."""
+    """Return the units with the given ids, or all; if ``explains``, with the fate of their inputs."""
     items = items_of(dataset, "used-up", None, stays) if explains else None
     network = (dataset.part((), numbers)[0] if numbers else dataset.data).network
-    found = [network.unit_of_number(number) for number in numbers]
-    ids = [u for u in found if u is not None] if numbers else range(len(network))
+    unit_ids = [network.unit_of_number(number) for number in numbers]
+    ids = [u for u in unit_ids if u is not None] if numbers else range(len(network))
     listed = tuple(_explained(network, u, rule, dataset.utensils, items) for u in ids)
     return ListedUnits(containers=rule, level=network.level, units=listed)
 

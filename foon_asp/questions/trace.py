@@ -1,4 +1,4 @@
-"""What is in the kitchen after each step of a plan, and how to go on from there."""
+"""The kitchen after each step of a plan, and replanning from there."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -16,14 +16,14 @@ from foon_asp.problem import Problem, UsedUp
 from foon_asp.proof.replay import Replay, replay_for, replayable
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Objectives, chosen_objectives, read_as
-from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.how import Posed, begin
+from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
 from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
-from foon_asp.results.document import AboutGoals, Known
-from foon_asp.results.table import Part as Shown
+from foon_asp.results.document import AboutGoals, Unserialized
+from foon_asp.results.table import Block
 from foon_asp.results.values import Copies, Copy, Unit, Value, changed_motions
 from foon_asp.results.values_of import copies_of, copy_of, head_of, lack_of
 from foon_asp.text.json_value import schema_name
@@ -31,18 +31,18 @@ from foon_asp.text.writer import write_node
 from foon_asp.whole_file import utf_8, write_whole
 
 States = tuple[dict[ObjectNode, int], ...]
-"""How many copies there are of what can run out: in the beginning, and after each step."""
+"""The number of copies of each consumable object node, initially and after each step."""
 
 
 class TracedStep(Value, frozen=True):
-    """What a step does to the kitchen.
+    """The effects of a step on the kitchen.
 
     Attributes:
         step: The number of the step, from 1.
         gone: The copies that it uses up.
         stayed: The copies that it needs and leaves there.
         came: The copies that it makes.
-        there: What is there after the step, but for what never runs out.
+        there: The copies after the step of each consumable object node.
     """
 
     step: int
@@ -54,13 +54,13 @@ class TracedStep(Value, frozen=True):
 
 
 class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
-    """What came and what went at each step of a plan, and how to go on from a step that failed.
+    """The copies added and used up by each step of a plan, and the best way on from a failed step.
 
     Attributes:
         executed: The steps that ran.
         stopped: What stops the plan, if anything does.
         failed: The step that failed, from 1.
-        answer: The best plan from what is there before the step that failed.
+        answer: The best plan from the kitchen before the step that failed.
 
     Example:
         >>> problem = foon_asp.load().problem("ice", items="used-up")
@@ -80,11 +80,11 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
     failed: int | None
     answer: Answer | None
 
-    plan = Known[Tree]()
+    plan = Unserialized[Tree]()
     """The plan that was traced."""
 
-    states = Known[States]()
-    """How many copies there are of what can run out: in the beginning, and after each step."""
+    states = Unserialized[States]()
+    """The number of copies of each consumable object node, initially and after each step."""
 
     @property
     def ending(self) -> Ending:
@@ -94,7 +94,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         return Ending.DONE if self.stopped is None else Ending.NEGATIVE
 
     def copies(self, after: int) -> dict[ObjectNode, int]:
-        """Return how many copies there are after a step, but for what never runs out.
+        """Return the number of copies of each consumable object node after a step.
 
         Parameters:
             after: The number of steps that were done, from 0.
@@ -110,7 +110,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         return self.states[after]
 
     def kitchen_text(self, after: int) -> str:
-        """Return the kitchen after a step as FOON text: each object node that is there, once.
+        """Return the kitchen after a step as FOON text: each available object node once.
 
         Parameters:
             after: The number of steps that were done, from 0.
@@ -128,8 +128,8 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         """
         return "".join(write_node(node) * n for node, n in self.copies(after).items())
 
-    def show(self) -> Iterator[Shown]:
-        """Return the steps with what goes and what comes, and what is there in the end."""
+    def show(self) -> Iterator[Block]:
+        """Return the steps with consumed and added copies, and the final kitchen."""
         done = len(self.executed) if self.failed is None else self.failed - 1
         for step in self.executed[:done]:
             yield f"{step.step:>3}  {step.unit.motion}    [{step.unit.source[0]}]"
@@ -147,12 +147,12 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
                 yield OTHER_READING
 
     def _change(self, answer: Answer) -> str:
-        """Return in words how the new plan differs from what was left of the old one."""
+        """Return in words the differences between the new plan and the rest of the old one."""
         assert self.failed is not None
         if answer.tree is None:
             return "no plan was found"
-        left, new = Counter(self.plan.units[self.failed - 1 :]), Counter(answer.tree.units)
-        changes = changed_motions((left - new).elements(), (new - left).elements())
+        remaining, new = Counter(self.plan.units[self.failed - 1 :]), Counter(answer.tree.units)
+        changes = changed_motions((remaining - new).elements(), (new - remaining).elements())
         if not changes:
             return "what was left of the plan is still the best"
         return f"compared with what was left of the plan: {changes}"
@@ -167,12 +167,12 @@ def _states(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]
     stock = _stock(problem)
     counts = Counter({node: n for node, n in stock.items() if problem.at_hand(node)})
     changes = [((), ()), *((step.came, step.gone) for step in replay.steps)]
-    for came, gone in changes:
-        for copies, sign in ((came, 1), (gone, -1)):
+    for added, consumed in changes:
+        for copies, sign in ((added, 1), (consumed, -1)):
             for copy in copies:
                 if copy.node in stock or not problem.at_hand(copy.node):
                     counts[copy.node] += sign
-        yield {node: n for node, n in sorted(counts.items(), key=lambda each: str(each[0])) if n}
+        yield {node: n for node, n in sorted(counts.items(), key=lambda pair: str(pair[0])) if n}
 
 
 def _trace_and_write(
@@ -184,12 +184,12 @@ def _trace_and_write(
     after: int | None = None,
     kitchen_file: Path | None = None,
     stock_file: Path | None = None,
-    **asked: Any,
+    **options: Any,
 ) -> Traced:
     """Trace as ``foon-asp trace`` does, and write the kitchen and the stock of a step."""
     if after is not None and failed is not None and after != failed - 1:
         raise UserError(f"if step {failed} failed, {failed - 1} steps were done: leave --after out")
-    traced = trace(problem, plan, objectives, failed=failed, **asked)
+    traced = trace(problem, plan, objectives, failed=failed, **options)
     done = len(traced.executed) if after is None else after
     done = done if failed is None else failed - 1
     if kitchen_file is not None:
@@ -204,7 +204,7 @@ def _trace_and_write(
         "plan",
         "The plan: FOON text, or an answer in JSON.",
         Kind.FILE,
-        Part.PROBLEM,
+        Role.PROBLEM,
         metavar="PLAN",
         positional=True,
     ),
@@ -248,7 +248,7 @@ def trace(
     *,
     failed: Annotated[int | None, Option(metavar="N", least=1)] = None,
     items: str = "used-up",
-    **how: Unpack[Posed],
+    **options: Unpack[Posed],
 ) -> Traced:
     """Return what is in the kitchen after each step of a plan, and plan anew if a step fails.
 
@@ -283,12 +283,12 @@ def trace(
         if not 1 <= failed <= len(replay.steps):
             last = len(replay.steps)
             raise UserError(f"found the step {failed}, expected one up to which the plan runs: 1 to {last}")
-        limits = Settings(deadline=begin(how))
+        limits = Settings(deadline=begin(options))
         answer = answered(_from_here(problem, states[failed - 1]), chosen, limits)
     executed = []
     for number, step in enumerate(replay.steps, 1):
         gone, stayed, came = (
-            tuple(copy_of(network, copy) for copy in side) for side in (step.gone, step.stayed, step.came)
+            tuple(copy_of(network, copy) for copy in copies) for copies in (step.gone, step.stayed, step.came)
         )
         unit = tree.step_unit(number)
         executed.append(TracedStep(number, unit, gone, stayed, came, copies_of(network, states[number])))
@@ -303,11 +303,11 @@ def trace(
 
 
 def _from_here(problem: Problem, copies: dict[ObjectNode, int]) -> Problem:
-    """Return a problem whose kitchen is what is there."""
+    """Return a problem whose kitchen holds the given copies."""
     whole = problem.whole
     network = whole.network
-    there = {o for node in copies if (o := network.object_id(node)) is not None}
+    present = {o for node in copies if (o := network.object_id(node)) is not None}
     if whole.items is None:
-        return replace(whole, kitchen=whole.kitchen | there, origin=None)
+        return replace(whole, kitchen=whole.kitchen | present, origin=None)
     items = UsedUp(whole.items.told, copies)
-    return replace(whole, kitchen=whole.endless | there, items=items, origin=None)
+    return replace(whole, kitchen=whole.endless | present, items=items, origin=None)

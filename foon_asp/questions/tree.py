@@ -1,4 +1,4 @@
-"""Task trees that know what they are for, and show themselves."""
+"""Task trees with the problem that they are for, as text and pictures."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ from foon_asp.text.diagnostics import summarize
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_units
 
-if TYPE_CHECKING:  # what a tree that is not drawn can do without
+if TYPE_CHECKING:  # only drawings need it
     from foon_asp.pictures.drawing import Drawing
 
 OTHER_READING = "if what is there can be used again: --items lasting"
@@ -89,7 +89,7 @@ class Tree(TaskTree):
             UserError: for a file that is not understood or has no tree.
         """
         listed, _ = read_listed(Path(file), lambda: problem.whole.network)
-        return cls.given(problem, [unit for unit, _ in listed], [place for _, place in listed])
+        return cls.given(problem, [unit for unit, _ in listed], [source for _, source in listed])
 
     @property
     def ids(self) -> tuple[int, ...]:
@@ -104,7 +104,7 @@ class Tree(TaskTree):
         return f"<Tree for {self._goals()}: {counted(len(self), 'unit')}>"
 
     def lack_text(self, lack: Lack) -> str:
-        """Return in words which copy is missing, at which step, and which steps used up those there were.
+        """Return in words the missing copy, the step that needs it, and the steps that used up the copies.
 
         Parameters:
             lack: The copy that is missing.
@@ -125,8 +125,8 @@ class Tree(TaskTree):
             order: The positions of the units, from 0, in the new order.
         """
         order = tuple(order)
-        places = tuple(self.places[place] for place in order)
-        return Tree(tuple(self.units[place] for place in order), self.problem, places)
+        places = tuple(self.places[index] for index in order)
+        return Tree(tuple(self.units[index] for index in order), self.problem, places)
 
     def step_unit(self, position: int) -> Unit:
         """Return the unit of a step as a value, which the network of the problem may have or not.
@@ -145,14 +145,14 @@ class Tree(TaskTree):
         return f"{self.units[position - 1].motion}    [{self.places[position - 1].short}]"
 
     def drawing(self) -> "Drawing":
-        """Return what the picture shows; units of a tree without a claim are numbered as they execute."""
+        """Return the drawing; units of a tree without a claim are numbered as they execute."""
         from foon_asp.pictures.tree_drawing import plan_drawing, tree_drawing  # noqa: PLC0415
         from foon_asp.questions.used_up_note import used_up_note  # noqa: PLC0415
 
         if self.problem.items is not None:
             return plan_drawing(self.problem, self.units, caption=self.claim)
         network = self.problem.network
-        met = {node for unit in self.units for side in (unit.inputs, unit.outputs) for node in side}
+        met = {node for unit in self.units for nodes in (unit.inputs, unit.outputs) for node in nodes}
         kitchen = {node for node in met.union(self.problem.goal_nodes) if self.problem.at_hand(node)}
         goals = self.problem.goal_nodes
         rule, utensils = self.problem.containers, self.problem.utensils
@@ -175,7 +175,7 @@ class Tree(TaskTree):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Return what a notebook shows: the picture."""
+        """Return the notebook display by media type: the picture."""
         from foon_asp.pictures.notebook import picture_bundle  # noqa: PLC0415
 
         return picture_bundle(self, self.drawing())
@@ -191,17 +191,17 @@ def posed_tree(problem: Problem, tree: str | PathLike[str] | Iterable[Functional
 def read_listed(
     file: Path, network: Callable[[], Network]
 ) -> tuple[Sequence[tuple[FunctionalUnit, Source]], Sequence[ObjectNode]]:
-    """Read the units of a tree with their places in the order listed, and the goals, which an answer knows.
+    """Read the units of a tree in the order listed, with their places, and the goals, which an answer has.
 
-    ``network`` is called where the file has ids, and returns the network that these are of.
-    Who asks hears of what was assumed. Raises :class:`UserError` as :meth:`Tree.read`.
+    ``network`` is called if the file has ids, and returns the network that the ids refer to. Assumptions are
+    warnings to the caller. Raises :class:`UserError` as :meth:`Tree.read`.
     """
     listed = read_answer(file).with_units(file, network)
     return listed.units or (), listed.goals
 
 
 def read_answer(file: Path) -> ListedTree:
-    """Read the same, and whatever else an answer knows; there are units, if not always any."""
+    """Read the units as :func:`read_listed` does, and the other fields of an answer."""
     who = caller()
     reader = FoonReader(who.lenient)
     listed = read_listed_tree(file, reader)

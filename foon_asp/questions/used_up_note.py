@@ -19,9 +19,9 @@ def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
     run = used_up_run(problem, units)
     if run.shortage is None or not run.shortage.taken:
         return []
-    said = _lack_text(problem, units, run.shortage)
-    said += "" if run.proved else ", and no other order was found"
-    return [f"note: {said}: with each item used once, see --items used-up"]
+    text = _lack_text(problem, units, run.shortage)
+    text += "" if run.proved else ", and no other order was found"
+    return [f"note: {text}: with each item used once, see --items used-up"]
 
 
 def _lack_text(problem: Problem, units: Sequence[FunctionalUnit], lack: Shortage) -> str:

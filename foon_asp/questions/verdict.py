@@ -1,4 +1,4 @@
-"""Whether a tree executes, in which order, and what stops it: as values, and in words."""
+"""The verdict of a simulation, as values and in words: the order that executes, or the obstacle."""
 
 from collections.abc import Iterator
 from typing import TypedDict
@@ -16,7 +16,7 @@ from foon_asp.results.values_of import named_node, used_up_of
 
 
 class Stop(Value, frozen=True):
-    """What stops the steps of a tree.
+    """The obstacle that stops the steps of a tree.
 
     Attributes:
         position: The first step that cannot be done, from 1; null where a goal is missing in the end.
@@ -34,7 +34,7 @@ class Stop(Value, frozen=True):
 
     @classmethod
     def of(cls, tree: Tree, obstacle: Obstacle | None) -> "Stop | None":
-        """Return what stops a tree as a value, if anything does."""
+        """Return the obstacle of a tree as a value; ``None`` without one."""
         if obstacle is None:
             return None
         position = None if obstacle.unit is None else obstacle.unit + 1
@@ -42,13 +42,13 @@ class Stop(Value, frozen=True):
             position,
             None if position is None else tree.step_unit(position),
             named_node(tree.problem.network, obstacle.missing),
-            tuple(place + 1 for place in obstacle.cycle),
-            tuple(place + 1 for place in obstacle.used_up_by) or UNSET,
+            tuple(index + 1 for index in obstacle.cycle),
+            tuple(index + 1 for index in obstacle.used_up_by) or UNSET,
         )
 
 
-class Found(TypedDict):
-    """What a simulation found; ``None`` where there is no tree."""
+class SimulationFields(TypedDict):
+    """Fields of a result about a simulation; ``None`` without a tree."""
 
     verdict: Verdict
     as_listed: Stop | None
@@ -57,8 +57,8 @@ class Found(TypedDict):
     used_up: UsedUpRun | None
 
 
-def found_of(tree: Tree, simulation: Simulation) -> Found:
-    """Return what the simulation of a tree found, as fields of a result."""
+def found_of(tree: Tree, simulation: Simulation) -> SimulationFields:
+    """Return the simulation of a tree as fields of a result."""
     return {
         "verdict": simulation.verdict,
         "as_listed": Stop.of(tree, simulation.as_listed),
@@ -69,7 +69,7 @@ def found_of(tree: Tree, simulation: Simulation) -> Found:
 
 
 def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
-    """Return lines that say whether a tree executes, in which order, and what stops it."""
+    """Return lines with the verdict: the order that executes, or the obstacle."""
     problem, verdict = tree.problem, simulation.verdict
     yield f"{verdict} ({problem.conditions})"
     for order, obstacle in (("as listed", simulation.as_listed), ("in any order", simulation.obstacle)):
@@ -88,7 +88,7 @@ def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
         yield f"{repeated} of the {len(tree)} listed units {count} once"
     if verdict is Verdict.REORDERED:
         yield "an order that executes:"
-        yield from (f"  {place + 1:>3}  {tree.step_text(place + 1)}" for place in simulation.order)
+        yield from (f"  {index + 1:>3}  {tree.step_text(index + 1)}" for index in simulation.order)
 
 
 def _obstacle_text(tree: Tree, obstacle: Obstacle) -> str:

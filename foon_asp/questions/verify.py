@@ -1,4 +1,4 @@
-"""Is a certificate right? Without any solver."""
+"""Verification of certificates without any solver."""
 
 from codecs import BOM_UTF8
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -18,21 +18,21 @@ from foon_asp.proof import verify as proof
 from foon_asp.proof.constraint import OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.certificate_text import bound_text, looked_at, trusted_text
-from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.how import Limits, begin
+from foon_asp.questions.common_options import Limits, begin
+from foon_asp.questions.contract import Kind, Option, Role, question
 from foon_asp.questions.posing import DATA, Command, the_data
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
-from foon_asp.results.table import Part as Shown
+from foon_asp.results.table import Block
 from foon_asp.results.values import Measures
 from foon_asp.results.values_of import goals_of, nodes_of
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.plain_file import read_beginning
 
-if TYPE_CHECKING:  # the solver and the linear programs, which this has to do without
+if TYPE_CHECKING:  # takes the solver and linear programs along, which `verify` must not load
     from foon_asp.certificate import Certificate
 
-_SECONDS = 60.0  # for what clingo checks
+_SECONDS = 60.0  # time limit of each check by clingo
 _NAMED_BY = {
     "network": "--network FILE",
     "kitchen": "--kitchen FILE",
@@ -45,11 +45,11 @@ _NAMED_BY = {
 
 
 class OtherDataError(proof.RefusedError):
-    """The certificate is about other data than those named; ``part`` is what differs."""
+    """The certificate is about other data than those named; ``differing`` names the digest that differs."""
 
-    def __init__(self, part: str, message: str) -> None:
+    def __init__(self, differing: str, message: str) -> None:
         super().__init__(message)
-        self.part = part
+        self.differing = differing
 
 
 class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("verify")):
@@ -62,9 +62,9 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         bound: The bound in words, or null.
         costs: What the tree costs by the objectives of the claim; null without a tree.
         rules: The ready-made constraints that the claim is about, with their values.
-        trusted: What is taken on trust, in words: what measures and rules of the user's own say, and digests
-            that a store states.
-        checked: What clingo checked of it.
+        trusted: The assumptions in words: about user-defined measures and rules, and digests that a store
+            states.
+        checked: The assumptions that clingo checked.
         not_covered: The constraints that the claim is not about.
         tree: The units of the tree, by id; null without a tree.
         proved_by: How many cuts the proof has, and of plans the balance of how many nodes.
@@ -103,27 +103,26 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         starting: Sequence[int] | None = None,
         stated: Sequence[str] = (),
     ) -> Self:
-        """Return what was verified of a certificate about a network.
+        """Return the verified claim of a certificate about a network.
 
         Parameters:
-            verified: What was verified.
-            network: The network.
+            verified: The verified claim.
+            network: The network of the claim.
             content: The certificate as plain values.
             with_clingo: Whether clingo checked what is otherwise taken on trust.
             starting: The object nodes that can be needed, by id, where no kitchen was given.
             stated: The digests that were not computed, because a store states them.
         """
-        own, items = proof.trusted(content), verified.used_up
-        said = [] if own is None else [trusted_text(own, verified.tree is not None)]
-        for each in verified.trusted:
-            costs = (
-                f"the costs of {counted(len(each.costs), 'unit')} by {each.name}, and that none is below 0"
-            )
-            said.append(f"{costs}; rules with SHA-256 {each.sha256}")
-        trusted = () if with_clingo else [f"{each} (--with-clingo checks it)" for each in said]
+        user_rules, items = proof.trusted(content), verified.used_up
+        claims = [] if user_rules is None else [trusted_text(user_rules, verified.tree is not None)]
+        for measure in verified.trusted:
+            units = counted(len(measure.costs), "unit")
+            costs = f"the costs of {units} by {measure.name}, and that none is below 0"
+            claims.append(f"{costs}; rules with SHA-256 {measure.sha256}")
+        trusted = () if with_clingo else [f"{claim} (--with-clingo checks it)" for claim in claims]
         names = f"{', '.join(stated[:-1])} and {stated[-1]}" if len(stated) > 1 else "".join(stated)
         digests = [f"the digests of {names} that the store states (--full computes them)"] if stated else []
-        objectives = parse_objectives(verified.objectives, [each.name for each in verified.trusted])
+        objectives = parse_objectives(verified.objectives, [measure.name for measure in verified.trusted])
         return cls(
             goals=goals_of(network, verified.goals),
             containers=ContainerRule(verified.containers),
@@ -137,15 +136,15 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
             costs=None if verified.costs is None else dict(zip(objectives, verified.costs, strict=True)),
             rules=tuple(_rule_text(rule) for rule in verified.rules if rule["rule"] != OWN),
             trusted=(*trusted, *digests),
-            checked=tuple(said) if with_clingo else (),
+            checked=tuple(claims) if with_clingo else (),
             not_covered=verified.not_covered,
             tree=verified.tree,
             proved_by=looked_at(content),
             used_up=None if items is None else tuple(_items_lines(items, network)),
         )
 
-    def show(self) -> Iterator[Shown]:
-        """Return the goals, the claim, and what it rests on."""
+    def show(self) -> Iterator[Block]:
+        """Return the goals, the claim, and its assumptions."""
         yield from (f"goal: {goal}" for goal in self.goals)
         tree, trees = ("task tree", "trees") if self.items == "lasting" else ("plan", "plans")
         under = self.conditions
@@ -161,8 +160,8 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
             yield f"verified: no {tree} is better by {', then '.join(self.objectives)} ({under}): {figures}"
         yield from (f"among the {trees} that keep to {rule}" for rule in self.rules)
         yield from (f"not covered, so among all {trees}: {name}" for name in self.not_covered)
-        yield from (f"taken on trust: {said}" for said in self.trusted)
-        yield from (f"checked with clingo: {said}" for said in self.checked)
+        yield from (f"taken on trust: {claim}" for claim in self.trusted)
+        yield from (f"checked with clingo: {claim}" for claim in self.checked)
         yield f"proof: {self.proved_by}, checked without a solver"
 
 
@@ -182,7 +181,7 @@ class Refused(Result, frozen=True, kw_only=True, tag=schema_name("refused")):
         """The check failed."""
         return Ending.NEGATIVE
 
-    def show(self) -> Iterator[Shown]:
+    def show(self) -> Iterator[Block]:
         """Return the reason."""
         yield f"refused: {self.reason}"
 
@@ -191,39 +190,39 @@ def _items_lines(used_up: proof.UsedUp, network: Network) -> Iterator[str]:
     nodes = network.objects
     if used_up.stock:
         yield "in stock: " + ", ".join(f"{copies} x {nodes[o]}" for o, copies in used_up.stock.items())
-    for stays, said in ((True, "stay"), (False, "be used up")):
-        named = [name for name, each in used_up.stays.items() if each is stays]
+    for stays, verb in ((True, "stay"), (False, "be used up")):
+        named = [name for name, name_stays in used_up.stays.items() if name_stays is stays]
         if named:
             names = (name if isinstance(name, str) else str(nodes[name]) for name in named)
-            yield f"said to {said}: {', '.join(names)}"
+            yield f"said to {verb}: {', '.join(names)}"
 
 
 def _rule_text(rule: Rule) -> str:
-    """Return a rule with its values; a line end in one could say what was verified."""
+    """Return a rule with its values, escaped: a line end in a value could forge a claim."""
     values = {name: value if isinstance(value, list) else [value] for name, value in rule.items()}
-    given = (f"{name}: {', '.join(map(str, value))}" for name, value in values.items() if name != "rule")
-    return escaped(f"{rule['rule']} ({'; '.join(given)})")
+    parameters = (f"{name}: {', '.join(map(str, value))}" for name, value in values.items() if name != "rule")
+    return escaped(f"{rule['rule']} ({'; '.join(parameters)})")
 
 
 def _figure(objective: str, cost: int | Fraction | None) -> str:
     return f"success {cost} ≈ {float(cost or 0):.4g}" if objective == "success" else f"{cost} {objective}"
 
 
-def _posed(command: Command, more: Sequence[Path]) -> tuple[Foon | Problem]:
+def _posed(command: Command, data_paths: Sequence[Path]) -> tuple[Foon | Problem]:
     """Pose the data that are named, or the relaxation of a planning task."""
-    if not any(map(_is_task, more)):
-        command.add_sources(more)
+    if not any(map(_is_task, data_paths)):
+        command.add_sources(data_paths)
         return the_data(command)
     if any(map(command.given, DATA)):
         raise UserError("found options for data beside a planning task: a certificate is about one of them")
     from foon_asp.planning.task_files import read_task  # noqa: PLC0415 (it loads clingo)
 
     with command.reading():
-        return (read_task(more, begin({})).problem(),)
+        return (read_task(data_paths, begin({})).problem(),)
 
 
 def _is_task(file: Path) -> bool:
-    """Whether a file is of a planning task; FOON and JSON begin otherwise."""
+    """Return whether a file is of a planning task, by its first bytes."""
     from foon_asp.planning.sas_reader import BEGINNING  # noqa: PLC0415 (for few certificates)
 
     begins = read_beginning(file, 100).removeprefix(BOM_UTF8).lstrip()
@@ -231,7 +230,7 @@ def _is_task(file: Path) -> bool:
 
 
 def _are_facts(names: Iterable[str]) -> bool:
-    """Return whether names of goals are of facts of a planning task, which are written in parentheses."""
+    """Return whether goals are facts of a planning task, whose names are in parentheses."""
     return all(name.startswith("(") and name.endswith(")") for name in names)
 
 
@@ -251,7 +250,9 @@ def verify_or_refuse(
     try:
         return verify(data, certificate, with_clingo=with_clingo, full=full, **limits)
     except OtherDataError as other:
-        raise UserError(f"{certificate} is about other data ({other}): add {_NAMED_BY[other.part]}") from None
+        raise UserError(
+            f"{certificate} is about other data ({other}): add {_NAMED_BY[other.differing]}"
+        ) from None
     except proof.RefusedError as refused:
         return Refused(verified=False, reason=str(refused))
 
@@ -261,11 +262,11 @@ def verify_or_refuse(
         "certificate", "The file with the certificate.", Kind.FILE, metavar="CERTIFICATE", positional=True
     ),
     Option(
-        "more",
+        "data_paths",
         "The data: recipes, a folder or a store; or the planning task that `foon-asp relax` was asked about, "
         "DOMAIN.pddl PROBLEM.pddl or TASK.sas.",
         Kind.FILE,
-        Part.PROBLEM,
+        Role.PROBLEM,
         default=(),
         many=True,
         metavar="[RECIPE|DIR|STORE|TASK]...",
@@ -293,12 +294,12 @@ def verify(
     *,
     with_clingo: Annotated[bool, Option()] = False,
     full: Annotated[bool, Option()] = False,
-    **how: Unpack[Limits],
+    **limits: Unpack[Limits],
 ) -> VerifiedCertificate:
     """Check a certificate against the data it is about, without any solver.
 
-    What units cost by a measure of the user's own is taken on trust, and so is what rules of the user's own
-    say: ``trusted`` says it in words.
+    The costs of units by user-defined measures, and the meaning of user rules, are taken on trust:
+    ``trusted`` names these assumptions.
 
     Parameters:
         data: The data, as loaded, or a problem made from them.
@@ -334,33 +335,33 @@ def verify(
         raise UserError(
             f"found a certificate of type {type(certificate).__name__}, expected a path or that of an answer"
         )
-    with begin(how).watched("checking the certificate"):
+    with begin(limits).watched("checking the certificate"):
         return _verified(data if isinstance(data, Foon) else Foon.of(data), content, with_clingo, full)
 
 
 def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool) -> VerifiedCertificate:
-    """Return what the content of a certificate proves about data."""
+    """Return the claim that a certificate proves about data."""
     dataset = foon.dataset
     subject = dataset.subject(full or _looks_at_all(content), _goal_ids(content))
     try:
         verified = verify_any(content, subject)
     except proof.RefusedError as refused:
-        part = _other_part(content, subject)
-        if part is None:
+        differing = _other_part(content, subject)
+        if differing is None:
             raise
-        raise OtherDataError(part, str(refused)) from None
+        raise OtherDataError(differing, str(refused)) from None
     for measure in verified.trusted:
-        ours = dataset.measures.get(measure.name)
-        if ours is not None and ours.text != measure.rules:
+        known_measure = dataset.measures.get(measure.name)
+        if known_measure is not None and known_measure.text != measure.rules:
             raise proof.RefusedError(f"the rules of {measure.name} are not those that are given")
-    own = proof.trusted(content)
-    if with_clingo and (verified.trusted or own is not None):
+    user_rules = proof.trusted(content)
+    if with_clingo and (verified.trusted or user_rules is not None):
         problem = dataset.problem(verified.goals, verified.containers, everything=True)
         _check_with_clingo(problem, verified)
-        if own is not None:
+        if user_rules is not None:
             from foon_asp.certificate.own_rules import check_with_clingo  # noqa: PLC0415 (the solver)
 
-            check_with_clingo(content, own, problem, Deadline(_SECONDS))
+            check_with_clingo(content, user_rules, problem, Deadline(_SECONDS))
     starting = None
     if not subject.trusted and dataset.data.starting:
         starting = kitchen_needed(dataset.problem(verified.goals, verified.containers, everything=True))
@@ -372,25 +373,27 @@ def _other_part(content: Any, subject: proof.Subject) -> str | None:
 
     It is ``task`` for a certificate about a planning task.
     """
-    with suppress(RecursionError, KeyError, TypeError, AttributeError):  # of what is no certificate
+    with suppress(RecursionError, KeyError, TypeError, AttributeError):  # the content is no certificate
         if content["seal"] == proof.seal(content):
-            found = {"level": subject.network.level, **subject.digests()}
+            actual = {"level": subject.network.level, **subject.digests()}
             stated = {**content["digests"], "level": content["level"]}
-            del found["sources"]  # which only some rules look at
-            other = next((name for name, part in found.items() if stated.get(name, part) != part), None)
+            del actual["sources"]  # only some rules depend on them
+            other = next(
+                (name for name, digest in actual.items() if stated.get(name, digest) != digest), None
+            )
             return other and ("task" if _are_facts(goal["node"] for goal in content["goals"]) else other)
     return None
 
 
 def _goal_ids(content: Any) -> list[int]:
-    """Return the ids of the goals that a certificate names, as far as they are ids; it is checked later."""
+    """Return the goal ids of a certificate, without values of other types; the proof check comes later."""
     goals = content.get("goals") if isinstance(content, dict) else None
     ids = [goal.get("id") for goal in goals if isinstance(goal, dict)] if isinstance(goals, list) else []
     return [o for o in ids if type(o) is int]
 
 
 def _looks_at_all(content: Any) -> bool:
-    """Whether a certificate speaks of a plan, of rules, or of prices, which are looked at unit by unit."""
+    """Return whether a certificate is about a plan, rules or prices, which are checked unit by unit."""
     if not isinstance(content, dict) or is_of_plan(content):
         return True
     objectives = content.get("objective")
@@ -399,12 +402,12 @@ def _looks_at_all(content: Any) -> bool:
 
 
 def _check_with_clingo(problem: Problem, verified: proof.Verified) -> None:
-    """Check what units are said to cost; raises :class:`RefusedError` where the rules say otherwise."""
+    """Check the stated costs of units by measures; raises :class:`RefusedError` for a wrong one."""
     from foon_asp.rules.measure import Measure, wrong_cost  # noqa: PLC0415 (the solver)
 
     for measure in verified.trusted:
         rules = Measure(measure.name, measure.rules, f"the rules of {measure.name}")
-        deadline = Deadline(_SECONDS)  # rules may come from a stranger
+        deadline = Deadline(_SECONDS)  # the rules are untrusted input
         try:
             wrong = wrong_cost(rules, problem, measure.costs, deadline)
         except UserError as error:

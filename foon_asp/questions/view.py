@@ -32,8 +32,8 @@ from foon_asp.questions.answer import Answer, answered, answered_under
 from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certifying import certified
-from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.how import How, Limits, begin, settings_of
+from foon_asp.questions.common_options import CommonOptions, Limits, begin, settings_of
+from foon_asp.questions.contract import Kind, Option, Role, question
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
@@ -48,7 +48,7 @@ from foon_asp.results.proof_cases import ProofCases
 from foon_asp.text.json_value import Json
 from foon_asp.whole_file import utf_8, write_whole
 
-_BEST = 5  # trees, the best and those after it
+_BEST = 5  # trees listed as alternatives, the optimal one included
 _MERMAID_PAGE = ".md"
 _SHOWN = (
     *("answer", "searches", "lasting", "without_rules"),
@@ -67,7 +67,7 @@ _FOR_THE_BEST = {
 }
 
 
-class Beside(StrEnum):
+class PagePart(StrEnum):
     """What a page shows beside the tree."""
 
     SEARCHES = "searches"
@@ -127,16 +127,16 @@ class View(Result, frozen=True):
 
     @property
     def ending(self) -> Ending:
-        """As that of the answer."""
+        """The ending of the answer; ``DONE`` without one."""
         return Ending.DONE if self.answer is None else self.answer.ending
 
     def text(self) -> str:
-        """Return the answer in words, or what the picture is about."""
+        """Return the answer in words, or the caption of the picture."""
         return self._drawn().caption[0] + "\n" if self.answer is None else self.answer.text()
 
     @property
     def data(self) -> PageData:
-        """What is in the page: the documents of the answers as they are.
+        """The data of the page: the documents of the answers.
 
         Raises:
             UserError: for a given tree or some units, which have no page.
@@ -169,8 +169,8 @@ class View(Result, frozen=True):
         for answer in (self.answer, self.lasting, self.without_rules, bought):
             if answer is not None:
                 yield answer.problem, answer.ids or ()
-        for found in self.searches:
-            yield found.problem, found.ids
+        for retrieved in self.searches:
+            yield retrieved.problem, retrieved.ids
         if self.alternatives is not None:
             other = self.alternatives.problem
             yield from ((other, other.network.units_of_numbers(tree.ids)) for tree in self.alternatives.trees)
@@ -207,7 +207,7 @@ class View(Result, frozen=True):
         return graphml_text(self._drawn())
 
     def drawing(self) -> Drawing | None:
-        """Return what the picture shows."""
+        """Return the drawing: of the tree, the network or the units."""
         if self.answer is not None:
             return self.answer.drawing()
         if self.network is None:
@@ -225,7 +225,7 @@ class View(Result, frozen=True):
         return drawing
 
     def remark(self, format_: str) -> str:
-        """Return what is claimed, where that is not the best tree."""
+        """Return the claim, if the tree is not proved optimal."""
         return "" if self.answer is None else self.answer.remark(format_)
 
     def write(self, file: File, format_: str | None = None) -> None:
@@ -239,7 +239,7 @@ class View(Result, frozen=True):
         return f"<View of {self.text().strip() if self.answer is None else repr(self.answer)}>"
 
     def _in_notebook(self) -> dict[str, str]:
-        """Return what a notebook shows by media type: the page, in a frame of its own, or the picture."""
+        """Return the notebook display by media type: the page in a frame, or the picture."""
         if self.picture is not None:
             return picture_bundle(self, self.picture)
         return {"text/plain": repr(self), "text/html": self._page().frame()}
@@ -270,25 +270,25 @@ def _posed(
 
 @question(
     GOALS,
-    Option("tree", "A task tree to draw.", Kind.FILE, Part.PROBLEM | Part.QUESTION, metavar="TREE.txt"),
+    Option("tree", "A task tree to draw.", Kind.FILE, Role.PROBLEM | Role.QUESTION, metavar="TREE.txt"),
     Option(
         "units",
         "The id of a unit to draw.",
         Kind.WHOLE,
-        Part.PROBLEM | Part.QUESTION,
+        Role.PROBLEM | Role.QUESTION,
         flags=("--unit",),
         many=True,
         metavar="ID",
     ),
     OBJECTIVES,
-    CONTAINERS._replace(part=Part.PROBLEM | Part.QUESTION),
+    CONTAINERS._replace(role=Role.PROBLEM | Role.QUESTION),
     *ITEMS,
     Option(
         "beside",
-        f"What a page shows beside the tree: {', '.join(Beside)}.",
-        default=(Beside.SEARCHES.value, Beside.PROOF.value),
+        f"What a page shows beside the tree: {', '.join(PagePart)}.",
+        default=(PagePart.SEARCHES.value, PagePart.PROOF.value),
         many=True,
-        choices=tuple(map(str, Beside)),
+        choices=tuple(map(str, PagePart)),
     ),
     help_="""
     \b
@@ -319,8 +319,8 @@ def view(
     *,
     tree: str | PathLike[str] | Iterable[FunctionalUnit] | None = None,
     units: Iterable[int] = (),
-    beside: Iterable[str] = (Beside.SEARCHES, Beside.PROOF),
-    **how: Unpack[How],
+    beside: Iterable[str] = (PagePart.SEARCHES, PagePart.PROOF),
+    **options: Unpack[CommonOptions],
 ) -> View:
     """Solve a problem, and show what was found on a page or as a picture; or show what is given.
 
@@ -355,18 +355,18 @@ def view(
     if isinstance(about, Answer):
         return View(about)
     listed = tuple(dict.fromkeys(units))
-    rules = {name: how[name] for name in _RULES if name in how}  # type: ignore[literal-required]
-    rule = how.get("containers", "strict")
+    rules = {name: options[name] for name in _RULES if name in options}  # type: ignore[literal-required]
+    rule = options.get("containers", "strict")
     if tree is not None and listed:
         raise UserError("a tree and units are two different drawings: give one of them")
     if tree is None and not listed and isinstance(about, Problem):
-        wanted = {str(each) for each in ([beside] if isinstance(beside, str) else beside)}
-        for name in sorted(wanted - {*Beside}):
-            raise UserError(f"found beside={name!r}, expected one of {', '.join(Beside)}")
-        chosen, asked = chosen_objectives(about, objectives), settings_of(how)
+        wanted = {str(name) for name in ([beside] if isinstance(beside, str) else beside)}
+        for name in sorted(wanted - {*PagePart}):
+            raise UserError(f"found beside={name!r}, expected one of {', '.join(PagePart)}")
+        chosen, settings = chosen_objectives(about, objectives), settings_of(options)
         if not wanted or caller().form in _PICTURES:
-            return View(answered_under(about, chosen, asked))
-        *_, grown = pages(about, chosen, asked, wanted, rules)
+            return View(answered_under(about, chosen, settings))
+        *_, grown = pages(about, chosen, settings, wanted, rules)
         return grown
     if any(rules.values()):
         raise UserError("rules are for the best tree of a problem; nothing is solved here")
@@ -391,8 +391,8 @@ def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
     """Draw units by id in the whole network; the goals of a problem are marked."""
     goal_ids: Sequence[int] = ()
     if isinstance(about, Problem):
-        part = shown(about)
-        goal_ids = [part.network.object_number(goal) for goal in part.goals]
+        posed = shown(about)
+        goal_ids = [posed.network.object_number(goal) for goal in posed.goals]
         about = Foon.of(about)
     data, goal_ids = about.dataset.part(goal_ids, unit_ids)
     network = data.network
@@ -419,70 +419,74 @@ def _drawing_without_goals(
 def pages(
     problem: Problem,
     chosen: Sequence[Objective],
-    how: Settings,
+    settings: Settings,
     wanted: Container[str],
     rules: Mapping[str, Any],
 ) -> Iterator[View]:
-    """Yield a page about a tree as it grows: first with its answer, then with one thing more beside it each.
+    """Yield a growing page about a tree: first with its answer, then each time with one more part.
 
-    ``rules`` are those of the settings, as questions take them. A plan, in which items are used up, costs no
-    less than the best tree, in which they are not; so the proof is about that tree. But not by ``kitchen``,
-    and not under rules, which may count how often units are executed.
+    ``rules`` are the rules of the settings, as questions take them. A plan, in which items are used up, costs
+    no less than the best tree, in which items last; so the proof is about that tree, except by ``kitchen``,
+    and under rules, which may count how often units are executed.
     """
-    deadline = how.begun
-    how = how._replace(deadline=deadline)
-    ruled = bool(how.constraints) or how.encodings is not None
+    deadline = settings.begun
+    settings = settings._replace(deadline=deadline)
+    ruled = bool(settings.constraints) or settings.encodings is not None
     plans, endless = problem.items is not None, replace(problem, items=None)
-    proof = certified(problem, chosen, how) if Beside.PROOF in wanted and not plans else None
-    answer = answered(asked_with(problem, how), chosen, how) if proof is None else proof
-    page = View(answer, certified=proof, network=whole(problem) if Beside.NETWORK in wanted else None)
+    proof = certified(problem, chosen, settings) if PagePart.PROOF in wanted and not plans else None
+    answer = answered(asked_with(problem, settings), chosen, settings) if proof is None else proof
+    page = View(answer, certified=proof, network=whole(problem) if PagePart.NETWORK in wanted else None)
     yield page
 
-    def left() -> Limits:
+    def remaining_limits() -> Limits:
         return {"time_limit": deadline.left, "memory_limit": deadline.memory}
 
     if plans and not ruled:
-        below = Objective.KITCHEN not in chosen  # what a plan makes itself, it need not take
-        proof = certified(endless, chosen, how) if Beside.PROOF in wanted and below else None
-        lasting = answered(endless, chosen, how) if proof is None else proof
+        below = Objective.KITCHEN not in chosen  # a plan need not take from the kitchen items that it makes
+        proof = certified(endless, chosen, settings) if PagePart.PROOF in wanted and below else None
+        lasting = answered(endless, chosen, settings) if proof is None else proof
         if below:
-            Postconditions(endless, levels(tuple(chosen)), how).no_better(
+            Postconditions(endless, levels(tuple(chosen)), settings).no_better(
                 answer.outcome, lasting.outcome, "where items last"
             )
         if lasting and not answer:
-            proof = None  # of a tree, and there is no plan to hold against it
+            proof = None  # it proves a tree optimal, but there is no plan
         page = structs.replace(page, certified=proof, lasting=lasting)
         yield page
     if ruled:
         page = structs.replace(
-            page, without_rules=answered(problem, chosen, Settings(deadline=begin(left())))
+            page, without_rules=answered(problem, chosen, Settings(deadline=begin(remaining_limits())))
         )
         yield page
     if answer.ending is Ending.NEGATIVE:
-        explained = why_not(endless, **rules, **left())
+        explained = why_not(endless, **rules, **remaining_limits())
         if plans and explained.tree_exists:
-            return  # it is what runs out
-        helped = None if explained.tree_exists else shopping_list(endless, chosen, **rules, **left())
+            return  # items run out, which why_not does not explain
+        helped = (
+            None if explained.tree_exists else shopping_list(endless, chosen, **rules, **remaining_limits())
+        )
         yield structs.replace(page, why_not=explained, shopping_list=helped)
         return
-    if Beside.SEARCHES in wanted:
-        known = known_searches(problem.rates is not None)
-        page = structs.replace(page, searches=tuple(search(problem, each.name, **left()) for each in known))
-        yield page
-    if Beside.ALTERNATIVES in wanted:
+    if PagePart.SEARCHES in wanted:
+        methods = known_searches(problem.rates is not None)
         page = structs.replace(
-            page, alternatives=alternatives(problem, chosen, best=_BEST, **rules, **left())
+            page, searches=tuple(search(problem, method.name, **remaining_limits()) for method in methods)
         )
         yield page
-    if Beside.FRONT in wanted:
-        several = chosen if len(chosen) > 1 else _against(chosen, problem.rates is not None)
-        yield structs.replace(page, front=pareto(problem, several, **rules, **left()))
+    if PagePart.ALTERNATIVES in wanted:
+        page = structs.replace(
+            page, alternatives=alternatives(problem, chosen, best=_BEST, **rules, **remaining_limits())
+        )
+        yield page
+    if PagePart.FRONT in wanted:
+        front_objectives = chosen if len(chosen) > 1 else _against(chosen, problem.rates is not None)
+        yield structs.replace(page, front=pareto(problem, front_objectives, **rules, **remaining_limits()))
 
 
 def _against(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
-    """Return two objectives of a front, where one was asked for.
+    """Return two or more objectives for a front, from one list of objectives.
 
-    Against it the number of units; against that success, or inputs where no rates are known.
+    The second objective is units; for units it is success, or inputs if no rates are known.
     """
     if Objective.UNITS not in chosen:
         return (*chosen, Objective.UNITS)

@@ -6,7 +6,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.network import counted
 from foon_asp.problem import Problem, reach
 
-_CIRCLE = 3  # object nodes of a cycle that are named after the first
+_MAX_CYCLE = 3  # object nodes of a cycle that are named after the first
 
 
 def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterator[str]:
@@ -20,7 +20,7 @@ def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterat
 
 
 def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
-    """Yield for each goal that cannot be made which units would make it, and what the first of them lack.
+    """Yield for each unreachable goal the units that would make it, and the missing inputs of the first ones.
 
     Where every goal can be made, it is the constraints that leave no tree.
     """
@@ -57,7 +57,7 @@ def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
 
 
 def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
-    """Yield a sentence on each cause, those on the way that takes the fewest things first."""
+    """Yield a sentence on each cause, first the causes on the easiest way to the goals."""
     from foon_asp.problem.dead_ends import dead_ends  # noqa: PLC0415 (only where there is no tree)
 
     objects = problem.network.objects
@@ -69,9 +69,9 @@ def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
             continue
         first, *others = [str(objects[o]) for o, _ in reversed(root.cycle.steps)]
         back = (*others, first)
-        circle = "".join(f", and that only from {other}" for other in back[1:_CIRCLE])
-        if len(back) > _CIRCLE:
-            circle += f", and so on: {len(back)} object nodes wait for each other"
-        yield f"the cause: {first} can only be made from {back[0]}{circle}"
+        cycle_text = "".join(f", and that only from {other}" for other in back[1:_MAX_CYCLE])
+        if len(back) > _MAX_CYCLE:
+            cycle_text += f", and so on: {len(back)} object nodes wait for each other"
+        yield f"the cause: {first} can only be made from {back[0]}{cycle_text}"
     if len(roots) > shown:
         yield f"  ... and {len(roots) - shown} more"

@@ -15,26 +15,26 @@ from foon_asp.problem.dead_ends import Cause, DeadEnds, dead_ends
 from foon_asp.problem.dead_ends import Root as FoundRoot
 from foon_asp.problem.shop import Shop
 from foon_asp.questions.arguments import constraint_weights, whole
+from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.how import How, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.results.values import Mention, Node, Unit, Value
 from foon_asp.results.values_of import head_of, mention_of, node_as, node_of, nodes_of, unit_as
 from foon_asp.text.json_value import schema_name
 
-if TYPE_CHECKING:  # clingo, which is needed where rules have a say
+if TYPE_CHECKING:  # takes clingo along, which only rules need
     from foon_asp.questions.clash import Clash
 
-_ALIKE = 2  # nodes with the same label that are named beside a missing one
-_OBJECTS = 12  # dead ends that are opened up in the text
-_OTHERS = 2  # other units that are named beside the first
-_ROOTS = 8
-_STEPS = 6  # of a cycle
-_STOPS = 3
-_FIX_ITEMS = 4  # that are named in one line
+_MAX_ALIKE = 2  # nodes with the same label that are named beside a missing one
+_MAX_OBJECTS = 12  # dead ends that are opened up in the text
+_MAX_OTHERS = 2  # other units that are named beside the first
+_MAX_ROOTS = 8  # causes explained in the text
+_MAX_STEPS = 6  # of a cycle in the text
+_MAX_STOPS = 3  # units named in one line
+_MAX_FIX_ITEMS = 4  # named in one line
 
 
 class NearName(Value, frozen=True):
@@ -107,21 +107,21 @@ class Root(Value, frozen=True):
     alike: tuple[AlikeNode, ...] = ()
 
     @classmethod
-    def of(cls, problem: Problem, found: FoundRoot) -> "Root":
-        """Return the value of a root; names that are near are left out."""
+    def of(cls, problem: Problem, root: FoundRoot) -> "Root":
+        """Return the value of a root, without similar names."""
         network = problem.network
-        makers = problem.makers[found.object] if found.cycle is None else ()
-        producers = network.producers[found.object] if found.cycle is None else ()
+        makers = problem.makers[root.object] if root.cycle is None else ()
+        producers = network.producers[root.object] if root.cycle is None else ()
         stops, handed, skipped = (
             tuple(mention_of(network, unit) for unit in units)
-            for units in (found.stops, makers, (unit for unit in producers if unit not in makers))
+            for units in (root.stops, makers, (unit for unit in producers if unit not in makers))
         )
-        steps, nodes = found.cycle or ((), frozenset())
+        steps, nodes = root.cycle or ((), frozenset())
         cycle = tuple(CycleStep(node_of(network, o), mention_of(network, unit)) for o, unit in steps)
         return cls(
-            node_of(network, found.object),
-            found.cause,
-            found.on_the_way,
+            node_of(network, root.object),
+            root.cause,
+            root.on_the_way,
             stops,
             handed,
             skipped,
@@ -130,15 +130,15 @@ class Root(Value, frozen=True):
         )
 
     def lines(self) -> Iterator[str]:
-        """Return lines that say why the node cannot be had, and what was perhaps meant."""
+        """Return lines on why the node is unreachable, and names that were perhaps meant."""
         if self.cycle is not None:
             yield "can only be made from itself, in a cycle:"
             made = [*(step.object for step in self.cycle[1:]), self.cycle[0].object]
-            for step, node in list(zip(self.cycle, made, strict=True))[:_STEPS]:
+            for step, node in list(zip(self.cycle, made, strict=True))[:_MAX_STEPS]:
                 yield f"  {step.needed_by} makes {node}"
                 yield f"    and needs {step.object}"
-            if len(made) > _STEPS:
-                yield f"  and {counted(len(made) - _STEPS, 'more step')}"
+            if len(made) > _MAX_STEPS:
+                yield f"  and {counted(len(made) - _MAX_STEPS, 'more step')}"
             return
         if self.handed_on_by:
             yield f"not in the kitchen, and what gives it needs it too: {_units(self.handed_on_by)}"
@@ -148,7 +148,7 @@ class Root(Value, frozen=True):
             yield f"taken as given, and so not made, by {_units(self.taken_as_given_by)}"
         if stopped := [unit for unit in self.stops if unit not in self.handed_on_by]:
             yield f"stops {_units(stopped)}"
-        yield from (f"a typing error? {near}" for near in self.near)
+        yield from (f"a typing error? {name}" for name in self.near)
         if self.alike and not self.near:
             shown = (f"{node} {_from(node.in_kitchen)}" for node in self.alike)
             yield f"most like it are {' and '.join(shown)}"
@@ -213,7 +213,7 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
             return Ending.NEGATIVE
         return Ending.DONE if self.clash is None else self.clash.ending
 
-    def show(self) -> Iterator[Part]:
+    def show(self) -> Iterator[Block]:
         """Return the dead ends as a tree, the easiest way first and every part once, and their roots."""
         yield from self.goal_lines()
         if self.clash is not None:
@@ -228,18 +228,18 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
         for number, root in enumerate(self.roots, 1):
             numbers |= dict.fromkeys((root.object, *root.cycle_objects), number)
         yield from ("", *_tree(self, numbers), "", "in the way:")
-        for root in shown[:_ROOTS]:
+        for root in shown[:_MAX_ROOTS]:
             yield f"  ({numbers[root.object]}) {root.object}"
             yield from (f"      {line}" for line in root.lines())
-        if len(self.roots) > min(len(shown), _ROOTS):
-            more = len(self.roots) - min(len(shown), _ROOTS)
-            yield f"{more} more behind other units; --format json lists all"
+        if len(self.roots) > min(len(shown), _MAX_ROOTS):
+            others = len(self.roots) - min(len(shown), _MAX_ROOTS)
+            yield f"{others} more behind other units; --format json lists all"
         yield self._fix_line()
 
     def _fix_line(self) -> str:
         if self.fix is None:
             return "foon-asp shopping-list with the same options says what to add to the kitchen"
-        named = [str(node) for node in self.fix[:_FIX_ITEMS]]
+        named = [str(node) for node in self.fix[:_MAX_FIX_ITEMS]]
         if len(self.fix) > len(named):
             named.append(f"{len(self.fix) - len(named)} more")
         return f"try adding {' and '.join(named)} (foon-asp shopping-list proves the shortest list)"
@@ -273,7 +273,7 @@ def why_not(
         Mapping[File, int] | None,
         Option(kind=Kind.WEIGHTS, flags=("--weight",), many=True, metavar="FILE.lp=WEIGHT"),
     ] = None,
-    **how: Unpack[How],
+    **options: Unpack[CommonOptions],
 ) -> Explanation:
     """Explain why there is no task tree: missing things, cycles that feed only themselves, rules that clash.
 
@@ -300,11 +300,11 @@ def why_not(
         >>> len(found.smallest_clash), len(found.cheapest_to_drop)
         (2, 1)
     """
-    settings, prices = settings_of(how), constraint_weights(weights) if weights else {}
+    settings, prices = settings_of(options), constraint_weights(weights) if weights else {}
     problem, deadline = whole(problem), settings.begun
     network = problem.network
     with deadline.watched("looking for the reason", late=True):
-        found = dead_ends(problem)
+        analysis = dead_ends(problem)
         ends = tuple(
             DeadEnd(
                 node_of(network, o),
@@ -313,22 +313,22 @@ def why_not(
                     for unit, lacks in makers
                 ),
             )
-            for o, makers in found.makers.items()
+            for o, makers in analysis.makers.items()
         )
-        roots = tuple(Root.of(problem, root) for root in found.roots)
+        roots = tuple(Root.of(problem, root) for root in analysis.roots)
     clash, fix = None, None
-    if not found.goals and (settings.constraints or settings.replaced is not None):
+    if not analysis.goals and (settings.constraints or settings.replaced is not None):
         from foon_asp.questions.clash import find_clash  # noqa: PLC0415
 
         clash = find_clash(problem, settings, prices)
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for what would help"):
-        if found.goals:
-            roots = tuple(_with_near_names(problem, found, roots))
-            fix = nodes_of(network, Shop(problem).short_list(found))
+        if analysis.goals:
+            roots = tuple(_with_near_names(problem, analysis, roots))
+            fix = nodes_of(network, Shop(problem).short_list(analysis))
     return Explanation(
         **head_of(problem),
-        tree_exists=not found.goals,
-        unreachable_goals=nodes_of(network, found.goals),
+        tree_exists=not analysis.goals,
+        unreachable_goals=nodes_of(network, analysis.goals),
         roots=roots,
         dead_ends=ends,
         clash=clash,
@@ -336,45 +336,45 @@ def why_not(
     )
 
 
-def _with_near_names(problem: Problem, found: DeadEnds, roots: Iterable[Root]) -> Iterator[Root]:
-    """Yield roots, those of missing nodes with names one edit away and nodes that have the same label."""
+def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]) -> Iterator[Root]:
+    """Yield roots; a missing node comes with names one edit away, and nodes of the same label."""
     network, kitchen, data = problem.network, problem.kitchen, problem.origin
-    had = {network.objects[o]: o for o, there in enumerate(found.available) if there}
+    had = {network.objects[o]: o for o, is_available in enumerate(analysis.available) if is_available}
     items = data.data.kitchen_items if isinstance(data, Dataset) else ()
     patterns = [(pattern_at_level(item.pattern, network.level), str(item.source)) for item in items]
     names: list[tuple[ObjectNode | NodePattern, str | None, bool]] = [
         *((pattern, source, True) for pattern, source in patterns if not network.find(pattern)),
         *((node, None, o in kitchen) for node, o in had.items()),
     ]
-    for root, value in zip(found.roots, roots, strict=True):
+    for root, value in zip(analysis.roots, roots, strict=True):
         if root.cause is not Cause.MISSING:
             yield value
             continue
         node = network.objects[root.object]
-        near = tuple(
+        near_names = tuple(
             NearName(str(other), slip.kind, source, slip.name, slip.other, in_kitchen)
             for other, source, in_kitchen in names
             if (slip := slip_between(node, other))
         )
-        nodes_near = {each.name for each in near if each.kitchen_entry is None}
+        nodes_near = {near_name.name for near_name in near_names if near_name.kitchen_entry is None}
         alike = tuple(
             node_as(AlikeNode, network, had[other], in_kitchen=had[other] in kitchen)
-            for other in nearest(node, had, _ALIKE)
+            for other in nearest(node, had, _MAX_ALIKE)
             if str(other) not in nodes_near
         )
-        yield replace(value, near=near, alike=alike)
+        yield replace(value, near=near_names, alike=alike)
 
 
 def _tree(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str]:
-    """Return the dead ends as lines, each opened up once: the first unit that would make it, and its lacks.
+    """Return the dead ends as an indented tree, each opened up once: its first unit, and its lacks.
 
-    ``numbers`` are those of the roots. Of other dead ends, those nearest to the goals are opened up.
+    ``numbers`` are the numbers of the roots. Of other dead ends, the nearest to the goals are opened up.
     """
     makers = {end.object: end.makers for end in explanation.dead_ends}
     opened: set[Node] = set()
     frontier = list(explanation.unreachable_goals)
     for node in frontier:
-        if node not in opened and node not in numbers and len(opened) < _OBJECTS:
+        if node not in opened and node not in numbers and len(opened) < _MAX_OBJECTS:
             opened.add(node)
             frontier += makers[node][0].lacks
     shown: set[Value] = set()
@@ -390,9 +390,9 @@ def _tree(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str
         shown.update((node, first))
         for lack in () if above else first.lacks:
             yield from lines(lack, f"{margin}    ")
-        yield from (f"{margin}  or {other}" for other in others[:_OTHERS])
-        if len(others) > _OTHERS:
-            yield f"{margin}  or {counted(len(others) - _OTHERS, 'other unit')}"
+        yield from (f"{margin}  or {other}" for other in others[:_MAX_OTHERS])
+        if len(others) > _MAX_OTHERS:
+            yield f"{margin}  or {counted(len(others) - _MAX_OTHERS, 'other unit')}"
 
     for goal in explanation.unreachable_goals:
         yield from lines(goal, "")
@@ -402,18 +402,20 @@ def _causes(roots: Sequence[Root]) -> str:
     """Count roots by their cause."""
     cycles = sum(root.cycle is not None for root in roots)
     missing = len(roots) - cycles
-    said = []
+    counts = []
     if missing:
-        said.append(f"{counted(missing, 'object node')} {'is' if missing == 1 else 'are'} missing")
+        counts.append(f"{counted(missing, 'object node')} {'is' if missing == 1 else 'are'} missing")
     if cycles:
         feeds = "feeds only itself" if cycles == 1 else "feed only themselves"
-        said.append(f"{counted(cycles, 'cycle')} {feeds}")
-    return " and ".join(said)
+        counts.append(f"{counted(cycles, 'cycle')} {feeds}")
+    return " and ".join(counts)
 
 
 def _units(units: Sequence[Mention]) -> str:
-    places = ", ".join(f"{unit.motion} [{unit.source[0]}]" for unit in units[:_STOPS])
-    return places + (f" and {counted(len(units) - _STOPS, 'more unit')}" if len(units) > _STOPS else "")
+    places = ", ".join(f"{unit.motion} [{unit.source[0]}]" for unit in units[:_MAX_STOPS])
+    return places + (
+        f" and {counted(len(units) - _MAX_STOPS, 'more unit')}" if len(units) > _MAX_STOPS else ""
+    )
 
 
 def _from(in_kitchen: bool) -> str:

@@ -1,4 +1,4 @@
-"""What changes in files, line by line, as ``patch`` and ``git apply -p0`` read it."""
+"""Unified diffs of files, for ``patch`` and ``git apply -p0``."""
 
 import difflib
 import re
@@ -8,7 +8,7 @@ _LINE = re.compile(r"[^\n]*\n|[^\n]+")
 
 
 def line_diff(file: str, before: str, after: str) -> str:
-    """Return a unified diff of the text of a file; empty where both are the same."""
+    """Return a unified diff of the text of a file; empty without changes."""
     return "".join(_lines(file, _LINE.findall(before), _LINE.findall(after)))
 
 

@@ -11,36 +11,36 @@ from foon_asp.linting.example import Example
 from foon_asp.linting.finding import Finding
 from foon_asp.linting.rule import Rule
 from foon_asp.network import counted
-from foon_asp.results.table import Part, Table
+from foon_asp.results.table import Block, Table
 from foon_asp.text.diagnostics import Severity
 from foon_asp.text.json_value import Json
 
 _MAX_IN_FULL = 3  # findings of a kind in a file; the lines of the others are named
-_MAX_LINES = 12
+_MAX_LINES = 12  # line numbers listed
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "notice"}
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
-def finding_lines(findings: Sequence[Finding]) -> Iterator[Part]:
-    """Yield sorted findings with their lines, and fold those of a kind in a file where there are many."""
+def finding_lines(findings: Sequence[Finding]) -> Iterator[Block]:
+    """Yield sorted findings with their lines; many of one kind in a file are folded into a line."""
     kinds: dict[tuple[str, str], list[Finding]] = {}
     for finding in findings:
         kinds.setdefault((finding.file, finding.code), []).append(finding)
-    told = Counter[tuple[str, str]]()
+    shown = Counter[tuple[str, str]]()
     for finding in findings:
         kind = finding.file, finding.code
-        told[kind] += 1
-        if told[kind] <= _MAX_IN_FULL:
+        shown[kind] += 1
+        if shown[kind] <= _MAX_IN_FULL:
             yield from str(finding).split("\n")
-        if told[kind] == _MAX_IN_FULL and (others := kinds[kind][_MAX_IN_FULL:]):
-            numbers = list(dict.fromkeys(str(each.line) for each in others))
+        if shown[kind] == _MAX_IN_FULL and (others := kinds[kind][_MAX_IN_FULL:]):
+            numbers = list(dict.fromkeys(str(other.line) for other in others))
             lines = ", ".join(numbers[:_MAX_LINES]) + (", ..." if len(numbers) > _MAX_LINES else "")
             on = "on line" if len(numbers) == 1 else "on lines"
             yield f"    ... and {len(others)} more of this kind in this file, {on} {lines} [{finding.code}]"
 
 
 def summary(findings: Sequence[Finding], files: int, mended: int) -> str:
-    """Return the numbers of files and findings in one line, and of what --fix mended or would mend."""
+    """Return in one line the numbers of files, of findings, and of fixes that --fix made or would make."""
     counts = Counter(finding.severity for finding in findings)
     parts = [counted(counts[severity], str(severity)) for severity in Severity if counts[severity]]
     text = f"{counted(files, 'file')}: {', '.join(parts) or 'nothing found'}"
@@ -56,15 +56,15 @@ def summary(findings: Sequence[Finding], files: int, mended: int) -> str:
 
 
 def statistics(findings: Sequence[Finding]) -> Table:
-    """Return the number of findings of each code, most of them first, and of those that can be mended."""
+    """Return a table of the codes, the most frequent first, with their numbers of findings."""
     rows = []
     for code, count in Counter(finding.code for finding in findings).most_common():
         alike = [finding for finding in findings if finding.code == code]
-        safe, unsafe = sum(each.mendable for each in alike), sum(each.unsafe for each in alike)
+        safe, unsafe = sum(finding.mendable for finding in alike), sum(finding.unsafe for finding in alike)
         mends = [f"{safe} safely"] * bool(safe) + [f"{unsafe} unsafely"] * bool(unsafe)
         rows.append((str(count), str(alike[0].severity), code, ", ".join(mends), CATALOG[code].meaning))
     headings = "count", "severity", "code", "mends", "meaning"
-    return Table(headings, rows, left=frozenset({1, 2, 3, 4}), headed=bool(rows))
+    return Table(headings, rows, left_aligned=frozenset({1, 2, 3, 4}), headed=bool(rows))
 
 
 def annotations(findings: Sequence[Finding]) -> str:
@@ -73,15 +73,16 @@ def annotations(findings: Sequence[Finding]) -> str:
     The characters that would end a command or a property are escaped as GitHub's own toolkit does.
     """
     lines = []
-    for each in findings:
-        place = f"file={_property(each.file)},line={each.line},col={each.column},title={_property(each.code)}"
-        lines.append(f"::{_COMMANDS[each.severity]} {place}::{_data(each.message)}\n")
+    for finding in findings:
+        file, title = _property(finding.file), _property(finding.code)
+        location = f"file={file},line={finding.line},col={finding.column},title={title}"
+        lines.append(f"::{_COMMANDS[finding.severity]} {location}::{_data(finding.message)}\n")
     return "".join(lines)
 
 
 def _data(text: str) -> str:
     written = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
-    return UNSAFE.sub(lambda found: escaped(found[0]), written)
+    return UNSAFE.sub(lambda match: escaped(match[0]), written)
 
 
 def _property(text: str) -> str:
@@ -114,24 +115,24 @@ def _sarif_result(finding: Finding, rule: int) -> Json:
         region["snippet"] = {"text": finding.text}
     path = Path(finding.file)
     uri = path.as_uri() if path.is_absolute() else urllib.parse.quote(path.as_posix())
-    place = {"artifactLocation": {"uri": uri}, "region": region}
+    location = {"artifactLocation": {"uri": uri}, "region": region}
     result: Json = {
         "ruleId": finding.code,
         "ruleIndex": rule,
         "level": str(finding.severity),
         "message": {"text": finding.message},
-        "locations": [{"physicalLocation": place}],
+        "locations": [{"physicalLocation": location}],
     }
     if finding.mendable and finding.text:
         whole = {"startLine": finding.line, "startColumn": 1, "endColumn": len(finding.text) + 1}
         replacement = {"deletedRegion": whole, "insertedContent": {"text": finding.fix}}
-        change = {"artifactLocation": place["artifactLocation"], "replacements": [replacement]}
+        change = {"artifactLocation": location["artifactLocation"], "replacements": [replacement]}
         result["fixes"] = [{"artifactChanges": [change]}]
     return result
 
 
-def explained(rule: Rule, example: Example) -> Iterator[Part]:
-    """Yield what a rule means, its example with tabs drawn as ``→``, and what it finds there."""
+def explained(rule: Rule, example: Example) -> Iterator[Block]:
+    """Yield the meaning of a rule, its example with tabs drawn as ``→``, and its findings there."""
     yield f"{rule.code}: {rule.severity}: {rule.meaning}"
     for paragraph in rule.explanation.split("\n\n"):
         yield from ("", paragraph.replace("\n", " "))

@@ -1,1 +1,1 @@
-"""What answers are made of: values with names, written as JSON, tables and text, each in one way."""
+"""Values and documents that answers consist of, written as JSON, tables and text."""

@@ -1,4 +1,4 @@
-"""Documents: values that are JSON of their own, with a schema, rows for tables, and lines for people."""
+"""Documents: values with a JSON form and schema, rows for tables, and lines for people."""
 
 from collections.abc import Iterator
 from typing import Any, ClassVar, Generic, Literal, Self, TypeVar
@@ -8,15 +8,15 @@ from msgspec import Struct
 from foon_asp.network import counted
 from foon_asp.problem import ContainerRule, Objective, conditions
 from foon_asp.results.plain import csv_text, flat_row, frame, markdown_text, plain
-from foon_asp.results.table import Part, rendered
+from foon_asp.results.table import Block, rendered
 from foon_asp.results.values import Node
 from foon_asp.text.json_value import Json, json_text, read_json
 
 T = TypeVar("T")
 
 
-class Known(Generic[T]):
-    """What a document knows besides its JSON, as :meth:`Document.knowing` says it; else the ``default``."""
+class Unserialized(Generic[T]):
+    """Descriptor of a property that JSON leaves out; :meth:`Document.knowing` sets it."""
 
     def __init__(self, *default: T) -> None:
         self._default = default
@@ -39,26 +39,26 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
 
     ROWS: ClassVar[str] = ""
 
-    def knowing(self, **known: object) -> Self:
-        """Return the document itself, which from now on knows more besides its JSON, see :class:`Known`."""
-        self.__dict__.update(known)
+    def knowing(self, **attributes: object) -> Self:
+        """Set properties that JSON leaves out (:class:`Unserialized`), and return the document itself."""
+        self.__dict__.update(attributes)
         return self
 
-    def show(self) -> Iterator[Part]:
-        """Return the lines and tables that the document is for people."""
+    def show(self) -> Iterator[Block]:
+        """Return the document for people, as lines and tables."""
         raise NotImplementedError
 
     def text(self) -> str:
-        """Return the document in words, as the command line does."""
+        """Return the document in words, as the command line prints it."""
         return rendered(self.show())
 
     def json_dict(self) -> Json:
         """Return the document as plain values, in the order in which JSON has them."""
-        found: Json = plain(self)
-        return found
+        values: Json = plain(self)
+        return values
 
     def json_text(self) -> str:
-        """Return the document as JSON, as the command line does with ``--format json``."""
+        """Return the document as JSON, as the command line prints it with ``--format json``."""
         return json_text(self.json_dict())
 
     def json(self) -> Any:
@@ -66,10 +66,10 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
         return read_json(self.json_text())
 
     def table_rows(self) -> Iterator[Json]:
-        """Return a row for each thing that is listed, or one where nothing is.
+        """Return a row for each listed item, or one row for a document without a list.
 
-        What is inside another value has a name with a dot (``costs.units``); numbers are decimals, with the
-        exact one beside it where it is another (``costs.success_exact``).
+        A nested field has a name with a dot (``costs.units``). Numbers are decimals; the exact number, if it
+        differs, is in a second column (``costs.success_exact``).
         """
         rows = getattr(self, self.ROWS) if self.ROWS else None
         yield from map(flat_row, [self.json_dict()] if rows is None else map(plain, rows))
@@ -83,11 +83,11 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
         return frame(self.table_rows())
 
     def csv(self) -> str:
-        """Return a line for each thing that is listed, under headings, for a spreadsheet."""
+        """Return the rows as CSV under headings, for a spreadsheet."""
         return csv_text(self.table_rows())
 
     def markdown(self) -> str:
-        """Return the same as a table in Markdown, for people: without empty columns and exact numbers."""
+        """Return the rows as a Markdown table, without empty columns and exact numbers."""
         return markdown_text(self.table_rows())
 
 
@@ -98,7 +98,7 @@ class AboutGoals(Document, frozen=True, kw_only=True):
         goals: What is to be made.
         containers: Whether a unit needs every input (strict), or takes as given a utensil whose only
             ingredient is an input too (implied).
-        items: Whether what is at hand or was made can be used again (lasting), or is used up (used-up).
+        items: Whether available and made items can be used again (lasting), or are used up (used-up).
         level: What counts of an object node: 3 all, 2 no contents, 1 the label alone.
         objectives: The objectives, the first counting most; units decides last in any case.
         starting_kitchen: Where no kitchen was given, the items that are assumed to be available and can be
@@ -114,9 +114,9 @@ class AboutGoals(Document, frozen=True, kw_only=True):
 
     @property
     def conditions(self) -> str:
-        """What every claim holds under, in a few words: ``strict containers``."""
-        said = conditions(self.containers, self.level, self.starting_kitchen is not None)
-        return said if self.items == "lasting" else f"{said}, items used up"
+        """The assumptions of every claim in a few words, such as ``strict containers``."""
+        text = conditions(self.containers, self.level, self.starting_kitchen is not None)
+        return text if self.items == "lasting" else f"{text}, items used up"
 
     def goal_lines(self, shown: int = 5) -> Iterator[str]:
         """Return a line for each goal; below level 3 with level-3 nodes that it stands for."""

@@ -8,13 +8,13 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, multiplies
 from foon_asp.results.plain import nearest_float
 
-_DIGITS = 4  # of a success, if these tell several apart
-_MOST_DIGITS = 40
-_SUM_DIGITS = 15  # of a sum of costs, if it has no more
+_MIN_DIGITS = 4  # significant digits of a success
+_MAX_DIGITS = 40  # significant digits of a success
+_SUM_DIGITS = 15  # significant digits of a sum of costs
 
 
 def figure_text(objective: Objective, figure: int | Fraction) -> str:
-    """Write a value by an objective: exactly, or four digits after ``≈`` where that takes too many."""
+    """Return a value by an objective as text: exact, or four digits after ``≈`` if that is too long."""
     if multiplies(objective):
         return success_text(Fraction(figure))
     if objective.row.whole:
@@ -28,12 +28,12 @@ def figure_text(objective: Objective, figure: int | Fraction) -> str:
 
 def bound_text(objective: Objective, bound: int | Fraction) -> str:
     """Return a bound in words: ``units at least 3``, ``success at most 0.5``."""
-    side = "at most" if multiplies(objective) else "at least"
-    return f"{objective} {side} {figure_text(objective, bound)}"
+    direction = "at most" if multiplies(objective) else "at least"
+    return f"{objective} {direction} {figure_text(objective, bound)}"
 
 
 def costs_text(costs: Costs, objectives: Iterable[Objective] = ()) -> str:
-    """Return the measures of a tree in a few words, those by some objectives among them."""
+    """Return the costs of a tree in a few words, including the measures by ``objectives``."""
     text = f"{counted(costs.units, 'unit')}, {counted(costs.inputs, 'input')}"
     shown = {Objective.UNITS, Objective.INPUTS}
     others = [Objective.SUCCESS] if costs.success is not None else []
@@ -66,8 +66,8 @@ def success_texts(values: Sequence[Fraction]) -> list[str]:
 
     ``≈`` stands before what is rounded.
     """
-    digits = _DIGITS
-    while digits < _MOST_DIGITS and len({_rounded(v, digits) for v in values}) < len(set(values)):
+    digits = _MIN_DIGITS
+    while digits < _MAX_DIGITS and len({_rounded(v, digits) for v in values}) < len(set(values)):
         digits += 1
     shown = {value: _rounded(value, digits) for value in values}
     return [f"{shown[v]:g}" if Fraction(shown[v]) == v else f"≈ {shown[v]:g}" for v in values]

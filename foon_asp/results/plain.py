@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 _EXACT = "_exact"
 _NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)
-_DIGITS = 6  # of a figure in Markdown
+_DIGITS = 6  # significant digits of a figure in Markdown
 
 
 def plain(value: object) -> Any:
@@ -42,13 +42,13 @@ def _plain(value: object) -> object:
 
 
 def costs_plain(costs: Costs) -> Json:
-    """Return what a tree costs by every objective, ``None`` where nothing is known, and its ingredients."""
-    found: Json = plain(costs_by_name(costs))
-    return found
+    """Return the costs of a tree as plain values, by objective (``None`` if unknown), and its ingredients."""
+    values: Json = plain(costs_by_name(costs))
+    return values
 
 
 def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
-    """Return the same with exact numbers."""
+    """Return the costs of a tree by the name of the objective, as exact numbers; ``None`` if unknown."""
     measures = {**dict.fromkeys(Objective), **costs.measures}
     return {**exact_measures(measures), "ingredients": costs.ingredients}
 
@@ -56,7 +56,7 @@ def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
 def exact_measures(
     measures: Mapping[Objective, int | Fraction | None],
 ) -> dict[str, int | Fraction | None]:
-    """Return what objectives measure, by name: whole numbers, or fractions where not all values are whole."""
+    """Return measures by objective name: integers, or fractions if the objective is not integral."""
     return {
         str(objective): None
         if measure is None
@@ -104,7 +104,7 @@ def flat_row(row: Json) -> Json:
     places are in one-line notation; what lists parts of its own is left out.
     """
     return {
-        name: value for name, part in row.items() if name != "schema" for name, value in _flat(name, part)
+        name: value for name, inner in row.items() if name != "schema" for name, value in _flat(name, inner)
     }
 
 
@@ -120,8 +120,8 @@ def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
             yield from _flat(f"{name}.{key}", inner)
     elif not isinstance(value, list | tuple):
         yield name, value
-    elif not any(isinstance(_word(each), dict | list | tuple) for each in value):
-        yield name, [_word(each) for each in value]
+    elif not any(isinstance(_word(member), dict | list | tuple) for member in value):
+        yield name, [_word(member) for member in value]
 
 
 def _word(value: Any) -> Any:
@@ -184,7 +184,7 @@ def markdown_text(rows: Iterable[Json]) -> str:
     lists = [
         [name, *map(_rounded, column)] for name, column in zip(columns, zip(*cells, strict=True), strict=True)
     ]
-    shown = [each for each in lists if not each[0].endswith(_EXACT) and any(each[1:])]
+    shown = [column for column in lists if not column[0].endswith(_EXACT) and any(column[1:])]
     if not shown:
         return ""
     headings, *lines = zip(*shown, strict=True)

@@ -1,4 +1,4 @@
-"""A certificate taken apart for people: the cases of its proof, and who crosses each cut."""
+"""A certificate for people: the cases of its branching proof, and the landmark actions of each cut."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -26,10 +26,10 @@ class Choice(Value, frozen=True):
 
 
 class WeighedCut(Value, frozen=True):
-    """A cut with its weight by the first objective; the one that nobody crosses has none.
+    """A cut with its weight by the first objective; null for a cut without landmark actions.
 
     Attributes:
-        members: The units that make a node of the cut and need none.
+        members: The landmark actions: units that make a node of the cut and need none.
     """
 
     nodes: tuple[int, ...]
@@ -38,15 +38,15 @@ class WeighedCut(Value, frozen=True):
 
 
 class ProofCase(Value, frozen=True):
-    """A part of a proof without branches.
+    """A leaf of the branching proof.
 
     Attributes:
-        given: What is taken, or left out, in every tree of this case.
-        dear: Every tree of this case has one of these, and costs too much for that. Later cases leave them
-            out.
-        ends: What settles the case.
-        paid: What that costs which is given to be taken.
-        cuts: The cuts that carry weight, or the one that nobody crosses.
+        given: The branching decisions: choices taken or excluded in every tree of this case.
+        dear: Choices with a reduced cost above the cutoff: every tree of this case has at least one, and
+            costs too much. Later cases exclude them.
+        ends: The key of the argument that closes the case.
+        paid: The cost of the choices that are taken.
+        cuts: The cuts that carry weight, or the cut without landmark actions.
     """
 
     given: tuple[Choice, ...]
@@ -74,7 +74,7 @@ class ProofCases(Value, frozen=True):
 
     @classmethod
     def of(cls, problem: Problem, content: Json) -> Self:
-        """Take the certificate of a problem apart.
+        """Return the cases of the certificate of a problem.
 
         Parameters:
             problem: The problem.
@@ -83,70 +83,80 @@ class ProofCases(Value, frozen=True):
         network, cases = problem.network, []
         waiting: list[tuple[Json, tuple[Choice, ...]]] = [(content["proof"], ())]
         while waiting:
-            part, given = waiting.pop()
-            if "branch" in part:
-                ((kind, number),) = part["branch"].items()
+            subproof, decisions = waiting.pop()
+            if "branch" in subproof:
+                ((kind, number),) = subproof["branch"].items()
                 waiting += (
-                    (part[side], (*given, Choice(kind, number, side == "using")))
-                    for side in ("without", "using")
+                    (subproof[branch], (*decisions, Choice(kind, number, branch == "using")))
+                    for branch in ("without", "using")
                 )
                 continue
-            dear = tuple(Choice(*each) for choice in part.get("dear", ()) for each in choice.items())
-            cases.append(_case(problem, content, part, given, dear))
-            if "others" in part:
-                excluded = (Choice(each.kind, each.id, False) for each in dear)
-                waiting.append((part["others"], (*given, *excluded)))
-        known = {o for case in cases for cut in case.cuts for o in cut.nodes}
+            above_cutoff = tuple(
+                Choice(*kind_and_id) for choice in subproof.get("dear", ()) for kind_and_id in choice.items()
+            )
+            cases.append(_case(problem, content, subproof, decisions, above_cutoff))
+            if "others" in subproof:
+                excluded = (Choice(choice.kind, choice.id, False) for choice in above_cutoff)
+                waiting.append((subproof["others"], (*decisions, *excluded)))
+        nodes = {o for case in cases for cut in case.cuts for o in cut.nodes}
         units = {member for case in cases for cut in case.cuts for member in cut.members}
-        for each in (choice for case in cases for choice in (*case.given, *case.dear)):
-            {"unit": units, "item": known}.get(each.kind, set()).add(each.id)
+        for choice in (choice for case in cases for choice in (*case.given, *case.dear)):
+            {"unit": units, "item": nodes}.get(choice.kind, set()).add(choice.id)
         return cls(
             content,
             _cost(content),
             tuple(cases),
             tuple(mention_of(network, unit) for unit in sorted(units) if unit < len(network)),
-            nodes_of(network, sorted(o for o in known if o < len(network.objects))),
+            nodes_of(network, sorted(o for o in nodes if o < len(network.objects))),
         )
 
 
 def _case(
-    problem: Problem, content: Json, part: Json, given: tuple[Choice, ...], dear: tuple[Choice, ...]
+    problem: Problem,
+    content: Json,
+    subproof: Json,
+    decisions: tuple[Choice, ...],
+    above_cutoff: tuple[Choice, ...],
 ) -> ProofCase:
-    excluded = {each.id for each in given if each.kind == "unit" and not each.taken}
-    weights = part["weights"] if "weights" in part else [[part["hopeless"], None]] * ("hopeless" in part)
+    excluded = {choice.id for choice in decisions if choice.kind == "unit" and not choice.taken}
+    weights = (
+        subproof["weights"]
+        if "weights" in subproof
+        else [[subproof["hopeless"], None]] * ("hopeless" in subproof)
+    )
     cuts = []
     for number, weight in weights:
         nodes = tuple(o for o in content["cuts"][number] if o < len(problem.network.objects))
         members = sorted(_members(problem, nodes) - excluded)
         cuts.append(WeighedCut(nodes, None if weight is None else _approximate(weight[0]), tuple(members)))
-    ends = next(key for key in ("hopeless", "broken", "weights") if key in part)
-    return ProofCase(given, dear, ends, _paid(problem, content, given), tuple(cuts))
+    ends = next(key for key in ("hopeless", "broken", "weights") if key in subproof)
+    return ProofCase(decisions, above_cutoff, ends, _paid(problem, content, decisions), tuple(cuts))
 
 
 def _members(problem: Problem, cut: Iterable[int]) -> set[int]:
-    """Return the units that make a node of a cut and need none."""
+    """Return the landmark actions of a cut: the units that make a node of the cut and need none."""
     inside = frozenset(cut)
     makers = (unit for o in inside - problem.kitchen for unit in problem.makers[o])
     return {unit for unit in makers if inside.isdisjoint(problem.needs[unit])}
 
 
 def _cost(content: Json) -> float | None:
-    """Return what the tree of a certificate costs, or its bound, in the measure of the weights."""
+    """Return the cost or the bound of a certificate by its first objective, in the unit of the weights."""
     if content["claim"] == "optimal":
         return _measured(content["objective"][0], content["costs"][0])
     return None if content["bound"] is None else _approximate(content["bound"][0])
 
 
-def _paid(problem: Problem, content: Json, given: Iterable[Choice]) -> float:
-    """Return what the units and items cost that are given to be taken."""
+def _paid(problem: Problem, content: Json, decisions: Iterable[Choice]) -> float:
+    """Return the cost of the units and items that a case takes, by the first objective."""
     if not content["objective"]:
         return 0.0
     name = content["objective"][0]
-    taken = [each for each in given if each.taken]
-    total = float(sum(each.kind == "item" for each in taken))
-    for each in taken:
-        if each.kind == "unit" and name != "kitchen":
-            total += _measured(name, problem.costs([each.id]).measures[name])
+    chosen = [choice for choice in decisions if choice.taken]
+    total = float(sum(choice.kind == "item" for choice in chosen))
+    for choice in chosen:
+        if choice.kind == "unit" and name != "kitchen":
+            total += _measured(name, problem.costs([choice.id]).measures[name])
     return total
 
 

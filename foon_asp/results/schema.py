@@ -1,4 +1,4 @@
-"""JSON Schemas of results, made of their fields and of what their docstrings say of these."""
+"""JSON Schemas of results, from their fields and docstrings."""
 
 import inspect
 import re
@@ -52,24 +52,26 @@ _OWN: dict[Any, tuple[str, Json]] = {
 
 def schema_of(document: type[Struct]) -> Json:
     """Return the JSON Schema of a document, draft 2020-12, complete in itself."""
-    (top,), parts = msgspec.json.schema_components([document], schema_hook=_hook, ref_template=_REFERENCE)
-    bases = {each.__name__: inspect.getmro(each) for each in _structs(document)}
-    for name, part in parts.items():
-        _describe(part, bases.get(name, ()))
-    for name, part in reversed(_OWN.values()):  # each may refer to one before it
-        if _REFERENCE.format(name=name) in repr(parts):
-            parts[name] = part
-    whole = parts.pop(top["$ref"].rpartition("/")[2])
-    title = whole["description"].rstrip(".")
-    schema = {"$schema": _DRAFT, **whole, "$defs": dict(sorted(parts.items())), "title": title}
+    (top,), definitions = msgspec.json.schema_components(
+        [document], schema_hook=_hook, ref_template=_REFERENCE
+    )
+    bases = {kind.__name__: inspect.getmro(kind) for kind in _structs(document)}
+    for name, definition in definitions.items():
+        _describe(definition, bases.get(name, ()))
+    for name, definition in reversed(_OWN.values()):  # each may refer to one before it
+        if _REFERENCE.format(name=name) in repr(definitions):
+            definitions[name] = definition
+    root = definitions.pop(top["$ref"].rpartition("/")[2])
+    title = root["description"].rstrip(".")
+    schema = {"$schema": _DRAFT, **root, "$defs": dict(sorted(definitions.items())), "title": title}
     _put_null_last(schema)
     _name_keys(schema)
     return schema
 
 
 def schema_of_rows(kind: str, row: type[Struct]) -> Json:
-    """Return the schema of a line of a file of rows: the question that all answer, or a row."""
-    found = schema_of(row)
+    """Return the schema of a line of a file of rows: the header with the question, or a row."""
+    row_schema = schema_of(row)
     name = {"schema": {"const": schema_name(kind)}}
     first = {
         "title": "The first line: what is asked of all",
@@ -79,30 +81,30 @@ def schema_of_rows(kind: str, row: type[Struct]) -> Json:
         "additionalProperties": False,
     }
     line = {
-        "title": found["title"],
+        "title": row_schema["title"],
         "type": "object",
-        "properties": {**name, **found["properties"]},
-        "required": ["schema", *found["properties"]],
+        "properties": {**name, **row_schema["properties"]},
+        "required": ["schema", *row_schema["properties"]],
         "additionalProperties": False,
     }
     title = f"A line of the results of {kind.removesuffix('-row')}"
-    return {"$schema": _DRAFT, "title": title, "oneOf": [first, line], "$defs": found["$defs"]}
+    return {"$schema": _DRAFT, "title": title, "oneOf": [first, line], "$defs": row_schema["$defs"]}
 
 
-def _name_keys(part: Any) -> None:
-    """Say what keys look like that are objectives or phases."""
-    for inner in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
+def _name_keys(schema: Any) -> None:
+    """Constrain the keys of open objects, which are objectives or phases, to a pattern."""
+    for inner in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
         _name_keys(inner)
-    if isinstance(part, dict) and isinstance(part.get("additionalProperties"), dict):
-        part["propertyNames"] = {"pattern": _KEY}
+    if isinstance(schema, dict) and isinstance(schema.get("additionalProperties"), dict):
+        schema["propertyNames"] = {"pattern": _KEY}
 
 
-def _put_null_last(part: Any) -> None:
-    """Order the kinds that a field may have, which versions of msgspec list in different orders."""
-    for inner in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
+def _put_null_last(schema: Any) -> None:
+    """Sort the alternatives of each field, null last: versions of msgspec list them in different orders."""
+    for inner in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
         _put_null_last(inner)
-    if isinstance(part, dict) and "anyOf" in part:
-        part["anyOf"].sort(key=lambda each: (each == {"type": "null"}, json_line(each)))
+    if isinstance(schema, dict) and "anyOf" in schema:
+        schema["anyOf"].sort(key=lambda choice: (choice == {"type": "null"}, json_line(choice)))
 
 
 def _hook(kind: type) -> Json:
@@ -115,45 +117,45 @@ def _hook(kind: type) -> Json:
 
 
 def _structs(document: type[Struct]) -> set[type[Struct]]:
-    """Return the structs that the fields of a document are made of, and those of their fields."""
-    found, waiting = set[type[Struct]](), [msgspec.inspect.type_info(document)]
-    for info in waiting:  # grows on the way
-        if isinstance(info, msgspec.inspect.StructType) and info.cls not in found:
-            found.add(info.cls)
+    """Return the structs that a document consists of, recursively."""
+    kinds, waiting = set[type[Struct]](), [msgspec.inspect.type_info(document)]
+    for info in waiting:  # grows during the loop
+        if isinstance(info, msgspec.inspect.StructType) and info.cls not in kinds:
+            kinds.add(info.cls)
             waiting += (field.type for field in info.fields)
         for name in ("item_type", "item_types", "types", "key_type", "value_type", "type"):
             inner = getattr(info, name, ())
             waiting += inner if isinstance(inner, tuple) else (inner,)
-    return found
+    return kinds
 
 
-def _describe(part: Json, bases: Sequence[type]) -> None:
-    """Say of each field what docstrings say of it, and allow no other keys.
+def _describe(schema: Json, bases: Sequence[type]) -> None:
+    """Add the descriptions of fields from docstrings, and forbid other keys.
 
-    ``bases`` are the class of the part and those that it stands on.
+    ``bases`` are the class of the schema and its base classes.
     """
-    docstring = part.pop("description", "")
-    part["description"] = docstring.partition("\n")[0]
-    if "properties" in part:
-        _require_written(part)
-        part["additionalProperties"] = False
+    docstring = schema.pop("description", "")
+    schema["description"] = docstring.partition("\n")[0]
+    if "properties" in schema:
+        _require_written(schema)
+        schema["additionalProperties"] = False
         keys = {field.name: field.encode_name for field in structs.fields(bases[0])} if bases else {}
         for text in (base.__doc__ or "" for base in bases) if bases else (docstring,):
-            _describe_fields(part, text, keys)
+            _describe_fields(schema, text, keys)
 
 
-def _require_written(part: Json) -> None:
+def _require_written(schema: Json) -> None:
     """Require the keys that are always written: all but those of fields that are unset."""
-    fields = part["properties"]
+    fields = schema["properties"]
     written = {name for name in fields if fields[name].pop("default", _UNSET) is not _UNSET}
-    required = {*written, *part.get("required", ())}
-    part["required"] = [name for name in part["properties"] if name in required]
+    required = {*written, *schema.get("required", ())}
+    schema["required"] = [name for name in schema["properties"] if name in required]
     if not required:
-        part["minProperties"] = 1
+        schema["minProperties"] = 1
 
 
-def _describe_fields(part: Json, docstring: str, keys: Mapping[str, str]) -> None:
+def _describe_fields(schema: Json, docstring: str, keys: Mapping[str, str]) -> None:
     for name, text in _ATTRIBUTE.findall(inspect.cleandoc(docstring)):
         key = keys.get(name, name)
-        if key in part["properties"]:
-            part["properties"][key].setdefault("description", " ".join(text.split()))
+        if key in schema["properties"]:
+            schema["properties"][key].setdefault("description", " ".join(text.split()))

@@ -1,4 +1,4 @@
-"""The JSON Schemas of documents, as ``python -m tests.results`` writes them from the fields of these."""
+"""The JSON Schemas of documents, written by ``python -m tests.results``."""
 
 from pathlib import Path
 
@@ -8,11 +8,11 @@ SCHEMAS = Path(__file__).resolve().parent / "schemas"
 
 
 def schema_kinds() -> tuple[str, ...]:
-    """Return the kinds of documents: what stands in their names, ``answer`` for ``foon-asp/answer/1``."""
+    """Return the kinds of documents as in their schema names: ``answer`` for ``foon-asp/answer/1``."""
     return tuple(sorted(file.stem for file in SCHEMAS.glob("*.json")))
 
 
 def schema(kind: str) -> Json:
     """Return the schema of a kind, complete in itself."""
-    found: Json = read_json((SCHEMAS / f"{kind}.json").read_text(encoding="utf-8"))
-    return found
+    values: Json = read_json((SCHEMAS / f"{kind}.json").read_text(encoding="utf-8"))
+    return values

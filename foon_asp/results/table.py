@@ -1,4 +1,4 @@
-"""What a result shows to people: lines and tables, laid out for the width of a terminal in one place."""
+"""Layout of results for people: lines and tables, fitted to the width of a terminal."""
 
 import re
 import textwrap
@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from foon_asp.escapes import escaped, escaped_lines
 
-NARROW = 75  # columns of a terminal: with fewer, a table is stacked
-_LEAST = 20  # columns
-_BEGINS = re.compile(r" *(?:\d+  )?")  # how far in a line stands, behind its number if it has one
+STACKED_BELOW = 75  # columns of a terminal: with fewer, a table is stacked
+_MIN_WIDTH = 20  # columns of folded text, at least
+_BEGINS = re.compile(r" *(?:\d+  )?")  # the indent of a line, including its number
 _COLOURS = {"good": "32", "bad": "31", "dim": "2", "strong": "1"}
 
 
@@ -24,41 +24,41 @@ class Table(NamedTuple):
     """Rows under headings; columns of figures are aligned to the right.
 
     A row that is one text is a line of its own, over the rows that follow it.
-    ``left`` are the places of the columns that are aligned to the left, of which the last one is folded where
-    it is too long. ``indent`` is how far in the table stands. ``headed`` says whether the headings are shown
-    where there is room; a narrow terminal shows a block for each row, a line ``heading: cell`` for each cell.
+    ``left_aligned`` are the indices of columns aligned to the left; the last of them is folded if it is too
+    long. ``indent`` is the number of spaces before the table. ``headed`` says whether a wide terminal
+    shows headings; a narrow one shows a block for each row, a line ``heading: cell`` for each cell.
     """
 
     headings: Sequence[str]
     rows: Sequence[Sequence[str | Cell] | str]
-    left: frozenset[int] = frozenset()
+    left_aligned: frozenset[int] = frozenset()
     indent: int = 0
     headed: bool = True
 
 
-Part = str | Table
-"""A line, or a table."""
+Block = str | Table
+"""A block of text for people: a line, or a table."""
 
 
-def rendered(parts: Iterable[Part], width: int | None = None, coloured: bool = False) -> str:
+def rendered(parts: Iterable[Block], width: int | None = None, coloured: bool = False) -> str:
     """Return lines and tables as text.
 
     Parameters:
         parts: The lines, each one line whatever is named in it, and tables, from top to bottom.
         width: The columns of the terminal; lines that are longer are folded between words, and tables are
-            stacked below :data:`NARROW`. Without it, lines are as long as they are.
+            stacked below :data:`STACKED_BELOW`. Without it, lines are as long as they are.
         coloured: Whether cells are coloured.
     """
     lines: list[str] = []
-    for part in parts:
-        if isinstance(part, Table):
+    for block in parts:
+        if isinstance(block, Table):
             lines += (
-                _stacked(part, width)
-                if width is not None and width < NARROW
-                else _aligned(part, width, coloured)
+                _stacked(block, width)
+                if width is not None and width < STACKED_BELOW
+                else _aligned(block, width, coloured)
             )
         else:
-            line = part.replace("\n", "\\u000a")  # of a name in it
+            line = block.replace("\n", "\\u000a")  # a name may hold a line end
             lines += _folded(escaped_lines(line) if coloured else line, width)
     return "".join(f"{line.rstrip()}\n" for line in lines)
 
@@ -73,23 +73,23 @@ def _aligned(table: Table, width: int | None, coloured: bool) -> Iterator[str]:
             yield _coloured(inset + escaped(row), row, coloured, heading=bool(row))
             continue
         cells = []
-        for place, (cell, wide) in enumerate(zip(row, widths, strict=True)):
+        for index, (cell, column_width) in enumerate(zip(row, widths, strict=True)):
             text = _text(cell)
-            last = place == len(row) - 1
+            last = index == len(row) - 1
             shown = (
                 text
-                if last and place in table.left
-                else text.ljust(wide)
-                if place in table.left
-                else text.rjust(wide)
+                if last and index in table.left_aligned
+                else text.ljust(column_width)
+                if index in table.left_aligned
+                else text.rjust(column_width)
             )
             cells.append(_coloured(shown, cell, coloured, heading=table.headed and not number))
         yield from _folded(inset + "  ".join(cells), None if coloured else width)
 
 
 def _stacked(table: Table, width: int) -> Iterator[str]:
-    for place, row in enumerate(filter(None, table.rows)):
-        if place:
+    for index, row in enumerate(filter(None, table.rows)):
+        if index:
             yield ""
         if isinstance(row, str):
             yield from _folded(escaped(row), width)
@@ -110,12 +110,12 @@ def _coloured(text: str, cell: str | Cell, coloured: bool, heading: bool) -> str
 
 
 def _folded(line: str, width: int | None) -> list[str]:
-    """Fold a line between words where it is longer than the terminal; what follows stands further in."""
+    """Return a line wrapped between words to the width of the terminal; continuation lines are indented."""
     if width is None or len(line) <= width:
         return [line]
     begins = _BEGINS.match(line)
     assert begins
     inner = " " * min(begins.end() + 2, width // 2)
     return textwrap.wrap(
-        line, max(_LEAST, width), subsequent_indent=inner, break_on_hyphens=False, break_long_words=False
+        line, max(_MIN_WIDTH, width), subsequent_indent=inner, break_on_hyphens=False, break_long_words=False
     )

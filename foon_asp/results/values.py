@@ -73,7 +73,7 @@ class Node(Value, frozen=True):
 
 
 class Origin(Value, frozen=True):
-    """Where an input comes from, one of these. Only a list that does not execute has the last two.
+    """The origin of an input: exactly one field is set. Only a list that does not execute has the last two.
 
     Attributes:
         kitchen: It is in the kitchen.
@@ -237,9 +237,9 @@ class Step(Value, frozen=True):
         """
         who = "    by the person" if self.by == "person" else ""
         yield f"{self.step:>3}  {self.motion}    [{self.source[0]}]{who}"
-        for taken in self.inputs:
-            used = ", used up" if taken.stays is False else ""
-            yield f"       {taken}  ({taken.origin}{used})"
+        for step_input in self.inputs:
+            used = ", used up" if step_input.stays is False else ""
+            yield f"       {step_input}  ({step_input.origin}{used})"
         for made in self.outputs:
             yield f"     → {made}{'' if made.made else '  (implied, not made here)'}"
         if self.stands_for is not UNSET:
@@ -267,7 +267,7 @@ class Lack(Value, frozen=True):
 
 
 class ListedConstraint(Value, frozen=True):
-    """A rule without a head (``:- ...``) of the user's.
+    """A user rule without a head (``:- ...``).
 
     Attributes:
         number: The number of the rule among all of them, from 1.
@@ -282,19 +282,19 @@ class ListedConstraint(Value, frozen=True):
 
     def lines(self, remark: str = "") -> Iterator[str]:
         """Return the place of the rule, a remark, and the constants; and below that its text."""
-        given = "".join(f"    -c {setting}" for setting in self.constants)
-        yield f"  {Source(self.file, self.line)}{remark}{given}"
+        settings = "".join(f"    -c {setting}" for setting in self.constants)
+        yield f"  {Source(self.file, self.line)}{remark}{settings}"
         yield f"      {self.text}"
 
 
 class UsedUpRun(Value, frozen=True):
     """Whether the steps, each done once, run where items are used up.
 
-    Those of an answer are done in the order listed, those of another tree in some order.
+    The steps of an answer are done in the order listed, the steps of another tree in some order.
 
     Attributes:
-        runs: null where no order was found and it is not proved that there is none, and below level 3.
-        shortage: What is missing, if it does not run.
+        runs: null if it is open whether any order runs, and below level 3.
+        shortage: The missing copy, if the steps do not run.
     """
 
     runs: bool | None
@@ -302,7 +302,7 @@ class UsedUpRun(Value, frozen=True):
 
 
 class CostedTree(Value, frozen=True):
-    """A tree and what it costs.
+    """A tree and its costs.
 
     Attributes:
         costs: What the tree costs by every objective.
@@ -321,14 +321,14 @@ class CostedTree(Value, frozen=True):
 
 
 def steps_not_in(steps: Sequence[Step], others: Iterable[Step]) -> list[Step]:
-    """Return the steps whose units are not among others; those of a plan, as often as they are missing."""
-    left = Counter(step.id for step in steps) - Counter(step.id for step in others)
-    found = []
+    """Return the steps whose units are not among ``others``, counting repeats (multiset difference)."""
+    missing = Counter(step.id for step in steps) - Counter(step.id for step in others)
+    rows = []
     for step in steps:
-        if left[step.id]:
-            left[step.id] -= 1
-            found.append(step)
-    return found
+        if missing[step.id]:
+            missing[step.id] -= 1
+            rows.append(step)
+    return rows
 
 
 def step_lines(steps: Iterable[Step | Unit], sign: str = " ") -> Iterator[str]:
@@ -340,14 +340,14 @@ def step_lines(steps: Iterable[Step | Unit], sign: str = " ") -> Iterator[str]:
 def changed_motions(
     gone: Iterable[Step | FunctionalUnit], new: Iterable[Step | FunctionalUnit], named: int = 6
 ) -> str:
-    """Return the motions of what goes and what comes, ``- heat  + pour (2)``, at most ``named`` of each."""
+    """Return the motions of removed and added steps, as ``- heat  + pour (2)``, at most ``named`` of each."""
     texts = []
     for sign, steps in (("-", gone), ("+", new)):
         counts = Counter(step.motion for step in steps)
         motions = [motion if count == 1 else f"{motion} ({count})" for motion, count in counts.items()]
         if len(motions) > named:
-            more = sum([*counts.values()][named - 1 :])
-            motions = [f"{', '.join(motions[: named - 1])} and {more} more"]
+            others = sum([*counts.values()][named - 1 :])
+            motions = [f"{', '.join(motions[: named - 1])} and {others} more"]
         if motions:
             texts.append(f"{sign} {', '.join(motions)}")
     return "  ".join(texts)

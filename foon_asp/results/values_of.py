@@ -84,9 +84,9 @@ def node_of(network: Network, o: int) -> Node:
     return node_as(Node, network, o)
 
 
-def node_as(kind: type[N], network: Network, o: int, **more: Any) -> N:
+def node_as(kind: type[N], network: Network, o: int, **fields: Any) -> N:
     """Return the object node that has an id as a kind of node, with the fields that this kind has more."""
-    return kind(network.object_number(o), *_parts(network.objects[o]), **more)
+    return kind(network.object_number(o), *_parts(network.objects[o]), **fields)
 
 
 def named_node(network: Network, node: ObjectNode) -> Node:
@@ -110,7 +110,7 @@ def unit_of(network: Network, unit: int) -> Unit:
     return unit_as(Unit, network, unit)
 
 
-def unit_as(kind: type[U], network: Network, unit: int, **more: Any) -> U:
+def unit_as(kind: type[U], network: Network, unit: int, **fields: Any) -> U:
     """Return the unit that has an id as a kind of unit, with the fields that this kind has more."""
     return kind(
         network.unit_number(unit),
@@ -119,30 +119,30 @@ def unit_as(kind: type[U], network: Network, unit: int, **more: Any) -> U:
         nodes_of(network, network.outputs[unit]),
         _places(network, unit),
         _details(network, unit),
-        **more,
+        **fields,
     )
 
 
-def listed_unit(network: Network, unit: FunctionalUnit, place: Source) -> Unit:
+def listed_unit(network: Network, unit: FunctionalUnit, source: Source) -> Unit:
     """Return a unit that was listed at a place, and that a network may have or not."""
     number = network.unit_id(unit)
     inputs, outputs = (
-        tuple(named_node(network, node) for node in side) for side in (unit.inputs, unit.outputs)
+        tuple(named_node(network, node) for node in nodes) for nodes in (unit.inputs, unit.outputs)
     )
     return Unit(
         None if number is None else network.unit_number(number),
         unit.motion,
         inputs,
         outputs,
-        (place_of(place),),
+        (place_of(source),),
     )
 
 
 def differences_of(pair: NearUnits) -> tuple[UnitDifference, ...]:
-    """Return in what two units differ that are nearly the same."""
+    """Return the differences of a pair of similar units."""
     return tuple(
-        UnitDifference(kind, left or None, right or None, of or None)
-        for kind, left, right, of in pair.differences
+        UnitDifference(kind, word_a or None, word_b or None, of or None)
+        for kind, word_a, word_b, of in pair.differences
     )
 
 
@@ -176,7 +176,7 @@ def steps_of(
 
 
 def costed_tree(problem: Problem, units: Collection[int], costs: Costs) -> CostedTree:
-    """Return a tree, by ids in an order that executes, and what it costs."""
+    """Return a tree with its costs, from unit ids in an order that executes."""
     return CostedTree(costs, used_up_of(problem, problem.tree(units)), steps_of(problem, units))
 
 
@@ -213,7 +213,9 @@ def copies_of(network: Network, counts: Mapping[ObjectNode, int]) -> tuple[Copie
 @functools.lru_cache(maxsize=10_000)  # units that are near each other share most of their nodes
 def _parts(node: ObjectNode) -> tuple[str, str, tuple[str, ...], tuple[Relation, ...], tuple[Contents, ...]]:
     relations = tuple(Relation(*relation) for relation in sorted(node.relations))
-    contents = tuple(Contents(each.word, tuple(each.ingredients)) for each in node.contents)
+    contents = tuple(
+        Contents(contents_of.word, tuple(contents_of.ingredients)) for contents_of in node.contents
+    )
     return str(node), node.label, tuple(sorted(node.states)), relations, contents
 
 
@@ -267,7 +269,7 @@ def _origin(
 
 
 def _origins_of_copies(problem: Problem, plan: Collection[int]) -> Iterator[tuple[int, Sequence[Origin]]]:
-    """Yield the same of a plan in which items are used up: each input is the oldest copy."""
+    """Yield the origins of the inputs of a plan in which items are used up: each input is the oldest copy."""
     copies = {o: [_KITCHEN] * (problem.stock_of(o) or 0) for o in problem.kitchen}
     for step, unit in enumerate(plan, 1):
         asks, uses, adds = problem.flows[unit]

@@ -15,7 +15,7 @@ from foon_asp.problem import Costs, Objective, Problem, UsedUp
 from foon_asp.questions.arguments import chosen_objectives
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.regret import regret_of
-from foon_asp.questions.view import Beside, View, pages
+from foon_asp.questions.view import PagePart, View, pages
 from foon_asp.results.figure_text import bound_text, costs_text
 from foon_asp.rules.constraint import Constraint, RuleText, find_constraint
 from foon_asp.serve.form import Form, Without
@@ -100,7 +100,7 @@ class Desk:
             "goals": [*entry_names(dataset.listed, dataset.names)],
             "kitchen": sorted(str(dataset.names.node(o)) for o in dataset.kitchen),
             "objectives": [*Objective, *dataset.measures],
-            "beside": [*Beside],
+            "beside": [*PagePart],
             "always": self._always(),
             "first": msgspec.to_builtins(self._first),
         }

@@ -6,7 +6,7 @@ import msgspec
 
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule
-from foon_asp.questions.view import Beside
+from foon_asp.questions.view import PagePart
 from foon_asp.text.json_value import read_json
 
 Names = tuple[str, ...]
@@ -27,7 +27,7 @@ class Form(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     adding: Names = ()
     without: Names = ()
     rules: str = ""
-    beside: tuple[Beside, ...] = ()
+    beside: tuple[PagePart, ...] = ()
 
 
 class Without(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

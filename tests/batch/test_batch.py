@@ -21,7 +21,7 @@ from msgspec import structs
 import foon_asp
 from foon_asp.batch.answer_row import ANSWERS, AnswerRow, answer_row
 from foon_asp.batch.answer_table import write_table
-from foon_asp.batch.asked import Asked
+from foon_asp.batch.batch_question import BatchQuestion
 from foon_asp.batch.cluster import answer_on_cluster
 from foon_asp.batch.question_file import read_questions
 from foon_asp.batch.workers import answer_all
@@ -151,7 +151,7 @@ class Misbehaving:
     def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
         return ()
 
-    def problem(self, asked: Asked) -> Problem:
+    def problem(self, asked: BatchQuestion) -> Problem:
         (name,) = asked.goals
         if name == "die":
             os.kill(os.getpid(), signal.SIGKILL)
@@ -176,7 +176,7 @@ class OpenMisbehaving:
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_one_question_never_ends_the_run(jobs: int) -> None:
     names = ["ice", "die", "macaroni", "sleep", "leave", "break", "greek salad"]
-    questions = [Asked(name, time_limit=5.0 if name != "sleep" else 0.1) for name in names]
+    questions = [BatchQuestion(name, time_limit=5.0 if name != "sleep" else 0.1) for name in names]
     answered = answer_all(OpenMisbehaving(), questions, jobs, grace=0.5 if jobs == 1 else 1.0)
     rows = {row.goals[0]: row for row in answered}
     assert set(rows) == set(names)
@@ -238,7 +238,7 @@ def test_results_are_written_by_one_run_and_a_row_that_stands_twice_is_reported(
 
 def test_tables_have_a_column_for_each_cost_and_each_part_of_a_question(tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
-    row = answer_row(Misbehaving(), Asked("ice", "attempts"))
+    row = answer_row(Misbehaving(), BatchQuestion("ice", "attempts"))
     row = structs.replace(row, goal=("ice", "macaroni"))
     assert row.costs is not None
     row.costs.update(price=Fraction(1, 3), washing=2)
@@ -336,7 +336,7 @@ class Deadly:
     def named(self, *_: object) -> Sequence[str]:
         return ()
 
-    def problem(self, asked: Asked) -> Problem:
+    def problem(self, asked: BatchQuestion) -> Problem:
         (goal,) = asked.goals
         time.sleep(0.05)  # so that others wait on the same worker
         once = self.folder / "once"
@@ -352,7 +352,7 @@ def test_only_the_question_that_kills_workers_in_the_middle_of_a_task_fails(
     tmp_path: Path, scheduler: str
 ) -> None:
     goals = [*map(str, range(30)), "once", *map(str, range(30, 47)), "deadly", *map(str, range(47, 70))]
-    rows = [*answer_on_cluster(Deadly(tmp_path), [Asked(goal) for goal in goals], scheduler)]
+    rows = [*answer_on_cluster(Deadly(tmp_path), [BatchQuestion(goal) for goal in goals], scheduler)]
     assert (tmp_path / "once").exists()
     assert Counter(row.goal for row in rows) == Counter(goals)
     errors = {row.goal: str(row.error) for row in rows}

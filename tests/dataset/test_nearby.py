@@ -17,7 +17,7 @@ from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.asp.outcome import Outcome
 from foon_asp.batch.answer_row import answer_row
-from foon_asp.batch.asked import Asked
+from foon_asp.batch.batch_question import BatchQuestion
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.cli.batch_data import BatchData
 from foon_asp.dataset import Dataset, nearby_optimum
@@ -249,9 +249,9 @@ def test_rows_of_a_batch_are_those_of_the_text(tmp_path: Path) -> None:
     statuses = set()
     for forbidden in ((), ("serve", "cook 3")):
         for goals, objective in product((("stew",), ("stew", "stock 9")), ("units", "success")):
-            one = Asked(goals, objective)
-            how = Settings(tuple(RuleText(f':- use(U), motion(U,"{each}").') for each in forbidden))
-            ours, theirs = (answer_row(asker, one, how=how) for asker in (text, store))
+            one = BatchQuestion(goals, objective)
+            settings = Settings(tuple(RuleText(f':- use(U), motion(U,"{each}").') for each in forbidden))
+            ours, theirs = (answer_row(asker, one, settings=settings) for asker in (text, store))
             assert structs.replace(theirs, seconds=0) == structs.replace(ours, seconds=0)
             statuses.add(ours.status)
     assert statuses == {"optimal", "infeasible", "failed"}  # there are no rates

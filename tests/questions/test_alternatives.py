@@ -15,7 +15,7 @@ from foon_asp.asp import Status
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.questions.alternatives import Alternatives, alternatives
-from foon_asp.questions.regret import Part, regret
+from foon_asp.questions.regret import Removal, regret
 from foon_asp.questions.solve import solve as solve_goals
 from tests.conftest import Cli
 from tests.oracle import task_trees
@@ -160,7 +160,7 @@ def test_what_a_part_is_worth(rule: ContainerRule) -> None:
             elif each.motion is not None:
                 left = [tree for tree in left if each.motion not in {unit.motion for unit in tree}]
             else:
-                pairs += each.part is Part.PAIR
+                pairs += each.part is Removal.PAIR
                 gone = {node.id for node in (each.item, each.second_item) if node}
                 without = replace(problem, kitchen=problem.kitchen - gone)
                 left = list(task_trees.trees(without))

@@ -11,7 +11,7 @@ import pytest
 
 from foon_asp.cli.verbs import VERBS
 from foon_asp.questions import contract
-from foon_asp.questions.contract import Option, Part, Question
+from foon_asp.questions.contract import Option, Question, Role
 from foon_asp.questions.index import INDEX, module_name, question_name
 from foon_asp.questions.result import Result
 from tests.conftest import Cli
@@ -41,8 +41,8 @@ def parameters(verb: str) -> dict[str, inspect.Parameter]:
 
 
 def asked_for(verb: str) -> dict[str, Option]:
-    parts = Part.QUESTION | Part.COMMAND
-    return {option.name: option for option in question_of(verb).options if option.part & parts}
+    parts = Role.QUESTION | Role.COMMAND
+    return {option.name: option for option in question_of(verb).options if option.role & parts}
 
 
 @pytest.mark.parametrize("verb", INDEX)
@@ -54,7 +54,7 @@ def test_a_question_is_a_verb(verb: str) -> None:
 @pytest.mark.parametrize("verb", INDEX)
 def test_options_are_parameters(verb: str) -> None:
     options = question_of(verb).options
-    posed = {each.name for each in options if each.part is Part.PROBLEM and each.positional}
+    posed = {each.name for each in options if each.role is Role.PROBLEM and each.positional}
     taken = {name for name in parameters(verb) if name not in PYTHON_ONLY}
     taken -= posed  # what is read to pose the problem comes before the options
     assert set(asked_for(verb)) == taken

@@ -1,4 +1,4 @@
-"""What two files have in common: two task trees, or two networks."""
+"""Comparison of two task trees or two networks."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -13,12 +13,12 @@ from foon_asp.foon import Foon, load
 from foon_asp.network import LEVELS, Network, NetworkBuilder, ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer
-from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
+from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
 from foon_asp.questions.diff.networks import NetworkDifference as NetworkDifference
 from foon_asp.questions.diff.networks import compare_networks
 from foon_asp.questions.diff.trees import TreeDifference as TreeDifference
 from foon_asp.questions.diff.trees import compare_trees
-from foon_asp.questions.how import Posed, begin
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import listed_tree, own_networks, settle_data
@@ -35,7 +35,7 @@ class Named(NamedTuple):
     read: Tree | Network
 
 
-_Given = Answer | Tree | Foon | File | Named
+_Comparable = Answer | Tree | Foon | File | Named
 
 
 def _posed(
@@ -55,7 +55,7 @@ def _of_files(
 ) -> tuple[Named, Named]:
     """Read two files as trees, with the data that these are about, or as networks."""
     read: dict[Path, ListedTree | Tree | Network] = {file: _read(file) for file in dict.fromkeys(files)}
-    listed = {file: each for file, each in read.items() if isinstance(each, ListedTree)}
+    listed = {file: content for file, content in read.items() if isinstance(content, ListedTree)}
     if goals or any(tree.is_tree for tree in listed.values()):
         dataset = data(listed)
         goals = goals or [goal for tree in listed.values() for goal in tree.goals]
@@ -68,12 +68,12 @@ def _of_files(
 def _data_of(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
     """Return the data of trees in files, where Python names none: the bundled kitchen, or the files."""
     kitchen = load(level=level)
-    own = own_networks(kitchen.network, files)
-    return load(own, level=level).dataset if own else kitchen.dataset
+    network_files = own_networks(kitchen.network, files)
+    return load(network_files, level=level).dataset if network_files else kitchen.dataset
 
 
 def _read(file: Path) -> ListedTree | Network:
-    """Read a file once: as the units that it lists, in order; a folder or a store as a network."""
+    """Read a file as a list of units in order, and a folder or a store as a network."""
     return load(file).network if file.is_dir() or is_store(file) else read_answer(file)
 
 
@@ -87,18 +87,18 @@ def _network(read: ListedTree | Tree | Network) -> Tree | Network:
     return builder.build()
 
 
-def _named(name: str, given: _Given, problem: Problem | None) -> Named:
-    """Return what Python gives by ``name``; a file is a tree where there is the problem of the other one."""
-    if isinstance(given, str | PathLike):
-        name, file = str(given), Path(given)
+def _named(name: str, compared: _Comparable, problem: Problem | None) -> Named:
+    """Return a compared value with its name; a file is read as a tree for ``problem``, else as a network."""
+    if isinstance(compared, str | PathLike):
+        name, file = str(compared), Path(compared)
         return Named(name, Tree.read(problem, file) if problem else _network(_read(file)))
-    if isinstance(given, Foon):
-        return Named(name, given.network.detailed or given.network)
-    if isinstance(given, Answer):
-        if given.tree is None:
+    if isinstance(compared, Foon):
+        return Named(name, compared.network.detailed or compared.network)
+    if isinstance(compared, Answer):
+        if compared.tree is None:
             raise NoTreeError(f"{name}: the answer has no tree")
-        return Named(name, given.tree)
-    return given if isinstance(given, Named) else Named(name, given)
+        return Named(name, compared.tree)
+    return compared if isinstance(compared, Named) else Named(name, compared)
 
 
 @question(
@@ -106,11 +106,11 @@ def _named(name: str, given: _Given, problem: Problem | None) -> Named:
         "a",
         "A task tree or a network: a file; networks may be folders or stores.",
         Kind.FILE,
-        Part.PROBLEM,
+        Role.PROBLEM,
         metavar="A",
         positional=True,
     ),
-    Option("b", "The other one.", Kind.FILE, Part.PROBLEM, metavar="B", positional=True),
+    Option("b", "The other one.", Kind.FILE, Role.PROBLEM, metavar="B", positional=True),
     GOALS,
     CONTAINERS,
     formats=("text", "json", "html", *TABLES[2:]),
@@ -138,8 +138,8 @@ def _named(name: str, given: _Given, problem: Problem | None) -> Named:
     """,
 )
 def diff(
-    a: _Given,
-    b: _Given,
+    a: _Comparable,
+    b: _Comparable,
     level: int = 3,
     **limits: Unpack[Posed],
 ) -> TreeDifference | NetworkDifference:
@@ -179,10 +179,10 @@ def diff(
             goals = [goal] if isinstance(goal, str | ObjectNode) else [*goal]
             data = partial(_data_of, level)
             a, b = _of_files((Path(a), Path(b)), goals, limits.get("containers"), data)
-        problem = next((each.problem for each in (a, b) if isinstance(each, Answer | Tree)), None)
-        (name_a, left), (name_b, right) = _named("a", a, problem), _named("b", b, problem)
-        if isinstance(left, Tree) and isinstance(right, Tree):
-            return compare_trees((name_a, name_b), (left, right))
-        if isinstance(left, Network) and isinstance(right, Network):
-            return compare_networks((name_a, name_b), (left, right), level)
+        problem = next((value.problem for value in (a, b) if isinstance(value, Answer | Tree)), None)
+        (name_a, value_a), (name_b, value_b) = _named("a", a, problem), _named("b", b, problem)
+        if isinstance(value_a, Tree) and isinstance(value_b, Tree):
+            return compare_trees((name_a, name_b), (value_a, value_b))
+        if isinstance(value_a, Network) and isinstance(value_b, Network):
+            return compare_networks((name_a, name_b), (value_a, value_b), level)
         raise UserError(f"{name_a} and {name_b}: found a task tree and a network, expected two of a kind")

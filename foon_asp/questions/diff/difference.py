@@ -1,4 +1,4 @@
-"""What two lists of units have in common, be they task trees or networks."""
+"""Comparison of two lists of units, of task trees or networks."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -70,7 +70,7 @@ class Difference(Result, frozen=True, kw_only=True):
             self.figures(),
             [
                 Pair(
-                    "nearly the same", [(near.a, near.b, near.differences) for near in self.nearly_the_same]
+                    "nearly the same", [(pair.a, pair.b, pair.differences) for pair in self.nearly_the_same]
                 ),
                 Pair("only in A", [(unit, None, ()) for unit in self.only_in_a]),
                 Pair("only in B", [(None, unit, ()) for unit in self.only_in_b]),
@@ -82,7 +82,7 @@ class Difference(Result, frozen=True, kw_only=True):
 def compared(a: Mapping[FunctionalUnit, Unit], b: Mapping[FunctionalUnit, Unit]) -> dict[str, Any]:
     """Return the fields of a :class:`Difference` for the units of two, each with its value."""
     pairs = nearest_units([unit for unit in a if unit not in b], [unit for unit in b if unit not in a])
-    paired = {unit for left, right, _ in pairs for unit in (left, right)}
+    paired = {unit for unit_a, unit_b, _ in pairs for unit in (unit_a, unit_b)}
     only_in_a, only_in_b = (
         tuple(value for unit, value in ours.items() if unit not in theirs and unit not in paired)
         for ours, theirs in ((a, b), (b, a))

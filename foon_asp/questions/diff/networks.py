@@ -1,4 +1,4 @@
-"""What two networks have in common: two annotations of one video, or two versions of a FOON."""
+"""Comparison of two networks: two annotations of one video, or two versions of a FOON."""
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
@@ -6,14 +6,14 @@ from typing import Self
 
 from foon_asp.network import LEVELS, Network, network_at_level
 from foon_asp.questions.diff.difference import Difference, compared
-from foon_asp.results.table import Part, Table
+from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Value
 from foon_asp.results.values_of import unit_of
 from foon_asp.text.json_value import schema_name
 
 
 class Agreement(Value, frozen=True):
-    """How much two sets have in common.
+    """The overlap of two sets.
 
     Attributes:
         a: How many the first has.
@@ -74,17 +74,17 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
             ("agreement", "A", "B", "both", "Jaccard", "F1"),
             *(
                 (
-                    f"{noun}, level {each.level}",
-                    *(f"{count:,}" for count in (found.a, found.b, found.both)),
-                    *(f"{float(figure):.3f}" for figure in (found.jaccard, found.f1)),
+                    f"{noun}, level {level_agreement.level}",
+                    *(f"{count:,}" for count in (scores.a, scores.b, scores.both)),
+                    *(f"{float(figure):.3f}" for figure in (scores.jaccard, scores.f1)),
                 )
                 for noun, field in (("units", "units"), ("object nodes", "nodes"))
-                for each in self.agreement
-                for found in (getattr(each, field),)
+                for level_agreement in self.agreement
+                for scores in (getattr(level_agreement, field),)
             ),
         ]
 
-    def show(self) -> Iterator[Part]:
+    def show(self) -> Iterator[Block]:
         """Return the figures of all levels, and the units in which the networks differ."""
         yield from (f"compared as networks, at level {self.level}", f"A: {self.a}", f"B: {self.b}", "")
         headings, *rows = self.figures()
@@ -94,10 +94,10 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
 
 def compare_networks(names: Sequence[str], networks: Sequence[Network], level: int) -> NetworkDifference:
     """Compare two networks of level 3, and list the units at a level."""
-    at_level = {each: [network_at_level(network, each) for network in networks] for each in LEVELS}
+    at_level = {detail: [network_at_level(network, detail) for network in networks] for detail in LEVELS}
     a, b = ({n.unit(u): unit_of(n, u) for u in range(len(n))} for n in at_level[level])
     agreement = tuple(
-        LevelAgreement(each, Agreement.of([[*n] for n in both]), Agreement.of([n.objects for n in both]))
-        for each, both in at_level.items()
+        LevelAgreement(detail, Agreement.of([[*n] for n in both]), Agreement.of([n.objects for n in both]))
+        for detail, both in at_level.items()
     )
     return NetworkDifference(a=names[0], b=names[1], level=level, agreement=agreement, **compared(a, b))

@@ -1,4 +1,4 @@
-"""What two task trees have in common, what each costs, and where they part."""
+"""Comparison of two task trees: costs, common units, and the nodes where they part."""
 
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,9 +11,9 @@ from foon_asp.problem import ContainerRule, Costs, Objective, given_outputs, nee
 from foon_asp.questions.diff.difference import Difference, compared
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
-from foon_asp.results.document import Known
+from foon_asp.results.document import Unserialized
 from foon_asp.results.figure_text import costs_text
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Unit, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, listed_unit, named_node, used_up_of
 from foon_asp.text.json_value import schema_name
@@ -43,12 +43,12 @@ class Side(Value, frozen=True, kw_only=True):
 
     @property
     def costs_text(self) -> str:
-        """What the tree costs in words."""
+        """The costs of the tree in words."""
         return "costs unknown: units are not in the network" if self.costs is None else costs_text(self.costs)
 
 
 class Making(Value, frozen=True):
-    """Where a tree has an object node from, one of these.
+    """The achiever of an object node in a tree: a unit or the kitchen.
 
     Attributes:
         unit: The unit that makes it first.
@@ -67,7 +67,7 @@ class Making(Value, frozen=True):
 
 
 class Parting(Value, frozen=True):
-    """An object node that both trees come to on the way back from the goals, and get in different ways."""
+    """An object node that both trees need, traced back from the goals, and achieve in different ways."""
 
     object: Node
     a: Making
@@ -97,18 +97,18 @@ class TreeDifference(Difference, frozen=True, kw_only=True, tag=schema_name("dif
     same_order: bool
     they_part_at: tuple[Parting, ...]
 
-    trees = Known[tuple[Tree, Tree]]()
+    trees = Unserialized[tuple[Tree, Tree]]()
     """The two trees."""
 
     def figures(self) -> Sequence[Sequence[str]]:
-        """Return what each tree costs."""
+        """Return the costs of each tree."""
         return [("", "costs"), ("A", self.a.costs_text), ("B", self.b.costs_text)]
 
-    def show(self) -> Iterator[Part]:
+    def show(self) -> Iterator[Block]:
         """Return the costs of both, the units that only one has, and where they part."""
         yield "compared as task trees"
-        for letter, side, tree in (("A", self.a, self.trees[0]), ("B", self.b, self.trees[1])):
-            yield f"{letter}: {side.name}    {side.costs_text}"
+        for letter, summary, tree in (("A", self.a, self.trees[0]), ("B", self.b, self.trees[1])):
+            yield f"{letter}: {summary.name}    {summary.costs_text}"
             yield from used_up_note(tree.problem, tree)
         yield ""
         if self.same_units:
@@ -123,12 +123,12 @@ class TreeDifference(Difference, frozen=True, kw_only=True, tag=schema_name("dif
 
 
 def compare_trees(names: Sequence[str], trees: tuple[Tree, Tree]) -> TreeDifference:
-    """Compare two trees, which are followed back from the goals of both to where they part."""
+    """Compare two trees: the costs, the units, and the nodes where they part, from the goals backwards."""
     goals = [node for tree in trees for node in tree.problem.goal_nodes]
     (units_a, origins_a), (units_b, origins_b) = ((_units(tree), _origins(tree, goals)) for tree in trees)
     network = trees[0].problem.network
-    side_a, side_b = map(_side, names, trees)
-    found = TreeDifference(
+    side_a, side_b = map(_side_of, names, trees)
+    difference = TreeDifference(
         a=side_a,
         b=side_b,
         same_units=units_a.keys() == units_b.keys(),
@@ -140,10 +140,10 @@ def compare_trees(names: Sequence[str], trees: tuple[Tree, Tree]) -> TreeDiffere
         ),
         **compared(units_a, units_b),
     )
-    return found.knowing(trees=trees)
+    return difference.knowing(trees=trees)
 
 
-def _side(name: str, tree: Tree) -> Side:
+def _side_of(name: str, tree: Tree) -> Side:
     problem = tree.problem
     ids = [number for unit in tree if (number := problem.network.unit_id(unit)) is not None]
     costs = problem.costs(ids) if len(ids) == len(tree) else None
@@ -153,8 +153,8 @@ def _side(name: str, tree: Tree) -> Side:
 def _units(tree: Tree) -> dict[FunctionalUnit, Unit]:
     """Return the units of a tree in order, each as it was listed first."""
     units: dict[FunctionalUnit, Unit] = {}
-    for unit, place in zip(tree.units, tree.places, strict=True):
-        units.setdefault(unit, listed_unit(tree.problem.network, unit, place))
+    for unit, source in zip(tree.units, tree.places, strict=True):
+        units.setdefault(unit, listed_unit(tree.problem.network, unit, source))
     return units
 
 
@@ -163,7 +163,7 @@ _Origin = FunctionalUnit | bool
 
 
 def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origin]:
-    """Return the nodes that a tree needs on the way back from goals, those near the goals first."""
+    """Return the origins of the nodes that a tree needs, breadth first from the goals backwards."""
     problem = tree.problem
     rule = problem.containers, problem.utensils, problem.network
     needs: dict[object, tuple[ObjectNode, ...]] = {unit: needed_inputs(unit, *rule) for unit in tree}

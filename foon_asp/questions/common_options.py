@@ -1,4 +1,4 @@
-"""How a question is asked: rules, limits, progress and cancelling, which every question takes."""
+"""Keyword options that every question takes: rules, limits, progress and cancelling."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -20,7 +20,7 @@ Constants = Mapping[str, object] | Iterable[str]
 
 
 class Limits(TypedDict, total=False):
-    """When a question ends at the latest, and who hears of its progress."""
+    """Keyword options for time and memory limits, progress reports and cancelling."""
 
     time_limit: Annotated[float | None, _TIME]
     memory_limit: Annotated[int | str | None, _MEMORY]
@@ -29,42 +29,42 @@ class Limits(TypedDict, total=False):
 
 
 class Posed(Limits, total=False):
-    """The same, and how a problem is posed where a path or data stand in place of it."""
+    """Keyword options of :class:`Limits`, and the goals and container rule for a path or for data."""
 
     goal: str | ObjectNode | Iterable[str | ObjectNode]
     containers: str
 
 
-class How(Posed, total=False):
-    """The same, with the rules that a tree keeps to."""
+class CommonOptions(Posed, total=False):
+    """Keyword options of :class:`Posed`, and the rules that a tree keeps to."""
 
     constraints: Annotated[Files, CONSTRAINTS, RULE]
     encodings: Annotated[File | None, ENCODINGS]
     constants: Annotated[Constants | None, CONSTANTS]
 
 
-def settings_of(how: How) -> Settings:
-    """Return the settings of a search, with limits that begin now."""
-    encodings, constants = how.get("encodings"), how.get("constants") or ()
+def settings_of(options: CommonOptions) -> Settings:
+    """Return the settings of a search; its time limit starts now."""
+    encodings, constants = options.get("encodings"), options.get("constants") or ()
     if isinstance(constants, Mapping):
         constants = [f"{name}={value}" for name, value in constants.items()]
     return Settings(
-        given_constraints(how.get("constraints", ())),
+        given_constraints(options.get("constraints", ())),
         None if encodings is None else Path(encodings),
         tuple(constants),
-        deadline=begin(how),
+        deadline=begin(options),
     )
 
 
-def begin(how: Limits) -> Deadline:
-    """Let limits begin, within those of the command that asks."""
-    within, (time, memory) = caller().deadline, limits_of(how)
-    if time is None and memory is None and within is not None:
-        return within
-    return Deadline(time, memory, within=within)
+def begin(options: Limits) -> Deadline:
+    """Return a deadline that starts now and ends no later than the deadline of the calling command."""
+    outer, (time, memory) = caller().deadline, limits_of(options)
+    if time is None and memory is None and outer is not None:
+        return outer
+    return Deadline(time, memory, within=outer)
 
 
-def limits_of(how: Limits) -> tuple[float | None, int | None]:
-    """Return limits, in seconds and in bytes."""
-    time, memory = how.get("time_limit"), how.get("memory_limit")
+def limits_of(options: Limits) -> tuple[float | None, int | None]:
+    """Return the time limit in seconds and the memory limit in bytes; ``None`` is unlimited."""
+    time, memory = options.get("time_limit"), options.get("memory_limit")
     return None if time is None else seconds(time), None if memory is None else memory_size(memory)

@@ -8,7 +8,7 @@ from msgspec import Meta
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
-from foon_asp.results.table import Part
+from foon_asp.results.table import Block
 from foon_asp.text.json_value import Json, schema_name
 
 _ANY_DOCUMENT = Meta(
@@ -20,7 +20,7 @@ _ANY_DOCUMENT = Meta(
 )
 
 
-class Each(Result, frozen=True, kw_only=True, tag=schema_name("each")):
+class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
     """A question asked of several goals, each by itself.
 
     Attributes:
@@ -32,12 +32,12 @@ class Each(Result, frozen=True, kw_only=True, tag=schema_name("each")):
 
     @property
     def ending(self) -> Ending:
-        """Stopped at a limit if one was, and negative if one is."""
+        """``LIMIT`` if any answer stopped at a limit, else ``NEGATIVE`` if any is negative, else ``DONE``."""
         endings = {result.ending for result in self.answers}
-        return next(each for each in (Ending.LIMIT, Ending.NEGATIVE, Ending.DONE) if each in endings)
+        return next(ending for ending in (Ending.LIMIT, Ending.NEGATIVE, Ending.DONE) if ending in endings)
 
-    def show(self) -> Iterator[Part]:
-        """Return one after the other; goals that are made by the same tree have it once."""
+    def show(self) -> Iterator[Block]:
+        """Return the answers one after the other; a tree shared by several goals is shown once."""
         from foon_asp.questions.answer import Answer  # noqa: PLC0415 (takes the solver along)
 
         for number, (first, *others) in enumerate(self._same_trees()):
@@ -50,7 +50,7 @@ class Each(Result, frozen=True, kw_only=True, tag=schema_name("each")):
                 yield from first.show()
 
     def _same_trees(self) -> list[list[Any]]:
-        """Return the answers in groups: those with one tree, and others alone."""
+        """Return groups of answers that share a tree; other answers are groups of one."""
         from foon_asp.questions.answer import Answer  # noqa: PLC0415
 
         groups: dict[object, list[Any]] = {}
@@ -70,13 +70,13 @@ class Each(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         return "".join(answer.foon() for answer in self.answers)
 
     def steps(self) -> str:
-        """Refuse: a program has to know which goal it works for."""
+        """Raise :class:`UserError`: a robot's plan is for one goal."""
         raise UserError("these are steps for several goals: name one with --goal")
 
     def remark(self, format_: str) -> str:
-        """Return what a format cannot tell, goal by goal."""
+        """Return the remarks that a format cannot express, goal by goal."""
         return "\n".join(filter(None, (answer.remark(format_) for answer in self.answers)))
 
     def write_chart(self, file: File) -> None:
-        """Refuse: a chart is of one goal."""
+        """Raise :class:`UserError`: a chart is of one goal."""
         raise NothingToDrawError("a chart is of one goal: name it with --goal")

@@ -1,4 +1,4 @@
-"""One of many questions, and who turns it into a problem."""
+"""One question of a batch, and the protocol of the data that pose it."""
 
 from collections.abc import Callable, Sequence
 from typing import Annotated, Protocol
@@ -13,7 +13,7 @@ Goals = Name | Annotated[tuple[Name, ...], Meta(min_length=1)]
 Seconds = Annotated[float, Meta(ge=0, le=1e9)]  # at most some thirty years
 
 
-class Asked(Value, frozen=True):
+class BatchQuestion(Value, frozen=True):
     """One question of a batch, by names, as a line of JSON has it.
 
     Attributes:
@@ -42,14 +42,14 @@ class Asked(Value, frozen=True):
 
 
 class Asker(Protocol):
-    """Data that is open, and may be asked again and again."""
+    """Open data that pose questions as problems, any number of times."""
 
     def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
         """Return the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
 
-    def problem(self, asked: Asked) -> Problem:
-        """Pose a question; raises :class:`UserError` where a goal or a kitchen is not there."""
+    def problem(self, question: BatchQuestion) -> Problem:
+        """Pose a question as a problem; raises :class:`UserError` for an unknown goal or kitchen."""
 
 
 Opener = Callable[[], Asker]
-"""Opens the data, once in each worker: it has to pickle and to have a hash, and equal ones open the same."""
+"""A picklable, hashable function that opens the data, once in each worker; equal ones open equal data."""
