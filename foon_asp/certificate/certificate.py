@@ -12,7 +12,16 @@ from typing import Any, NamedTuple
 from foon_asp.bounds.branching import branched
 from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.lexicographic import Vector
-from foon_asp.bounds.lower_bound import Broken, Cases, CheaperError, Dear, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds.lower_bound import (
+    Broken,
+    Cases,
+    CheaperError,
+    CostFixing,
+    Hopeless,
+    Packing,
+    Proof,
+    Prover,
+)
 from foon_asp.certificate.arrays import Arrays, written
 from foon_asp.certificate.coverage import NOTHING, Coverage, needed
 from foon_asp.errors import BugError
@@ -142,7 +151,7 @@ def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence
         arrays.order,
         arrays.forbidden,
         expired,
-        known=cuts,
+        known_cuts=cuts,
         limits=arrays.limits,
         rules=rules,
         multiples=arrays.multiples,
@@ -190,7 +199,7 @@ def _write(
             return packed(proof)
         if isinstance(proof, Broken):
             return {"broken": proof.rule}
-        if isinstance(proof, Dear):
+        if isinstance(proof, CostFixing):
             dear = [arrays.member(action) for action in proof.actions]
             return {"dear": dear, **packed(proof.packing), "others": stated(proof.others)}
         return {

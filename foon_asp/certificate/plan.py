@@ -309,7 +309,7 @@ class _Stated:
             item = self._columns.get(proof.column)
             branch = {"unit": self._question.unit(proof.column)} if item is None else {"item": item}
             above, up_to = self.proof(proof.above), self.proof(proof.up_to)
-            return {"branch": branch, "most": proof.most, "up_to": up_to, "above": above}
+            return {"branch": branch, "most": proof.max_count, "up_to": up_to, "above": above}
         found: dict[str, dict[tuple[int, ...], Vector]] = {}
         for condition, weight in proof.weights:
             kind, place, scale = self._place(condition)

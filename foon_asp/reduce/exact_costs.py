@@ -132,7 +132,7 @@ class ExactCosts:
         order = Lexicographic([rates if o in self._multiplied else None for o in self._objectives])
         places = {rate: place for place, rate in enumerate(rates)}
         vectors = _Vectors(self, places)
-        rests = {action: vectors.of(action) for action in cuts.left}
+        rests = {action: vectors.of(action) for action in cuts.reduced_costs}
         proved = [0] * order.width
         for cut in cuts.cuts:
             weight = tuple(rests[cut.cheapest])

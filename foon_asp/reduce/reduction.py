@@ -482,7 +482,9 @@ class _Reducer:
         only_better = Reduction.BOUNDS in self.reductions
         if Reduction.DEAR in self.reductions:
             limit = (max(total, self.below) + costs.doubt - only_better) * PARTS - shared.bound
-            self.left = dear_left_out(self.graph, self.left, shared.left.__getitem__, limit, self.expired)
+            self.left = dear_left_out(
+                self.graph, self.left, shared.reduced_costs.__getitem__, limit, self.expired
+            )
         if Reduction.DOMINATED in self.reductions:
             self.left = undominated(self.graph, self.left, costs)
         return only_better and not costs.doubt and bound == total >= self.below

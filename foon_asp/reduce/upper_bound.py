@@ -68,7 +68,7 @@ def following(
         return 1 + _part(cost(action), 1 - min(1.0, shared.shares[action]))
 
     def loose(action: int) -> int:
-        return cost(action) + shared.left[action]
+        return cost(action) + shared.reduced_costs[action]
 
     for price in (unshared, loose):
         for added in (True, False):

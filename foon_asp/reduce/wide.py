@@ -155,7 +155,7 @@ class Wide:
 
 def rests(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
     """Return what cuts leave of the costs of actions."""
-    left = cuts.left
+    left = cuts.reduced_costs
     return lambda action: left[action] if action in left else costs(action)
 
 
