@@ -191,9 +191,9 @@ class _Solver:
 
         One is looked for that has units without what they need, and then one near the goals.
         """
-        if not wide.spare and not self._known and (found := self._within_limits(wide, tree)) is not None:
+        if not wide.redundant and not self._known and (found := self._within_limits(wide, tree)) is not None:
             return found
-        ended = None if wide.spare else self._with_loose_ends(wide, tree)
+        ended = None if wide.redundant else self._with_loose_ends(wide, tree)
         is_best = ended is not None
         if ended is None:
             ended = self._near(wide, tree)
@@ -276,7 +276,7 @@ class _Solver:
         """
         try:
             with self.deadline.watched("cutting the network", late=True):
-                within = wide.within(wide.total(tree), lambda: self.deadline.passed)
+                within = wide.units_within(wide.total(tree), lambda: self.deadline.passed)
         except KeyboardInterrupt:
             return self._limited(tree, ())
         if ended is not None and ended.units is not None and within <= set(self.first.units):
@@ -304,11 +304,11 @@ class _Solver:
         required = write_required([map(number, sorted(each)) for each in sets])
         before = wide.left_of(self._known)
         most = _MANY + len(before)
-        known = wide.with_only_makers(before.union(tree, *(e for e in sets if len(e) <= _NEAR)), most)
+        known = wide.with_only_achievers(before.union(tree, *(e for e in sets if len(e) <= _NEAR)), most)
         by, fewest = _FEWEST, 0  # quick to ask, and enough to see that there is none
         for _ in range(_LOOSE):
             self._known.update(map(number, known))
-            self._look_at(known.union(wide.makers(known), *sets))
+            self._look_at(known.union(wide.achievers_for(known), *sets))
             asked = replace(self.first, program=program)
             text = required + write_known(map(number, sorted(known)))
             ended = asked.run(text + write_objectives(by))
@@ -327,10 +327,10 @@ class _Solver:
                 return self._settled_with_loose_ends(ended, program, text, known, fewest)
             if len(known) > most:
                 return None
-            fresh = wide.beside(ended.units - known)
+            fresh = wide.rival_achievers(ended.units - known)
             enough = min(most, len(known) * _GROWN)
             while fresh and len(known) < enough:
-                fresh = wide.with_only_makers(fresh | wide.makers(fresh), most) - known
+                fresh = wide.with_only_achievers(fresh | wide.achievers_for(fresh), most) - known
                 known |= fresh
         return None
 

@@ -148,7 +148,7 @@ class _Search:
             wide = reduce(relaxed, self._order, expired=lambda: deadline.passed, brief=True).wide
             if wide is None:
                 return None
-            kept = wide.within(wide.costs.of(costs), lambda: deadline.passed)
+            kept = wide.units_within(wide.costs.of(costs), lambda: deadline.passed)
             deadline.check()
             missing = near.open_to(kept)
             if not missing:
