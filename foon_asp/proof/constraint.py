@@ -76,7 +76,7 @@ class Meaning(NamedTuple):
     removed: Units = frozenset()
     wanted: Sequence[Sequence[Sequence[Units]]] = ()
     things: Sequence[tuple[Units, Fraction]] = ()
-    most: Fraction | None = None
+    max_sum: Fraction | None = None
     never: bool = False
     barred: Barred | None = None
     limits: Sequence[tuple[Mapping[int, Fraction], Fraction]] = ()
@@ -192,18 +192,18 @@ def _require_intermediate(question: Question, required_intermediate: str) -> Mea
     return Meaning(wanted=[wanted])
 
 
-def _each(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
+def _one_each(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
     """Return units as things of their own that count 1 each."""
     one = Fraction(1)
     return [(frozenset({unit}), one) for unit in sorted(units)]
 
 
 def _at_most_units(question: Question, max_units: int) -> Meaning:
-    return Meaning(things=_each(range(len(question.network))), most=Fraction(max_units))
+    return Meaning(things=_one_each(range(len(question.network))), max_sum=Fraction(max_units))
 
 
 def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> Meaning:
-    return Meaning(things=_each(question.with_motion(limited_motion)), most=Fraction(max_uses))
+    return Meaning(things=_one_each(question.with_motion(limited_motion)), max_sum=Fraction(max_uses))
 
 
 def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
@@ -211,16 +211,16 @@ def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
     labels = {o: node.label for o, node in enumerate(network.objects) if node.label in utensils}
     touching: dict[str, list[int]] = {label: [] for label in sorted(utensils)}
     for unit, sides in enumerate(zip(network.inputs, network.outputs, strict=True)):
-        for label in {labels[o] for side in sides for o in side if o in labels}:
+        for label in {labels[o] for nodes in sides for o in nodes if o in labels}:
             touching[label].append(unit)
     one = Fraction(1)
-    each = [(frozenset(units), one) for units in touching.values() if units]
-    return Meaning(things=each, most=Fraction(max_utensils))
+    touched = [(frozenset(units), one) for units in touching.values() if units]
+    return Meaning(things=touched, max_sum=Fraction(max_utensils))
 
 
 def _at_most_utensil_uses(question: Question, limited_utensil: str, max_utensil_uses: int) -> Meaning:
     units = question.touching(question.labelled(limited_utensil))
-    return Meaning(things=_each(units), most=Fraction(max_utensil_uses))
+    return Meaning(things=_one_each(units), max_sum=Fraction(max_utensil_uses))
 
 
 def _at_most_price(question: Question, max_price: int) -> Meaning:
@@ -228,12 +228,12 @@ def _at_most_price(question: Question, max_price: int) -> Meaning:
     prices = {unit: question.price(unit) for unit in range(len(question.network))}
     unknown = frozenset(unit for unit, price in prices.items() if price is None)
     things = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
-    return Meaning(unknown, things=things, most=Fraction(max_price))
+    return Meaning(unknown, things=things, max_sum=Fraction(max_price))
 
 
 def _not_both_motions(question: Question, one_motion: str, other_motion: str) -> Meaning:
     motions = [question.with_motion(motion) for motion in (one_motion, other_motion)]
-    return Meaning(things=[(units, Fraction(1)) for units in motions], most=Fraction(1))
+    return Meaning(things=[(units, Fraction(1)) for units in motions], max_sum=Fraction(1))
 
 
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
@@ -248,22 +248,22 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
     later = question.with_motion(later_motion) - first
 
     def early(used: Units) -> set[int | None]:
-        at_hand: set[int | None] = set(question.kitchen)
+        available: set[int | None] = set(question.kitchen)
         waiting = used - first
-        while runs := {unit for unit in waiting if needs(unit) <= at_hand}:
-            at_hand.update(o for unit in runs for o in gives(unit))
+        while runs := {unit for unit in waiting if needs(unit) <= available}:
+            available.update(o for unit in runs for o in gives(unit))
             waiting -= runs
-        return at_hand
+        return available
 
     def barred(used: Units, without: Units) -> Units:
-        at_hand = early(used)
+        available = early(used)
         late: set[int | None] = set()
         stack = list(first - without)
         for unit in stack:  # grows while it is walked through
-            for o in gives(unit) - at_hand - late:
+            for o in gives(unit) - available - late:
                 late.add(o)
-                takers = network.consumers[o] if o is not None else ()
-                stack += (u for u in takers if u not in without and o in needs(u))
+                consumers = network.consumers[o] if o is not None else ()
+                stack += (u for u in consumers if u not in without and o in needs(u))
         return frozenset(unit for unit in later if late.isdisjoint(needs(unit)))
 
     return Meaning(barred=barred)
@@ -284,9 +284,9 @@ def own(rule: Rule) -> Meaning:
     others = [(used, without) for used, without in claims if used and (len(used) > 1 or without)]
 
     def barred(used: Units, without: Units) -> Units:
-        left = [some - used for some, none in others if none <= without]
-        whole = [some for some, none in others if none <= without and some <= used]
-        return frozenset().union(*(one for one in left if len(one) == 1), *whole)
+        unused = [together - used for together, excluded in others if excluded <= without]
+        whole = [together for together, excluded in others if excluded <= without and together <= used]
+        return frozenset().union(*(one for one in unused if len(one) == 1), *whole)
 
     limits = [
         ({unit: Fraction(amount) for amount, units in amounts.items() for unit in units}, Fraction(most))

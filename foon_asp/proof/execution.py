@@ -33,10 +33,10 @@ class Executions:
     def _of(self, unit: FunctionalUnit) -> Execution:
         """Return what running a unit once does."""
         problem = self._problem
-        how = problem.containers, problem.utensils, problem.network
-        preconditions = tuple(dict.fromkeys(needed_inputs(unit, *how)))
+        rules = problem.containers, problem.utensils, problem.network
+        preconditions = tuple(dict.fromkeys(needed_inputs(unit, *rules)))
         stays = {node: self._items.fate(unit, node, problem.utensils).stays for node in preconditions}
-        made = dict.fromkeys(given_outputs(unit, *how))
+        made = dict.fromkeys(given_outputs(unit, *rules))
         return Execution(
             preconditions,
             tuple(node for node in preconditions if not stays[node]),

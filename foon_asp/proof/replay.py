@@ -26,7 +26,7 @@ class Shortage(NamedTuple):
 
     step: int | None
     node: ObjectNode
-    taken: tuple[int, ...]
+    consumers: tuple[int, ...]
 
 
 class Step(NamedTuple):
@@ -93,14 +93,14 @@ def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, .
     A copy is made by a step or in the stock: of what never runs out there is always another one, and so there
     is of what ``is_free``, by its label.
     """
-    found: dict[tuple[Copy, int], list[int]] = {}
+    reading: dict[tuple[Copy, int], list[int]] = {}
     spent: Counter[Copy] = Counter()  # as in waits
     for number, step in enumerate(replay.steps):
         for copy in step.stayed:
             if (copy.made is not None or copy.node in replay.stock) and not is_free(copy.node.label):
-                found.setdefault((copy, spent[copy]), []).append(number)
+                reading.setdefault((copy, spent[copy]), []).append(number)
         spent.update(step.gone)
-    return [tuple(steps) for steps in found.values() if len(steps) > 1]
+    return [tuple(steps) for steps in reading.values() if len(steps) > 1]
 
 
 class _Kitchen:
@@ -110,7 +110,7 @@ class _Kitchen:
         assert problem.items is not None
         self._goals, self._executions = problem.goal_nodes, Executions(problem)
         self._copies = {node: [Copy(node, None)] * n for node, n in self._executions.stock().items()}
-        self._taken: dict[ObjectNode, list[int]] = {}
+        self._consumers_of: dict[ObjectNode, list[int]] = {}
         self._made: Counter[ObjectNode] = Counter()  # copies made less copies used up
         self._least: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
 
@@ -128,8 +128,8 @@ class _Kitchen:
             missing = [node for node in self._goals if not self._has(node)]
             if missing:
                 shortage = self._shortage(None, missing[0])
-        left = tuple(copy for copies in self._copies.values() for copy in copies)
-        return Replay(tuple(steps), shortage, left, self._least)
+        remaining = tuple(copy for copies in self._copies.values() for copy in copies)
+        return Replay(tuple(steps), shortage, remaining, self._least)
 
     def _step(self, position: int, unit: FunctionalUnit) -> Step:
         preconditions, consumes, adds = self._executions.of(unit)
@@ -162,9 +162,9 @@ class _Kitchen:
         endless = self._endless(node)
         if endless:
             return endless
-        self._taken.setdefault(node, []).append(position)
+        self._consumers_of.setdefault(node, []).append(position)
         self._made[node] -= 1
         return self._copies[node].pop(0)
 
     def _shortage(self, step: int | None, node: ObjectNode) -> Shortage:
-        return Shortage(step, node, tuple(self._taken.get(node, ())))
+        return Shortage(step, node, tuple(self._consumers_of.get(node, ())))

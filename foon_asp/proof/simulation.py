@@ -62,8 +62,8 @@ def simulate_for(problem: Problem, tree: TaskTree) -> Simulation:
     network = problem.network
     goals = tuple(network.objects[goal] for goal in problem.goals)
     # Only what the tree or a goal asks for: a large kitchen takes longer to hash than a tree to execute.
-    asked = {*goals, *(node for unit in tree for node in unit.inputs)}
-    kitchen = frozenset(node for node in asked if network.object_id(node) in problem.kitchen)
+    relevant = {*goals, *(node for unit in tree for node in unit.inputs)}
+    kitchen = frozenset(node for node in relevant if network.object_id(node) in problem.kitchen)
     return simulate(tree, kitchen, goals, problem.containers, problem.utensils, network)
 
 

@@ -78,14 +78,14 @@ class Means(NamedTuple):
 
     def number_of(self, problem: Problem, name: ToolName) -> int:
         """Return how many there are: as is said, or as the stock has them, or one."""
-        said = self.tools.get(name)
-        if said is not None:
-            return said
+        stated = self.tools.get(name)
+        if stated is not None:
+            return stated
         stock = {} if problem.items is None else problem.items.stock
         return max(1, sum(n for node, n in stock.items() if self.name(node, node.label) == name))
 
 
-class Asked(NamedTuple):
+class ToolNeed(NamedTuple):
     """What a unit asks of tools of one label.
 
     It takes ``kept`` ones that are as they were when it is done, and ``changed`` ones; ``made`` are what they
@@ -104,10 +104,10 @@ class Asked(NamedTuple):
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
 
-def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, Asked]:
+def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, ToolNeed]:
     """Return what a unit asks for by label: its utensils, and those that its objects are in, on or at."""
     needed, _, made = Executions(problem).of(unit)
-    asked: dict[str, Asked] = {}
+    needs: dict[str, ToolNeed] = {}
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
     around = (relation.object for node in nodes for relation in node.relations)
     for label in dict.fromkeys([*(node.label for node in nodes), *around]):
@@ -121,8 +121,8 @@ def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[st
         if not own and not out:
             inside = sorted((node for node in needed if node.is_in(label)), key=problem.at_hand)
             others.append(next(iter(inside), None))  # preferably one that was made: it is known where
-        asked[label] = Asked(kept, changed, out, tuple(others))
-    return asked
+        needs[label] = ToolNeed(kept, changed, out, tuple(others))
+    return needs
 
 
 def timetable_fault(
@@ -208,25 +208,27 @@ class _Run:
     def _wrong_tools(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
         """Yield what is wrong with the tools of a step, as far as one sees it when it starts."""
         problem, means = self._problem, self._means
-        asked, needed = tools_asked(problem, means, unit), self._executions.of(unit).preconditions
-        given = Counter(tool.label for tool in tools)
-        for label in asked.keys() | given.keys():
-            wanted = asked[label].number if label in asked else 0
-            if given[label] != wanted:
-                yield f"has {given[label]} of {label}, and asks for {wanted}"
+        needs, needed = tools_asked(problem, means, unit), self._executions.of(unit).preconditions
+        brought = Counter(tool.label for tool in tools)
+        for label in needs.keys() | brought.keys():
+            wanted = needs[label].number if label in needs else 0
+            if brought[label] != wanted:
+                yield f"has {brought[label]} of {label}, and asks for {wanted}"
         for tool in tools:
             if not 1 <= tool.number <= means.number_of(problem, tool.name):
                 yield f"has {tool}, and there are {means.number_of(problem, tool.name)}"
-        for label, each in asked.items():
-            here = [tool for tool in tools if tool.label == label]
-            there = {node for tool in here for node in self._states.get(tool, ())}
-            taken = {node for node in (*each.kept, *each.changed, *each.others) if node is not None}
-            for node in taken - there:
-                fetched = problem.at_hand(node) and means.name(node, label) in {tool.name for tool in here}
+        for label, need in needs.items():
+            brought_tools = [tool for tool in tools if tool.label == label]
+            held_nodes = {node for tool in brought_tools for node in self._states.get(tool, ())}
+            wanted_nodes = {node for node in (*need.kept, *need.changed, *need.others) if node is not None}
+            for node in wanted_nodes - held_nodes:
+                fetched = problem.at_hand(node) and means.name(node, label) in {
+                    tool.name for tool in brought_tools
+                }
                 if not fetched and node in needed:
                     yield f"has no {label} for {node}"
-            for tool in here:  # what is fetched is as the kitchen has it, whatever it was before
-                if taken and taken.isdisjoint(self._states.get(tool, ())):
+            for tool in brought_tools:  # what is fetched is as the kitchen has it, whatever it was before
+                if wanted_nodes and wanted_nodes.isdisjoint(self._states.get(tool, ())):
                     self._states[tool] = frozenset()
 
 

@@ -90,11 +90,11 @@ class _OrderSearch:
 
     def listed(self) -> Shortage | None:
         """Return the copy that is missing when the steps are done as listed; ``None`` where none is."""
-        copies, taken = self._copies.copy(), dict[ObjectNode, list[int]]()
+        copies, consumers = self._copies.copy(), dict[ObjectNode, list[int]]()
 
         def missing(step: int | None, nodes: Iterable[ObjectNode]) -> Shortage | None:
             node = next((node for node in nodes if not copies[node]), None)
-            return None if node is None else Shortage(step, node, tuple(taken.get(node, ())))
+            return None if node is None else Shortage(step, node, tuple(consumers.get(node, ())))
 
         for step, (preconditions, consumes, adds) in enumerate(self._steps):
             shortage = missing(step, preconditions)
@@ -103,7 +103,7 @@ class _OrderSearch:
             copies.subtract(consumes)
             copies.update(adds)
             for node in consumes:
-                taken.setdefault(node, []).append(step)
+                consumers.setdefault(node, []).append(step)
         return missing(None, self._goals)
 
     def overdrawn(self) -> Shortage | None:
@@ -122,7 +122,7 @@ class _OrderSearch:
                 lacking.append((step, Shortage(step, node, tuple(served))))
             elif len(served) == copies[node] and node in self._goals:
                 lacking.append((ends, Shortage(None, node, tuple(served))))
-        return min(lacking, key=lambda each: each[0])[1] if lacking else None
+        return min(lacking, key=lambda shortage: shortage[0])[1] if lacking else None
 
     def order(self) -> tuple[int, ...] | None:
         """Return an order that runs, where no node is overdrawn; ``None`` where there is none."""
@@ -168,16 +168,18 @@ class _OrderSearch:
         step = self._next[-1]
         while step != len(self._steps):
             for node in self._steps[step].preconditions:
-                taken = tuple(each for each in sorted(done) if node in self._steps[each].consumes)
-                if taken and not self._copies[node]:
-                    return Shortage(step, node, taken)
+                consumers = tuple(
+                    earlier for earlier in sorted(done) if node in self._steps[earlier].consumes
+                )
+                if consumers and not self._copies[node]:
+                    return Shortage(step, node, consumers)
             step = self._next[step]
         return None
 
     def _plentiful(self, node: ObjectNode) -> bool:
         """Whether there are copies of a node for all steps that wait, and for the end."""
-        spare = node in self._goals or self._readers[node] > 0
-        return self._copies[node] >= self._consumers[node] + spare
+        reserved = node in self._goals or self._readers[node] > 0
+        return self._copies[node] >= self._consumers[node] + reserved
 
     def _do(self, step: int) -> None:
         before, after = self._previous[step], self._next[step]

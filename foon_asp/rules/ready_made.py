@@ -95,9 +95,9 @@ class ReadyMade:
     def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
         """Return how much each unit counts, a whole number, and what those of a tree come to at most."""
         for each in self._said(problem)[0]:
-            if each.most is not None and all(len(units) == 1 for units, _ in each.things):
+            if each.max_sum is not None and all(len(units) == 1 for units, _ in each.things):
                 amounts = {unit: int(amount) for units, amount in each.things for unit in units}
-                yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(each.most)  # type: ignore[misc]
+                yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(each.max_sum)  # type: ignore[misc]
 
     def conflict(self, problem: Problem, units: Units) -> Sequence[Units] | None:
         """Return sets of units of each of which a tree has one, and no tree that keeps to the rest does.
@@ -105,11 +105,11 @@ class ReadyMade:
         ``None`` where it keeps to it; the tree keeps to what is not of the rest.
         """
         for rule, each in zip(self.rules, self._said(problem)[0], strict=True):
-            if each.most is not None:
+            if each.max_sum is not None:
                 used = [thing for thing in each.things if not units.isdisjoint(thing[0])]
                 used.sort(key=lambda thing: -thing[1])
                 sums = accumulate((amount for _, amount in used), initial=Fraction())
-                over = next((place for place, total in enumerate(sums) if total > each.most), None)
+                over = next((place for place, total in enumerate(sums) if total > each.max_sum), None)
                 if over is not None:
                     return [members for members, _ in used[:over]]
             if each.barred is not None and (early := _too_early(problem, rule, units)):
