@@ -1,4 +1,4 @@
-"""What the ready-made constraints say of a tree, read from the plain network.
+"""The meanings of the ready-made constraints, computed from the plain network.
 
 This is what a certificate is checked by, so nothing of clingo is here: each constraint of
 ``encodings/constraints`` is a few lines of Python, and :data:`LIBRARY` lists them. docs/dev/certificates.md
@@ -19,10 +19,10 @@ Barred = Callable[[Units, Units], Units]
 
 
 class Question(NamedTuple):
-    """What constraints look at.
+    """The data that constraints depend on.
 
-    ``rate`` and ``price`` tell the success rate and the price of a unit, ``None`` where it is not known,
-    ``needs`` and ``gives`` the nodes that it needs and makes.
+    ``rate`` and ``price`` return the success rate and the price of a unit, ``None`` where it is not known,
+    ``needs`` and ``gives`` its preconditions and add effects.
     """
 
     network: Network
@@ -63,14 +63,14 @@ class Question(NamedTuple):
 
 
 class Meaning(NamedTuple):
-    """What a constraint says of the trees that keep to it, all of it together.
+    """The meaning of a constraint: conditions on the trees that keep to it, all of them together.
 
-    They have no unit of ``removed``. Each of the ``wanted`` lists alternatives, and of one of them a tree
-    has a unit of each set. The ``things`` that it uses come to at most ``most``: a thing is a set of units
-    and how much it counts, not below 0, and is used by a tree that has one of the units. Where ``never`` is
-    true, there is no such tree. A tree with all units of one set and none of another has none of the units
-    that ``barred`` gives for the two. Each of the ``limits`` says how much units count, not below 0, and what
-    those of a tree come to at most.
+    They have no unit of ``removed``. Each of the ``wanted`` lists alternatives, and of one of them a tree has
+    a unit of each set. The amounts of the ``things`` that it uses add up to at most ``max_sum``: a thing is a
+    set of units with an amount from 0, and a tree uses it that has one of the units. Where ``never`` is true,
+    there is no such tree. A tree with all units of one set and none of another has none of the units that
+    ``barred`` returns for the two. Each of the ``limits`` has the amounts of units, from 0, and their
+    greatest sum.
     """
 
     removed: Units = frozenset()
@@ -96,14 +96,14 @@ class Constraint(NamedTuple):
 
 
 def meaning(rule: Rule, question: Question) -> Meaning:
-    """Return what a constraint with its values says, or what is claimed of rules of the user's own."""
+    """Return the meaning of a constraint with its values, or of the claims about user rules."""
     if rule["rule"] == OWN:
         return own(rule)
     return LIBRARY[rule["rule"]].meaning(question, **_values(rule))
 
 
 def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
-    """Return what a constraint looks at of the places of each unit; ``None`` where it does not."""
+    """Return the sources of each unit that a constraint depends on; ``None`` where it depends on none."""
     places = None if rule["rule"] == OWN else LIBRARY[rule["rule"]].places
     if places is None:
         return None
@@ -269,14 +269,14 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
     return Meaning(barred=barred)
 
 
-OWN = "own"  # in place of a constraint's name: rules of the user's own
+OWN = "own"  # in place of a constraint's name: user rules
 
 
 def own(rule: Rule) -> Meaning:
-    """Return what is claimed of rules of the user's own: no tree has all units of a set and none of another.
+    """Return the meaning of claims about user rules: no tree has all units of a set and none of another.
 
-    Nor more of units than a limit says. What follows of a claim on a branch: where all units of the first set
-    but one are used, and the second set is left out, that one is barred.
+    Limits are claims, too. On a branch, unit propagation applies: where all units of the first set but one
+    are used and the units of the second set are excluded, that one is barred.
     """
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]
@@ -289,8 +289,8 @@ def own(rule: Rule) -> Meaning:
         return frozenset().union(*(one for one in unused if len(one) == 1), *whole)
 
     limits = [
-        ({unit: Fraction(amount) for amount, units in amounts.items() for unit in units}, Fraction(most))
-        for amounts, most in rule["limits"]
+        ({unit: Fraction(amount) for amount, units in amounts.items() for unit in units}, Fraction(max_sum))
+        for amounts, max_sum in rule["limits"]
     ]
     bars = barred if others else None
     return Meaning(frozenset().union(*removed), wanted, barred=bars, limits=limits)

@@ -1,4 +1,4 @@
-"""Does a plan run where items are used up? Replayed copy by copy, in plain Python, without a solver."""
+"""Replay of a plan with consumable items, copy by copy, in plain Python and independent of the solver."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -20,8 +20,8 @@ class Copy(NamedTuple):
 class Shortage(NamedTuple):
     """The copy that is missing: of ``node``, at the position ``step`` (from 0), or at the end if ``None``.
 
-    ``taken`` are the positions of the steps that used up the copies there were, in order; where it is empty,
-    there never was one.
+    ``consumers`` are the positions of the steps that used up the copies, in order; where it is empty, there
+    never was a copy.
     """
 
     step: int | None
@@ -30,7 +30,7 @@ class Shortage(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What a step does: the copies that it uses up, those of what stays, and those that it makes."""
+    """A step that ran, with the copies that it uses up, those that it reads, and those that it makes."""
 
     unit: FunctionalUnit
     gone: tuple[Copy, ...]
@@ -39,11 +39,11 @@ class Step(NamedTuple):
 
 
 class Replay(NamedTuple):
-    """What a replay found: the ``steps`` that ran, and the ``shortage`` that stopped it, if one did.
+    """The result of a replay: the ``steps`` that ran, and the ``shortage`` that stopped it, if one did.
 
-    ``left`` are the copies there are after the last of these steps: those that were made, and what is left
-    of the stock. What never runs out is not in it. ``stock`` says how many copies of each node with a finite
-    stock the plan cannot do without.
+    ``left`` are the copies after the last step: those that were made, and those remaining of the stock, but
+    not of nodes that are not consumable. ``stock`` maps each node with a finite stock to the number of copies
+    that the plan needs.
     """
 
     steps: tuple[Step, ...]
@@ -53,7 +53,7 @@ class Replay(NamedTuple):
 
 
 def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
-    """Run a plan from the kitchen of a problem in which items are used up, and look for its goals at the end.
+    """Return the replay of a plan from the kitchen of a problem with consumable items, up to its goals.
 
     The kitchen never runs out, but for what the stock counts. A repeated unit runs again.
     """
@@ -69,10 +69,10 @@ def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
 
 
 def waits(replay: Replay) -> Iterator[set[int]]:
-    """Yield for each step, in order, the positions of those that have to be done before it.
+    """Yield for each step, in order, the positions of the steps that have to be done before it.
 
-    They made the copies that it takes, or read a copy that it uses up. Of what never runs out there is
-    always another copy.
+    These steps made the copies that it takes, or read a copy that it uses up. Nodes that are not consumable
+    always have another copy.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
     spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
@@ -90,8 +90,8 @@ def waits(replay: Replay) -> Iterator[set[int]]:
 def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
     """Return, for each copy that several steps need and leave there, the positions of these steps.
 
-    A copy is made by a step or in the stock: of what never runs out there is always another one, and so there
-    is of what ``is_free``, by its label.
+    A copy is made by a step or in the stock: nodes that are not consumable, and labels that ``is_free``
+    accepts, always have another copy.
     """
     reading: dict[tuple[Copy, int], list[int]] = {}
     spent: Counter[Copy] = Counter()  # as in waits
@@ -104,7 +104,7 @@ def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, .
 
 
 class _Kitchen:
-    """What is there: nodes without end, and single copies of others, the oldest first."""
+    """The state of the kitchen: nodes that are not consumable, and single copies of others, oldest first."""
 
     def __init__(self, problem: Problem) -> None:
         assert problem.items is not None
@@ -151,7 +151,7 @@ class _Kitchen:
         return Copy(node, None) if self._executions.is_endless(node) else None
 
     def _has(self, node: ObjectNode) -> bool:
-        """Whether a copy of a node is there, which is then one that the plan needs."""
+        """Return whether there is a copy of a node, and note that the plan needs it."""
         if self._endless(node):
             return True
         if node in self._least:

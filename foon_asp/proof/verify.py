@@ -1009,8 +1009,8 @@ def _own(rule: Rule, units: int) -> None:
         sha = hashlib.sha256(file["text"].encode()).hexdigest()
         require(file["sha256"] == sha, "a text of rules does not have its digest")
     for claim in read_list(rule["claims"]):
-        for side in read_pair(claim, "two sets of units in a claim"):
-            read_numbers(side, units, ascending=side != [])
+        for unit_set in read_pair(claim, "two sets of units in a claim"):
+            read_numbers(unit_set, units, ascending=unit_set != [])
     for limit in read_list(rule["limits"]):
         amounts, max_sum = read_pair(limit, "amounts and their limit")
         require(type(max_sum) is int, "a limit is no whole number")
