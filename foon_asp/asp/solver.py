@@ -202,12 +202,12 @@ class _Solver:
         Searches trees with open preconditions first, and then ever larger neighbourhoods of the goals.
         """
         if (
-            not subproblem.spare
+            not subproblem.redundant
             and not self._mattered
             and (outcome := self._with_priced_limit(subproblem, tree)) is not None
         ):
             return outcome
-        run = None if subproblem.spare else self._with_open_preconditions(subproblem, tree)
+        run = None if subproblem.redundant else self._with_open_preconditions(subproblem, tree)
         is_best = run is not None
         if run is None:
             run = self._near_goals(subproblem, tree)
@@ -292,7 +292,7 @@ class _Solver:
         """
         try:
             with self.deadline.watched("cutting the network", late=True):
-                candidates = subproblem.within(subproblem.total(tree), lambda: self.deadline.passed)
+                candidates = subproblem.units_within(subproblem.total(tree), lambda: self.deadline.passed)
         except KeyboardInterrupt:
             return self._limited(tree, ())
         if run is not None and run.units is not None and candidates <= set(self.prepared.units):
@@ -322,13 +322,13 @@ class _Solver:
         required = write_required([map(number, sorted(landmark)) for landmark in landmarks])
         before = subproblem.left_of(self._mattered)
         max_units = _MAX_KNOWN_UNITS + len(before)
-        explored = subproblem.with_only_makers(
+        explored = subproblem.with_only_achievers(
             before.union(tree, *(e for e in landmarks if len(e) <= _NEAREST_UNITS)), max_units
         )
         by, fewest = _UNITS_ONLY, 0  # fast, and enough to prove that there is no tree
         for _ in range(_MAX_ROUNDS):
             self._mattered.update(map(number, explored))
-            self._restrict_to(explored.union(subproblem.makers(explored), *landmarks))
+            self._restrict_to(explored.union(subproblem.achievers_for(explored), *landmarks))
             prepared = replace(self.prepared, program=program)
             text = required + write_known(map(number, sorted(explored)))
             run = prepared.run(text + write_objectives(by))
@@ -347,10 +347,13 @@ class _Solver:
                 return self._settle_open_preconditions(run, program, text, explored, fewest)
             if len(explored) > max_units:
                 return None
-            fresh = subproblem.beside(run.units - explored)
+            fresh = subproblem.rival_achievers(run.units - explored)
             enough = min(max_units, len(explored) * _GROWTH)
             while fresh and len(explored) < enough:
-                fresh = subproblem.with_only_makers(fresh | subproblem.makers(fresh), max_units) - explored
+                fresh = (
+                    subproblem.with_only_achievers(fresh | subproblem.achievers_for(fresh), max_units)
+                    - explored
+                )
                 explored |= fresh
         return None
 

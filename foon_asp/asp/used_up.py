@@ -503,7 +503,7 @@ class _Counting:
         level = self._level(objective, Fraction(cost))
         if level.measure.exact is not None:
             return level._replace(strict=True)
-        return level._replace(most=math.ceil(level.cost) - 1)
+        return level._replace(max_cost=math.ceil(level.cost) - 1)
 
     def _level(self, objective: Objective, cost: Fraction) -> Level:
         measure = self.measure(objective)

@@ -1,9 +1,10 @@
-"""Whole counts of executions where what actions need is used up: lower bounds on what every plan costs.
+"""Operator counting with the state equation: lower bounds on the cost of plans that consume objects.
 
-How often a plan executes each action satisfies a few linear conditions: of every object no more copies are
-used up than there are, one of every target is left, and for each action that is used, another makes what it
-reads, if nothing else provides it. Landmarks of plans in which nothing is used up hold as well. HiGHS solves
-the relaxations in floats; what it proves is weighed again in whole numbers, so that no float decides.
+The counts of executions in a plan satisfy linear conditions (operator counting, Pommerening et al. 2014): of
+every object no more copies are consumed than there are, a copy of every target remains, and each action that
+is executed has achievers of its preconditions, if they are not initial. Landmarks of the delete relaxation
+hold as well. HiGHS solves the relaxations in floats; bounds are recomputed in whole numbers, so that no float
+decides.
 """
 
 import math
@@ -19,27 +20,27 @@ from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.whole_program import Solved, Stopped, WholeProgram
 
 Counts = dict[int, int]
-"""How often each action is executed; those that are not are left out."""
+"""How often each action is executed, without actions that are not."""
 
 _Bounds = tuple[list[int], list[int | None]]
 
-_HIT = 0.999999  # a landmark of which a greater part is executed is taken to be hit
-_NEAR = 1e-6  # what differs less from a whole number is one, for choosing where to branch
-_PROBES = 60  # actions that a root looks at to see whether they can be executed twice
-_MOST_PARTS = 20_000  # that are looked at before a proof is given up
-_MOST_UNCAPPED = 1_000  # where nothing says how many executions there can be
-_ORDERS = 3  # in how many orders landmarks are looked for before there are taken to be no more
-_FAR = 1000  # executions of an action that HiGHS takes to be many when it looks for counts
-_FEWER = 8  # those that it takes to be many at first, which is much faster
+_SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
+_INTEGRALITY = 1e-6  # integrality tolerance, for choosing where to branch
+_PROBES = 60  # actions probed at the root: can they be executed twice?
+_MOST_PARTS = 20_000  # nodes after which a proof is given up
+_MOST_UNCAPPED = 1_000  # the same where the number of executions is unbounded
+_ORDERS = 3  # orders in which landmarks are looked for before the search for them ends
+_FAR = 1000  # assumed greatest count of an unbounded action when looking for counts
+_FEWER = 8  # the same at first, which is much faster
 
 
 class Flows(NamedTuple):
-    """Actions over objects, both by number.
+    """Actions with preconditions and effects on copies of objects, all by number.
 
-    An action can be executed while there is a copy of each object that it ``asks`` for. Then one copy of
-    each that it ``uses`` is gone, and there is one more of each that it ``adds``. ``start`` says how many
-    copies there are at first, where there are any. What never runs out is in none of these; ``items`` are
-    the objects of that kind that an action asks for. One copy of each of the ``targets`` is to be left.
+    An action can be executed while there is a copy of each of its preconditions ``asks``. It consumes one
+    copy of each object of ``uses``, and adds one of each object of ``adds``. ``start`` maps initial objects
+    to their numbers of copies. Objects that are not consumable are in none of these; ``items`` are the
+    preconditions of each action among them. One copy of each of the ``targets`` has to remain.
     """
 
     asks: Sequence[Sequence[int]]
@@ -51,12 +52,12 @@ class Flows(NamedTuple):
 
 
 class Measure(NamedTuple):
-    """What executions cost by one objective, of which less is better.
+    """The cost of executions by one objective, to be minimized.
 
-    ``costs`` are those of each action, whole numbers from 0, and ``item`` what each distinct one of its
-    ``items`` costs and each copy that is taken of what is there at first. Where ``exact`` is not ``None``,
-    costs are rounded down: it gives the exact cost of counts, which depends on how many executions there are
-    of each of the ``classes`` of actions; those of class -1 do not change it.
+    ``costs`` are those of each action, whole numbers from 0, and ``item`` is the cost of each distinct item
+    and of each initial copy that is consumed. Where ``exact`` is not ``None``, ``costs`` are rounded down and
+    ``exact`` returns the exact cost of counts, which depends on the number of executions in each of the
+    ``classes`` of actions; actions of class -1 do not change it.
     """
 
     costs: Sequence[int]
@@ -66,9 +67,9 @@ class Measure(NamedTuple):
 
 
 class Landmark(NamedTuple):
-    """That one of the ``members`` is executed, or a copy of one of ``stock`` is taken.
+    """The condition that one of the ``members`` is executed, or an initial copy of ``stock`` is consumed.
 
-    With an ``action``, only if that is executed. ``objects`` are the cut that shows it.
+    With an ``action``, it holds only if the action is executed. ``objects`` are the cut of the landmark.
     """
 
     members: tuple[int, ...]
@@ -78,40 +79,40 @@ class Landmark(NamedTuple):
 
 
 class Balance(NamedTuple):
-    """That no more copies of an object are used up than there are."""
+    """The row of the state equation of an object: no more copies are consumed than there are."""
 
     object: int
 
 
 class Sum(NamedTuple):
-    """That a sum keeps to a limit, by its place among them."""
+    """The condition that a sum keeps to a limit, by the index of the limit."""
 
     limit: int
 
 
 SumLimit = tuple[Mapping[int, int], int, bool, bool]
-"""Weights by action, their greatest sum or, if the next is true, their least, and whether use counts."""
+"""Weights by action, a bound on their sum, whether it is a lower bound, whether an action counts once."""
 
 
 class Level(NamedTuple):
-    """An objective, and what the plan in hand costs by it.
+    """An objective with the cost of the incumbent.
 
-    ``most`` is the greatest sum of costs, rounded down as they are, that a plan can have which is as good.
-    If it is ``strict``, what costs as much is not as good.
+    ``max_cost`` is the greatest sum of the (rounded) costs of a plan that is as good as the incumbent. If
+    ``strict``, a plan of equal cost does not count as good.
     """
 
     measure: Measure
     cost: Fraction
-    most: int
+    max_cost: int
     strict: bool = False
 
 
 Condition = Landmark | Balance | Sum | Level
-"""What a row of a program says of the counts of every plan."""
+"""The condition on the counts of every plan that a row of the program states."""
 
 
 class BetterError(Exception):
-    """Counts were found that may belong to a better plan, and do."""
+    """The counts of a plan better than the incumbent were found."""
 
     def __init__(self, counts: Counts) -> None:
         super().__init__("a better plan was found")
@@ -119,14 +120,13 @@ class BetterError(Exception):
 
 
 class CountBound:
-    """The counts of plans for one question.
+    """Branch and bound over the counts of executions in plans for one question.
 
-    ``expired`` says when to give up, and ``left`` in how many seconds, if time is limited: methods then raise
-    :class:`Stopped`. ``required`` are sets of actions of each of which one has to be executed. ``limits`` say
-    of sums with a weight from 0 for each action how large they are, at most or at least: over executions, or
-    over the actions that are used. ``derivation`` are actions that reach the targets if nothing is used up:
-    landmarks are looked for around these. Plans are as good by each level of ``within``, and do not execute
-    all that one of ``beside`` does, as often.
+    ``expired`` returns whether to give up: methods then raise :class:`Stopped`. ``required`` are disjunctive
+    action landmarks. ``limits`` bound weighted sums, with weights from 0, over executions or over the actions
+    used. ``derivation`` are actions that reach the targets in the delete relaxation: landmarks are grown
+    around it. Only plans count that are as good as the incumbent by each of ``levels`` and that do not
+    execute everything in one of ``excluded_counts`` as often.
     """
 
     def __init__(
@@ -135,36 +135,36 @@ class CountBound:
         required: Sequence[Sequence[int]] = (),
         limits: Sequence[SumLimit] = (),
         derivation: Sequence[int] = (),
-        within: Sequence[Level] = (),
-        beside: Sequence[Counts] = (),
+        levels: Sequence[Level] = (),
+        excluded_counts: Sequence[Counts] = (),
         expired: Callable[[], bool] = lambda: False,
     ) -> None:
         self._flows, self._limits, self._expired = flows, limits, expired
         self._size = len(flows.asks)
-        self._within, self._beside = tuple(within), tuple(beside)
+        self._levels, self._excluded_counts = tuple(levels), tuple(excluded_counts)
         self.derivation = derivation
         self._random, self._many = random.Random(0), _FAR
-        self.proved: float | Fraction = 0  # what every plan costs at least by the first level, so far
+        self.proved: float | Fraction = 0  # lower bound on every plan by the first level
         self._landmarks = [Landmark(tuple(units)) for units in required]
-        self._makers: dict[int, list[int]] = {}
-        for action, added in enumerate(flows.adds):
-            for o in added:
-                self._makers.setdefault(o, []).append(action)
+        self._achievers: dict[int, list[int]] = {}
+        for action, effects in enumerate(flows.adds):
+            for o in effects:
+                self._achievers.setdefault(o, []).append(action)
 
     def counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
-        """Find counts that cost least by HiGHS' word, the first measure most important; ``None`` if none.
+        """Return counts of least cost in floats, the first measure most important; ``None`` if infeasible.
 
-        They are those of a plan in which nothing is used up, at least; whether a plan has them is left open,
-        and nothing is proved.
+        The counts belong to a plan of the delete relaxation; they need not belong to a plan, and their
+        optimality is not proved.
         """
         for self._many in (_FEWER, _FAR):
-            found = self._counts(measures, rounds)
-            if found is not None and max(found.values(), default=0) < self._many:
+            counts = self._counts(measures, rounds)
+            if counts is not None and max(counts.values(), default=0) < self._many:
                 break
-        return found
+        return counts
 
     def _counts(self, measures: Sequence[Measure], rounds: int) -> Counts | None:
-        found: Counts | None = None
+        counts: Counts | None = None
         for _ in range(rounds):
             model = self._model(measures, far=True)
             x: list[float] = []
@@ -176,29 +176,29 @@ class CountBound:
                 x = whole
                 model.keep(measure, x)
                 self._check()
-            found = {a: round(x[a]) for a in range(self._size) if x[a] > 0.5}
+            counts = {a: round(x[a]) for a in range(self._size) if x[a] > 0.5}
             if not self._add_landmark(x, model):
                 break
-        return found
+        return counts
 
     def _relaxed(self, model: "_Model", objective: Mapping[int, int]) -> list[float] | None:
-        """Add landmarks that the relaxation misses; give its counts where they are whole."""
+        """Add violated landmarks to the relaxation; return its solution if it is whole, else ``None``."""
         while True:
             self._check()
             x = model.program.solve(objective).x
             if x is None or not self._separate(x, model, at_root=True):
                 break
         columns = {*range(model.program.columns)}
-        if not self._beside:
+        if not self._excluded_counts:
             columns.difference_update(range(self._size, 2 * self._size))
-        if x is None or any(abs(x[column] - round(x[column])) > _NEAR for column in columns):
+        if x is None or any(abs(x[column] - round(x[column])) > _INTEGRALITY for column in columns):
             return None
         for a in range(self._size):
             x[self._size + a] = float(x[a] > 0.5)
         return x
 
     def none(self) -> bool:
-        """Whether it is proved that no counts satisfy the conditions, so that there is no plan."""
+        """Return whether it is proved that no counts satisfy the conditions, so that there is no plan."""
         model = self._model(())
         while True:
             solved = model.program.solve({})
@@ -209,13 +209,13 @@ class CountBound:
             self._check()
 
     def most_executions(self) -> int | None:
-        """Return how many executions a plan can have in all; ``None`` if not known."""
+        """Return an upper bound on the executions in a plan; ``None`` if unbounded."""
         program = self._model(()).program
         bound = program.solve(dict.fromkeys(range(self._size), -1)).bound
         return None if abs(bound) == math.inf else math.floor(-bound)
 
     def caps(self, level: Level) -> list[int | None]:
-        """Return for each action how often a plan that is as good can execute it; ``None`` if not known."""
+        """Return for each action a bound on its count in plans that are as good; ``None`` if unbounded."""
         model = self._model((level.measure,))
         model.limit(level)
         caps: list[int | None] = []
@@ -228,28 +228,28 @@ class CountBound:
         return caps
 
     def prove(self, levels: Sequence[Level], is_better: Callable[[Counts], bool]) -> None:
-        """Prove that no plan is better than the one in hand, the first level most important.
+        """Prove that no plan is better than the incumbent, the first level most important.
 
-        ``is_better`` is asked of counts that would be: whether there is an order to execute them in that is.
-        Raises :class:`BetterError` with them, and :class:`Stopped`.
+        ``is_better`` is called with better counts, and returns whether some order of them is a plan. Raises
+        :class:`BetterError` with such counts, and :class:`Stopped` where time is up.
         """
-        for place, level in enumerate(levels):
-            before, rounded = levels[:place], level.measure.exact is not None
-            most = level.most if rounded else math.ceil(level.cost) - 1
-            self._prove(level.measure, most, is_better, before, [*before, level._replace(strict=True)])
+        for i, level in enumerate(levels):
+            before, rounded = levels[:i], level.measure.exact is not None
+            max_cost = level.max_cost if rounded else math.ceil(level.cost) - 1
+            self._prove(level.measure, max_cost, is_better, before, [*before, level._replace(strict=True)])
 
     def every(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
-        """Ask about all counts that may be those of a plan as good as the one in hand, by each level.
+        """Call ``ask`` with all counts that may be those of a plan as good as the incumbent by each level.
 
-        Costs of the last level are whole numbers. Raises :class:`Stopped`.
+        Costs of the last level are whole numbers. Raises :class:`Stopped` where time is up.
         """
         *before, last = levels
-        self._prove(last.measure, last.most, ask, before, before)
+        self._prove(last.measure, last.max_cost, ask, before, before)
 
     def none_is_left(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
-        """Prove that there is no plan at all; counts of few executions, by their measure, are asked first.
+        """Prove that there is no plan at all, looking at counts of low cost by ``measure`` first.
 
-        ``is_better`` says whether some are those of a plan: then raises :class:`BetterError`. Raises
+        ``is_better`` returns whether some order of counts is a plan: then raises :class:`BetterError`. Raises
         :class:`Stopped` where nothing is proved.
         """
         proved = self.proved
@@ -261,24 +261,24 @@ class CountBound:
     def _prove(
         self,
         measure: Measure,
-        most: int | None,
+        max_cost: int | None,
         is_better: Callable[[Counts], bool | None],
         before: Sequence[Level] = (),
         levels: Sequence[Level] = (),
     ) -> None:
-        """Ask about all counts that cost ``most`` at most, rounded down, if that is known.
+        """Call ``is_better`` with all counts of cost up to ``max_cost`` (``None``: any), by branch and bound.
 
-        They are as good by each level ``before``, by sums. Where these are rounded, ``levels`` say what they
-        cost exactly.
+        The counts are as good by each level ``before``, by their rounded costs, and by the exact costs of
+        ``levels``.
         """
         model = self._model([measure, *(level.measure for level in before)])
         for level in before:
             model.limit(level)
         objective = model.objective(measure)
-        if most is not None:
-            model.cap(measure, most)
-            self._tighten_root(model, objective, most)
-        cutoff = math.inf if most is None else most
+        if max_cost is not None:
+            model.cap(measure, max_cost)
+            self._tighten_root(model, objective, max_cost)
+        cutoff = math.inf if max_cost is None else max_cost
         lower, upper = list(model.program.lower), list(model.program.upper)
         number = 0
         waiting: list[tuple[float | Fraction, int, int, _Bounds]] = [(0, sum(lower), number, (lower, upper))]
@@ -293,11 +293,11 @@ class CountBound:
                 number += 1
                 executions = sum(lower[: self._size])
                 heappush(waiting, (max(bound, solved.bound), executions, -number, (lower, upper)))
-            if number > (_MOST_UNCAPPED if most is None else _MOST_PARTS):
+            if number > (_MOST_UNCAPPED if max_cost is None else _MOST_PARTS):
                 raise Stopped
 
     def _solved(self, model: "_Model", objective: Mapping[int, int], cutoff: float) -> Solved:
-        """Solve the relaxation of a part with all landmarks that it misses; no ``x`` where it has no plan."""
+        """Return the relaxed solution of a node, all violated landmarks added; no ``x`` without a plan."""
         while True:
             self._check()
             model.tighten()
@@ -305,20 +305,20 @@ class CountBound:
             if solved.bound > cutoff or solved.bound == math.inf:
                 return solved._replace(x=None)
             if solved.x is None:
-                raise Stopped  # floats say that there is nothing, and no whole numbers do
+                raise Stopped  # infeasible in floats, but not provably so
             if not self._add_landmark(solved.x, model) and not self._separate(solved.x, model, at_root=False):
                 return solved
 
     def _model(self, measures: Sequence[Measure], far: bool = False) -> "_Model":
-        every = (*measures, *(level.measure for level in self._within))
+        every = (*measures, *(level.measure for level in self._levels))
         different = {id(measure): measure for measure in every}
         model = _Model(self, list(different.values()), far)
-        for level in self._within:
+        for level in self._levels:
             model.limit(level)
         return model
 
     def _tighten_root(self, model: "_Model", objective: Mapping[int, int], cutoff: int) -> None:
-        """Look which actions cannot be executed twice: others need not be told what they read so loosely."""
+        """Probe which actions cannot be executed twice, which tightens the rows of their indicators."""
         program, probed = model.program, set[int]()
         while len(probed) < _PROBES:
             self._check()
@@ -330,7 +330,7 @@ class CountBound:
             loose = [
                 a
                 for a in range(self._size)
-                if solved.x[self._size + a] < min(1.0, solved.x[a]) - _NEAR and a not in probed
+                if solved.x[self._size + a] < min(1.0, solved.x[a]) - _INTEGRALITY and a not in probed
             ]
             if not loose:
                 return
@@ -351,10 +351,10 @@ class CountBound:
         levels: Sequence[Level],
         is_better: Callable[[Counts], bool | None],
     ) -> Iterator[_Bounds]:
-        """Return the parts into which what is left is divided, after a look at what was found."""
+        """Yield the bounds of the child nodes; whole counts of the node are checked first."""
         program = model.program
         halves = [(abs(value - math.floor(value) - 0.5), column) for column, value in enumerate(x)]
-        half = min((h for h in halves if h[0] < 0.5 - _NEAR), default=None)
+        half = min((h for h in halves if h[0] < 0.5 - _INTEGRALITY), default=None)
         if half is not None:
             column = half[1]
             below = math.floor(x[column])
@@ -363,21 +363,21 @@ class CountBound:
             return
         counts = {a: round(x[a]) for a in range(self._size) if round(x[a])}
         idle = next((a for a in counts if not round(x[self._size + a])), None)
-        if idle is not None:  # nothing says how often it may be executed, and so that it is
+        if idle is not None:  # unbounded, so that its indicator is not forced
             yield program.with_bounds(idle, None, 0)
             lower, upper = program.with_bounds(idle, 1, None)
             lower[self._size + idle] = 1
             yield lower, upper
             return
-        rounded = [each for each in (*self._within, *levels) if each.measure.exact is not None]
+        rounded = [level for level in (*self._levels, *levels) if level.measure.exact is not None]
         worse = [
-            each
-            for each in rounded
-            if (cost := _exact(each, counts)) > each.cost or (cost == each.cost and each.strict)
+            level
+            for level in rounded
+            if (cost := _exact(level, counts)) > level.cost or (cost == level.cost and level.strict)
         ]
-        held = model.held(counts, x)
-        if held is not None:  # nothing says how often its action may be executed, and so that it holds
-            action, count, column = held
+        unforced = model.unforced_count(counts, x)
+        if unforced is not None:  # its action is unbounded, so that the indicator is not forced
+            action, count, column = unforced
             yield program.with_bounds(action, None, count - 1)
             lower, upper = program.with_bounds(action, count, None)
             lower[column] = 1
@@ -391,14 +391,14 @@ class CountBound:
         yield from _around(program, x, range(self._size))
 
     def _add_landmark(self, x: Sequence[float], model: "_Model") -> bool:
-        """Add a landmark that what is found misses; whether there is one.
+        """Add a landmark that a solution violates; return whether there is one.
 
-        What can be made by the actions it executes, if nothing is used up, is closed. A target or an action
-        that is not reached needs something that makes what is not reached from what is.
+        The initial objects are closed under the executed actions in the delete relaxation. For a target or an
+        executed action that is not reached, the landmark are the achievers on the border.
         """
         flows = self._flows
-        used = {a for a in range(self._size) if x[self._size + a] > _NEAR}
-        reached = {o for o, column in model.stock.items() if x[column] > _NEAR}
+        used = {a for a in range(self._size) if x[self._size + a] > _INTEGRALITY}
+        reached = {o for o, column in model.stock.items() if x[column] > _INTEGRALITY}
         if not model.stock:
             reached = {o for o, n in flows.start.items() if n}
         waiting = set(used)
@@ -420,46 +420,46 @@ class CountBound:
     @cached_property
     def _cutter(self) -> Cutter:
         flows = self._flows
-        objects = {o for side in (*flows.asks, *flows.adds, flows.targets, flows.start) for o in side}
+        objects = {o for numbers in (*flows.asks, *flows.adds, flows.targets, flows.start) for o in numbers}
         start = [o for o, count in flows.start.items() if count]
         return Cutter(Hypergraph(max(objects, default=0) + 1, flows.asks, flows.adds, start), flows.targets)
 
     def _separate(self, x: Sequence[float], model: "_Model", at_root: bool) -> bool:
-        """Add landmarks of the targets that what is found hits in part only; whether there are any.
+        """Add landmarks of the targets that an LP solution violates; return whether there are any.
 
-        Actions that are executed more are next to the start, and at the root all but one of the derivation.
-        Without a derivation none are looked for.
+        Actions of great LP values are kept out of landmarks first, and at the root the derivation less one
+        action. Without a derivation no landmarks are looked for.
         """
         derivation, size = self.derivation, self._size
         if not derivation or self._cutter.hopeless or not self._cutter.targets:
             return False
-        cutter, found = self._cutter, dict[tuple[int, ...], tuple[int, ...]]()
+        cutter, cuts = self._cutter, dict[tuple[int, ...], tuple[int, ...]]()
         keeps = [[a for a in derivation if a != gone] for gone in derivation]
         for number in range(_ORDERS):
             order = sorted(cutter.actions, key=lambda a: (-x[size + a], self._random.random()))
             for keep in ((), *(keeps if at_root and number == 0 else ())):
                 cut = cutter.cut(keep, order)
-                if cut is not None and sum(x[size + a] for a in cut.members) < _HIT:
-                    found.setdefault(cut.members, cut.objects)
-            if found:
+                if cut is not None and sum(x[size + a] for a in cut.members) < _SATISFIED:
+                    cuts.setdefault(cut.members, cut.objects)
+            if cuts:
                 break
-        for members in sorted(found):
-            self._landmarks.append(Landmark(members, objects=found[members]))
+        for members in sorted(cuts):
+            self._landmarks.append(Landmark(members, objects=cuts[members]))
             model.add_landmark(self._landmarks[-1])
-        return bool(found)
+        return bool(cuts)
 
     def _landmark(self, o: int, reached: set[int], used: set[int], model: "_Model") -> Landmark:
-        """Grow a cut backwards from an object that is not reached, as small as it can be."""
+        """Return a landmark by a small cut grown backwards from an object that is not reached."""
         asks = self._flows.asks
         zone, stack, edge = {o}, [o], dict[int, None]()
         while stack:
-            for maker in self._makers.get(stack.pop(), ()):
-                edge[maker] = None
-                if maker in used and zone.isdisjoint(asks[maker]):
-                    lacking = next(each for each in asks[maker] if each not in reached)
+            for achiever in self._achievers.get(stack.pop(), ()):
+                edge[achiever] = None
+                if achiever in used and zone.isdisjoint(asks[achiever]):
+                    lacking = next(needed for needed in asks[achiever] if needed not in reached)
                     zone.add(lacking)
                     stack.append(lacking)
-        members = tuple(maker for maker in edge if zone.isdisjoint(asks[maker]))
+        members = tuple(achiever for achiever in edge if zone.isdisjoint(asks[achiever]))
         return Landmark(members, tuple(sorted(zone & model.stock.keys())), objects=tuple(sorted(zone)))
 
     def _check(self) -> None:
@@ -468,14 +468,14 @@ class CountBound:
 
 
 class _Model:
-    """The conditions as rows over columns: first how often each action is executed, then helpers."""
+    """The conditions as rows over columns: the count of each action, its indicator, auxiliary columns."""
 
     def __init__(self, bound: CountBound, measures: Sequence[Measure], far: bool = False) -> None:
         flows, size = bound._flows, bound._size
         self._flows = flows
         self.program = program = WholeProgram(size, bound._expired)
         self._far, self._size, self._many = far, size, bound._many
-        self.conditions: dict[int, Condition] = {}  # by row: what it says of every plan
+        self.conditions: dict[int, Condition] = {}  # by row
         for _ in range(size):
             program.column(0, 1)  # whether an action is executed at all
         self._loose = [program.open_row((size + a, a), 0) for a in range(size)]
@@ -486,7 +486,7 @@ class _Model:
         self.stock: dict[int, int] = {}
         if priced:
             self.stock = {o: program.column(0, count) for o, count in flows.start.items() if count}
-        change: dict[int, dict[int, int]] = {o: {} for o in (*bound._makers, *flows.targets)}
+        change: dict[int, dict[int, int]] = {o: {} for o in (*bound._achievers, *flows.targets)}
         for action in range(size):
             for o in flows.adds[action]:
                 change[o][action] = change[o].get(action, 0) + 1
@@ -495,14 +495,14 @@ class _Model:
                 row[action] = row.get(action, 0) - 1
         wanted = set(flows.targets)
         for o, row in change.items():
-            if any(part < 0 for part in row.values()) or o in wanted:
+            if any(effect < 0 for effect in row.values()) or o in wanted:
                 self.conditions[program.row(*self._with_stock(o, row, int(o in wanted)))] = Balance(o)
         items = self.items = dict[int, int]()
         for action in range(size):
             y = size + action
-            for o in (each for each in flows.asks[action] if each not in flows.uses[action]):
-                makers = {size + maker: 1 for maker in bound._makers.get(o, ())}
-                read = program.row(*self._with_stock(o, {**makers, y: -1}, 0))
+            for o in (needed for needed in flows.asks[action] if needed not in flows.uses[action]):
+                achievers = {size + achiever: 1 for achiever in bound._achievers.get(o, ())}
+                read = program.row(*self._with_stock(o, {**achievers, y: -1}, 0))
                 if o in self.stock or not flows.start.get(o):  # else it says nothing
                     self.conditions[read] = Landmark((), (), action, (o,))
             for o in flows.items[action] if priced else ():
@@ -511,34 +511,34 @@ class _Model:
                 self.conditions[program.row({items[o]: 1, y: -1}, 0)] = Landmark((), (), action, (o,))
         for landmark in bound._landmarks:
             self.add_landmark(landmark)
-        for place, (weights, limit, at_least, used) in enumerate(bound._limits):
+        for i, (weights, limit, at_least, used) in enumerate(bound._limits):
             first, sign = size if used else 0, 1 if at_least else -1
             row = {first + a: sign * weight for a, weight in weights.items()}
-            self.conditions[program.row(row, sign * limit)] = Sum(place)
+            self.conditions[program.row(row, sign * limit)] = Sum(i)
             for a, weight in weights.items() if not at_least and not used else ():
                 program.cap(a, max(limit, 0) // weight)
         for measure in measures:
             if measure.exact is not None and not far:
                 self._add_classes(measure)
-        self._often: dict[tuple[int, int], tuple[int, int]] = {}
-        for counts in bound._beside:
-            columns = [self._as_often(a, n) for a, n in counts.items()]
+        self._count_indicators: dict[tuple[int, int], tuple[int, int]] = {}
+        for counts in bound._excluded_counts:
+            columns = [self._count_indicator(a, n) for a, n in counts.items()]
             program.row(dict.fromkeys(columns, -1), 1 - len(columns))
         self.tighten()
 
-    def _as_often(self, action: int, count: int) -> int:
-        """Return the column that says whether an action is executed so often."""
+    def _count_indicator(self, action: int, count: int) -> int:
+        """Return the column that indicates whether an action is executed at least ``count`` times."""
         if count == 1:
             return self._size + action
-        if (action, count) not in self._often:
+        if (action, count) not in self._count_indicators:
             column = self.program.column(0, 1)
             self.program.row({action: 1, column: -count}, 0)
-            self._often[action, count] = column, self.program.open_row((column, action), 1 - count)
-        return self._often[action, count][0]
+            self._count_indicators[action, count] = column, self.program.open_row((column, action), 1 - count)
+        return self._count_indicators[action, count][0]
 
-    def held(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
-        """Give an action that is executed as often as its column does not say, how often, and the column."""
-        for (action, count), (column, _) in self._often.items():
+    def unforced_count(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
+        """Return an action, count and indicator where the action reaches the count and the indicator is 0."""
+        for (action, count), (column, _) in self._count_indicators.items():
             if action in counts and counts[action] >= count and not round(x[column]):
                 return action, count, column
         return None
@@ -551,7 +551,7 @@ class _Model:
     def _add_classes(self, measure: Measure) -> None:
         columns = []
         for number in sorted(set(measure.classes) - {-1}):
-            members = [a for a, each in enumerate(measure.classes) if each == number]
+            members = [a for a, class_number in enumerate(measure.classes) if class_number == number]
             column = self.program.column(0, None)
             self.program.row({column: 1, **dict.fromkeys(members, -1)}, 0)
             self.program.row({column: -1, **dict.fromkeys(members, 1)}, 0)
@@ -559,11 +559,11 @@ class _Model:
         self._classes[id(measure)] = columns
 
     def class_columns(self, measure: Measure) -> list[int]:
-        """Return the columns that count the executions of each class."""
+        """Return the columns that count the executions of each class of actions."""
         return self._classes[id(measure)]
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add what a landmark says, unless what is there at first is not counted here and may fulfil it."""
+        """Add the row of a landmark, unless an initial copy without column may satisfy it."""
         members, stock, action, _ = landmark
         if not self.stock.keys() >= set(stock):
             return
@@ -578,42 +578,42 @@ class _Model:
         """Tie each indicator to its action by the greatest count that it can have."""
         program = self.program
         for action, row in enumerate(self._loose):
-            most = self._most(action)
-            program.change(row, {} if most is None else {self._size + action: most, action: -1})
-        for (action, count), (column, row) in self._often.items():
-            most = self._most(action)
-            program.change(row, {} if most is None else {column: most - count + 1, action: -1})
+            max_count = self._max_count(action)
+            program.change(row, {} if max_count is None else {self._size + action: max_count, action: -1})
+        for (action, count), (column, row) in self._count_indicators.items():
+            max_count = self._max_count(action)
+            program.change(row, {} if max_count is None else {column: max_count - count + 1, action: -1})
 
-    def _most(self, action: int) -> int | None:
-        most = self.program.upper[action]
-        return self._many if most is None and self._far else most
+    def _max_count(self, action: int) -> int | None:
+        upper = self.program.upper[action]
+        return self._many if upper is None and self._far else upper
 
-    def cap(self, measure: Measure, most: int) -> None:
-        """Bound counts of actions by what all of them may cost together."""
+    def cap(self, measure: Measure, max_cost: int) -> None:
+        """Bound the counts of actions by the greatest total cost."""
         for action, cost in enumerate(measure.costs):
             if cost:
-                self.program.cap(action, max(most, 0) // cost)
+                self.program.cap(action, max(max_cost, 0) // cost)
         self.tighten()
 
     def objective(self, measure: Measure) -> dict[int, int]:
-        """Return what each column costs."""
+        """Return the cost of each column."""
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         if measure.item:
             costs |= dict.fromkeys((*self.items.values(), *self.stock.values()), measure.item)
         return costs
 
     def limit(self, level: Level) -> None:
-        """Require that counts are as good by a level as the plan in hand."""
+        """Add the row that counts are as good by a level as the incumbent."""
         costs = self.objective(level.measure)
-        row = self.program.row({column: -cost for column, cost in costs.items()}, -level.most)
+        row = self.program.row({column: -cost for column, cost in costs.items()}, -level.max_cost)
         self.conditions[row] = level
-        self.cap(level.measure, level.most)
+        self.cap(level.measure, level.max_cost)
 
-    def keep(self, measure: Measure, found: Sequence[float]) -> None:
-        """Require that counts cost no more than those found."""
+    def keep(self, measure: Measure, solution: Sequence[float]) -> None:
+        """Add the row that counts cost no more than a solution."""
         costs = self.objective(measure)
-        most = sum(cost * round(found[column]) for column, cost in costs.items())
-        self.program.row({column: -cost for column, cost in costs.items()}, -most)
+        max_cost = sum(cost * round(solution[column]) for column, cost in costs.items())
+        self.program.row({column: -cost for column, cost in costs.items()}, -max_cost)
 
 
 def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
@@ -622,17 +622,17 @@ def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
 
 
 def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[_Bounds]:
-    """Return all that differs from what was found in one of the columns, which are whole, in parts."""
+    """Yield bounds of child nodes that together exclude just the whole values of some columns."""
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):
-        found = round(x[column])
-        if lower[column] < found:
-            less = list(upper)
-            less[column] = found - 1
-            yield list(lower), less
-        most = upper[column]
-        if most is None or most > found:
-            more = list(lower)
-            more[column] = found + 1
-            yield more, list(upper)
-        lower[column] = upper[column] = found
+        value = round(x[column])
+        if lower[column] < value:
+            lowered = list(upper)
+            lowered[column] = value - 1
+            yield list(lower), lowered
+        cap = upper[column]
+        if cap is None or cap > value:
+            raised = list(lower)
+            raised[column] = value + 1
+            yield raised, list(upper)
+        lower[column] = upper[column] = value

@@ -1,4 +1,4 @@
-"""From a basis that floats suggest to weights that are exact: simplex steps in rational numbers."""
+"""The simplex algorithm in rational numbers, from a basis that floats suggest to an exact optimum."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from foon_asp.bounds.lexicographic import Lexicographic, Vector, times
 
-_STEPS = 400  # from a float optimum it takes few; a walk of this length leads nowhere
+_STEPS = 400  # pivots; few are needed from a float optimum
 _ZERO, _ONE = Fraction(), Fraction(1)
 
 Matrix = Mapping[int, Mapping[int, Fraction]]
@@ -14,9 +14,10 @@ Limit = tuple[Mapping[int, Fraction], Fraction]
 
 
 class ExactOptimum(NamedTuple):
-    """The optimum of a covering problem: the share of each column and the weight of each row, where above 0.
+    """The optimum of a covering problem: the value of each column and the dual of each row, where above 0.
 
-    ``value`` is the sum of the weights, those of limits times the limit below 0, and what the columns cost.
+    ``value`` is the cost of the columns, equal to the sum of the row duals less that of the limits' duals
+    times their amounts.
     """
 
     x: dict[int, Fraction]
@@ -25,7 +26,7 @@ class ExactOptimum(NamedTuple):
 
 
 class NowhereError(Exception):
-    """A basis is singular, or its solution not feasible."""
+    """A basis is singular, or its solution is infeasible."""
 
 
 def exact_optimum(
@@ -39,18 +40,18 @@ def exact_optimum(
     """Solve a covering problem over ordered costs exactly, from a basis near the optimum.
 
     ``rows`` list the columns that cover them, ``costs`` are those of the columns, none below 0. Before these
-    rows come ``limits``: what each column takes of one, and how much there is. The basis is given by its
-    columns and by the rows that are tight in it, as many of them. Each step solves the basis anew, and by
-    Bland's rule none comes back. ``None`` where the basis is singular or its solution not
-    feasible, which floats can lead to, or when the walk is too long.
+    rows come ``limits``: the amount that each column consumes, and the amount available. The basis is given
+    by its columns and by as many tight rows. Each step solves the basis anew, and Bland's rule prevents
+    cycling. ``None`` where the basis is singular or its solution infeasible, which floats can lead to, and
+    after too many steps.
     """
-    inside, held = set(columns), set(tight)
+    basic_columns, tight_rows = set(columns), set(tight)
     full = [{column: -amount for column, amount in amounts.items()} for amounts, _ in limits]
     full += (dict.fromkeys(row, _ONE) for row in rows)
-    least = [-most for _, most in limits] + [_ONE] * len(rows)
+    least = [-max_amount for _, max_amount in limits] + [_ONE] * len(rows)
     try:
         for _ in range(_STEPS):
-            basis = _Basis(full, least, costs, inside, held)
+            basis = _Basis(full, least, costs, basic_columns, tight_rows)
             entering = basis.entering(order)
             if entering is None:
                 kept = {row: weight for row, weight in basis.weights.items() if order.sign(weight)}
@@ -58,19 +59,18 @@ def exact_optimum(
                 value = order.total(times(weight, least[row]) for row, weight in kept.items())
                 return ExactOptimum(shares, kept, value)
             for number, is_row in (entering, basis.leaving(*entering)):
-                (held if is_row else inside).symmetric_difference_update({number})
+                (tight_rows if is_row else basic_columns).symmetric_difference_update({number})
     except NowhereError:
         pass
     return None
 
 
 class _Basis:
-    """Columns and as many tight rows, and what follows from them.
+    """A basis: columns and as many tight rows, with its primal and dual solution.
 
-    ``x`` are the shares of the basic columns, by which the tight rows hold with equality; ``slack`` is by
-    how much each row is exceeded; ``weights`` are those of the tight rows, by which the basic
-    columns are loaded with just their costs. Raises :class:`NowhereError` where there is no solution or a
-    negative share or slack.
+    ``x`` are the values of the basic columns, by which the tight rows hold with equality; ``slack`` is the
+    slack of each row; ``weights`` are the duals of the tight rows, by which the basic columns have reduced
+    cost 0. Raises :class:`NowhereError` where there is no solution or a negative value or slack.
     """
 
     def __init__(
@@ -99,14 +99,15 @@ class _Basis:
             raise NowhereError
 
     def entering(self, order: Lexicographic) -> tuple[int, bool] | None:
-        """Return the first column loaded with more than it costs, or else the first row of negative weight.
+        """Return the entering variable by Bland's rule, and whether it is the slack of a row.
 
-        By Bland's rule; the flag says whether it is a row. ``None`` at the optimum.
+        That is the first column of negative reduced cost, else the first row of negative dual. ``None`` at
+        the optimum.
         """
         loads: dict[int, list[Vector]] = {}
         for row, weight in self.weights.items():
             for column, value in self._rows[row].items():
-                if column not in self.x:  # those are loaded with just their costs
+                if column not in self.x:  # basic columns have reduced cost 0
                     loads.setdefault(column, []).append(times(weight, value))
         for column in sorted(loads):
             if order.compare(order.total(loads[column]), self._costs[column]) > 0:
@@ -114,13 +115,13 @@ class _Basis:
         return next(((row, True) for row in sorted(self.weights) if order.sign(self.weights[row]) < 0), None)
 
     def leaving(self, number: int, is_row: bool) -> tuple[int, bool]:
-        """Return the column or row that first falls to zero as a column comes in or a row becomes slack."""
+        """Return the leaving column or row by the ratio test, and whether it is a row."""
         gains = [
-            Fraction(-(row == number)) if is_row else parts.get(number, _ZERO)
-            for row, parts in enumerate(self._rows)
+            Fraction(-(row == number)) if is_row else coefficients.get(number, _ZERO)
+            for row, coefficients in enumerate(self._rows)
         ]
-        side = {row: (gains[row],) for row in self._matrix}
-        fall = {column: value for column, (value,) in solve_exactly(self._matrix, side).items()}
+        right = {row: (gains[row],) for row in self._matrix}
+        fall = {column: value for column, (value,) in solve_exactly(self._matrix, right).items()}
         limits = [(self.x[c] / f, False, c) for c, f in fall.items() if f > 0]
         for row, space in enumerate(self.slack):
             lost = sum((value * fall[c] for c, value in self._rows[row].items() if c in fall), _ZERO)
@@ -132,41 +133,41 @@ class _Basis:
 
 
 def solve_exactly(matrix: Matrix, right: Mapping[int, Vector]) -> dict[int, Vector]:
-    """Solve a sparse square system for several right sides at once.
+    """Solve a sparse square system for several right-hand sides at once, by Gaussian elimination.
 
-    ``matrix[i]`` maps unknowns to coefficients, ``right[i]`` is what row i gives. Row by row elimination, the
-    shortest row first, which keeps systems of cuts sparse. Raises :class:`NowhereError` where it is
-    singular.
+    ``matrix[i]`` maps unknowns to coefficients, ``right[i]`` are the right-hand sides of row i. The shortest
+    row is eliminated first, which keeps systems of cuts sparse. Returns the values by unknown. Raises
+    :class:`NowhereError` where the system is singular.
     """
-    left = {number: dict(row) for number, row in matrix.items()}
-    sides = dict(right)
-    waiting = set(left)
+    rows = {number: dict(row) for number, row in matrix.items()}
+    right_sides = dict(right)
+    waiting = set(rows)
     pivots: list[tuple[int, int, Fraction]] = []
     while waiting:
-        number = min(waiting, key=lambda n: (len(left[n]), n))
-        row = left[number]
+        number = min(waiting, key=lambda n: (len(rows[n]), n))
+        row = rows[number]
         if not row:
             raise NowhereError
         unknown, pivot = row.popitem()
         pivots.append((number, unknown, pivot))
         waiting.remove(number)
         for rival in waiting:
-            other = left[rival]
+            other = rows[rival]
             if unknown in other:
                 factor = other.pop(unknown) / pivot
                 for u, value in row.items():
                     other[u] = other.get(u, _ZERO) - factor * value
                     if not other[u]:
                         del other[u]
-                sides[rival] = _less(sides[rival], factor, sides[number])
+                right_sides[rival] = _less(right_sides[rival], factor, right_sides[number])
     solution: dict[int, Vector] = {}
     for number, unknown, pivot in reversed(pivots):
-        side = sides[number]
-        for u, value in left[number].items():
-            side = _less(side, value, solution[u])
-        solution[unknown] = tuple(part / pivot for part in side)
+        right_side = right_sides[number]
+        for u, value in rows[number].items():
+            right_side = _less(right_side, value, solution[u])
+        solution[unknown] = tuple(numerator / pivot for numerator in right_side)
     return solution
 
 
-def _less(side: Vector, factor: Fraction, other: Vector) -> Vector:
-    return tuple(b - factor * a for a, b in zip(other, side, strict=True))
+def _less(vector: Vector, factor: Fraction, other: Vector) -> Vector:
+    return tuple(b - factor * a for a, b in zip(other, vector, strict=True))

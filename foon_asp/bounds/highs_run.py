@@ -1,4 +1,4 @@
-"""A run of HiGHS, which ends when time is up."""
+"""Runs of HiGHS that end when time is up."""
 
 from collections.abc import Callable
 from typing import Any, Final
@@ -13,7 +13,7 @@ _LATE = 0.3  # seconds that HiGHS has to end; a step of the interior point metho
 
 
 def libraries() -> tuple[Any, Any]:
-    """Import HiGHS and numpy, which takes ten times as long as all else here: only when needed."""
+    """Return the modules highspy and numpy, imported only when needed since that is slow."""
     with uninterrupted():
         import highspy  # noqa: PLC0415
         import numpy as np  # noqa: PLC0415
@@ -22,7 +22,7 @@ def libraries() -> tuple[Any, Any]:
 
 
 def silent_highs() -> Any:
-    """Make an instance of HiGHS that writes nothing.
+    """Return an instance of HiGHS that writes nothing.
 
     From version 1.16 on, it writes its name when it is made, where it sets callbacks, before it has options.
     """
@@ -38,10 +38,10 @@ def silent_highs() -> Any:
 
 
 def run(highs: Any, expired: Callable[[], bool], whole: bool = False) -> bool:
-    """Let HiGHS solve what it was told, in ``whole`` numbers if it was; whether there was time to its end.
+    """Run HiGHS on its model, in ``whole`` numbers if so; return whether it ended before time was up.
 
-    Else what it has by then can be read. Raises ``KeyboardInterrupt`` where it does not end even then, after
-    which it may not be asked anything.
+    Otherwise its current solution can be read. Raises ``KeyboardInterrupt`` where HiGHS does not stop, after
+    which the instance must not be used.
     """
     if whole or highs.getNumCol() + highs.getNumRow() > _SMALL:
         return _Run(highs, expired).wait()
@@ -57,9 +57,9 @@ def run(highs: Any, expired: Callable[[], bool], whole: bool = False) -> bool:
 
 
 class _Run:
-    """A run in a thread of its own, in which HiGHS asks at each step whether to go on.
+    """A run of HiGHS in a thread of its own, with a callback that can interrupt it.
 
-    In this one, ctrl-C could come while it asks, and it does not survive exceptions there.
+    In the main thread, ctrl-C could come during the callback, and HiGHS does not survive exceptions there.
     """
 
     def __init__(self, highs: Any, expired: Callable[[], bool]) -> None:
@@ -74,13 +74,13 @@ class _Run:
         self._highs.setCallback(self._look, None)
         for name in ("kCallbackSimplexInterrupt", "kCallbackIpmInterrupt", "kCallbackMipInterrupt"):
             self._highs.startCallback(getattr(kinds, name))
-        beside = Aside(self._highs.run)
+        thread = Aside(self._highs.run)
         try:
-            while not beside.ended(_LOOKS) and not self._expired():
+            while not thread.ended(_LOOKS) and not self._expired():
                 pass
         finally:
-            self._stopped = not beside.ended(0)
-            ended = beside.ended(_LATE)
+            self._stopped = not thread.ended(0)
+            ended = thread.ended(_LATE)
         if not ended:
             raise KeyboardInterrupt
         return bool(self._highs.getModelStatus() != highspy.HighsModelStatus.kInterrupt)

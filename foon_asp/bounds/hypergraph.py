@@ -1,4 +1,4 @@
-"""Actions that need objects and give objects, as plain lists of numbers."""
+"""The delete relaxation as a directed hypergraph: actions with preconditions and add effects, by number."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -9,9 +9,9 @@ from functools import cached_property
 class Hypergraph:
     """Actions ``0 .. len(needs) - 1`` over objects ``0 .. size - 1``.
 
-    Action ``a`` can run once every object of ``needs[a]`` is at hand, and then those of ``gives[a]`` are.
-    ``start`` are the objects that are at hand from the beginning; no object is ever used up.
-    ``known_makers`` are the actions that give each object, where they are known already.
+    Action ``a`` has the preconditions ``needs[a]`` and the add effects ``gives[a]``. ``start`` are the
+    initial objects; no object is ever consumed. ``known_makers`` are the achievers of each object, where
+    they are known already.
     """
 
     size: int
@@ -22,7 +22,7 @@ class Hypergraph:
 
     @cached_property
     def at_start(self) -> bytearray:
-        """A 1 for every object that is at hand from the beginning."""
+        """A 1 for every initial object."""
         flags = bytearray(self.size)
         for o in self.start:
             flags[o] = True
@@ -30,22 +30,22 @@ class Hypergraph:
 
     @cached_property
     def makers(self) -> Sequence[Sequence[int]]:
-        """For each object the actions that give it."""
+        """The achievers of each object."""
         return self._owners(self.gives) if self.known_makers is None else self.known_makers
 
     @cached_property
     def takers(self) -> list[list[int]]:
-        """For each object the actions that need it."""
+        """The consumers of each object: the actions with it as a precondition."""
         return self._owners(self.needs)
 
     @cached_property
     def missing(self) -> list[int]:
-        """For each action, how many of the objects it needs are not there from the start."""
+        """For each action, the number of its preconditions that are not initial."""
         at_start = self.at_start
         return [sum(not at_start[o] for o in set(needed)) for needed in self.needs]
 
     def crossing(self, objects: frozenset[int]) -> tuple[int, ...]:
-        """Return the actions that give one of some objects and need none of them, ascending."""
+        """Return the landmark of a cut: actions that achieve one of its objects and need none, ascending."""
         makers, needs = self.makers, self.needs
         return tuple(sorted({a for o in objects for a in makers[o] if objects.isdisjoint(needs[a])}))
 
@@ -57,10 +57,7 @@ class Hypergraph:
         return owners
 
     def reach(self, forbidden: frozenset[int] = frozenset()) -> bytearray:
-        """Close the start under all actions but the forbidden ones, in linear time.
-
-        Gives a 1 for every object at hand then.
-        """
+        """Return a 1 for every object reachable without the forbidden actions, in linear time."""
         missing = list(self.missing)
         reached = bytearray(self.at_start)
         gives, takers = self.gives, self.takers

@@ -1,8 +1,8 @@
-"""Lower bounds by landmark cuts, found where they are needed only.
+"""Lower bounds by LM-cut (Helmert and Domshlak 2009), looking only at actions that its cuts touch.
 
-Landmarks as in :mod:`foon_asp.bounds.cut`: of the actions that give an object of a set with a goal in it and
-need none of the set, every derivation uses one. Costs are divided among landmarks as LM-cut does (Helmert and
-Domshlak 2009): each takes from all of its members what the cheapest has left.
+Landmarks are as in :mod:`foon_asp.bounds.cut`: every derivation uses one of the actions that achieve an
+object of a set with a goal in it and need none of the set. Each landmark takes from all of its actions the
+least of their reduced costs.
 """
 
 import math
@@ -12,16 +12,17 @@ from typing import NamedTuple
 
 from foon_asp.bounds.hypergraph import Hypergraph
 
-_FRESH = 64  # cuts, or one for each target, after which what is thought of how dear objects are is too old
-# times that the guide is asked for as many cuts as there are objects: it looks at all of them each time, and
-# asked more often it would make cuts quadratic (benchmarks/shapes.py, grid by kitchen)
+_FRESH = 64  # cuts, or one for each target, after which the h-values are computed anew
+# how often h-values are computed for as many cuts as there are objects: each computation looks at all of the
+# objects, and more of them would make cuts quadratic (benchmarks/shapes.py, grid by kitchen)
 _GUIDES = 32
 
 
 class WeightedCut(NamedTuple):
-    """A cut: objects, its landmark, the member that had least cost left, and that cost as its weight.
+    """A cut with its landmark ``members``, its action of least reduced cost, and that cost as its weight.
 
-    ``own`` are its objects but those of the cut ``after`` it, whose members all need one of them.
+    ``own`` are its objects without those of the cut ``after`` it, whose landmark actions all need one of its
+    objects.
     """
 
     own: frozenset[int]
@@ -32,34 +33,34 @@ class WeightedCut(NamedTuple):
 
     @property
     def objects(self) -> frozenset[int]:
-        """All objects, of which one is a target: put together when asked for, since a chain has many."""
-        found, cut = [self.own], self.after
+        """All objects, with a target among them; computed on demand, since the chain of cuts may be long."""
+        objects, cut = [self.own], self.after
         while cut is not None:
-            found.append(cut.own)
+            objects.append(cut.own)
             cut = cut.after
-        return frozenset().union(*found)
+        return frozenset().union(*objects)
 
 
 class Cuts(NamedTuple):
-    """Weighted cuts: their sum ``bound`` is what every derivation costs at least.
+    """A cost partition over cuts: the sum ``bound`` of its weights is a lower bound on every derivation.
 
-    ``left[a]`` is what the cuts leave of the cost of action ``a``; where it is not there, they take nothing.
+    ``reduced_costs[a]`` is the reduced cost of action ``a``; actions that are missing have their full cost.
     ``hopeless`` says that there is no derivation at all by the actions allowed, ``interrupted`` that ctrl-C
-    ended the search for more: the bound holds, and ``left`` is of no use.
+    ended the search for more cuts: the bound holds, and ``reduced_costs`` are of no use.
     """
 
     bound: int
-    left: dict[int, int]
+    reduced_costs: dict[int, int]
     cuts: list[WeightedCut]
     hopeless: bool = False
     interrupted: bool = False
 
 
 class _Level:
-    """Objects that every derivation makes, and the growing zone of the cuts before the last of them.
+    """Objects that every derivation makes, and the goal zone of the cuts of the last of them.
 
-    ``edge`` are actions that give an object of the zone, need none and cost something. ``cut`` is the latest
-    of this zone, or the one that all of this level is before.
+    ``edge`` are actions that achieve an object of the zone, need none of its objects and have a reduced cost
+    above 0. ``cut`` is the latest cut of this zone, or else the cut that follows the whole level.
     """
 
     def __init__(self, objects: Sequence[int], after: WeightedCut | None) -> None:
@@ -68,21 +69,24 @@ class _Level:
         self.begin()
 
     def begin(self) -> None:
-        """Forget the zone."""
+        """Start an empty zone."""
         self.zone: set[int] = set()
         self.edge: dict[int, None] = {}
         self.cut = self.after
 
 
 class _Target:
-    """A target, and upon it levels of what is before it in every derivation; ``behind`` are their zones."""
+    """A target with a stack of levels, each of objects made before the level below.
+
+    ``behind`` are the objects of the zones of all levels but the topmost.
+    """
 
     def __init__(self, target: int) -> None:
         self.levels = [_Level([target], None)]
-        self.behind: set[int] = set()
+        self.outer_zones: set[int] = set()
 
     def level(self, free: Container[int]) -> _Level | None:
-        """Return the level whose last object needs a cut, which is not free; ``None`` where all are."""
+        """Return the topmost level whose last object is not free; ``None`` where the target is free."""
         while self.levels:
             level = self.levels[-1]
             if level.objects and level.objects[-1] not in free:
@@ -93,13 +97,13 @@ class _Target:
                 continue
             self.levels.pop()
             if self.levels:
-                self.behind -= self.levels[-1].zone
+                self.outer_zones -= self.levels[-1].zone
         return None
 
     def add(self, needed: Sequence[int]) -> None:
-        """Go on before what all members of the latest cut need, its last object first."""
+        """Add a level of the common preconditions of the latest landmark, the last of them first."""
         if needed:
-            self.behind |= self.levels[-1].zone
+            self.outer_zones |= self.levels[-1].zone
             self.levels.append(_Level(needed, self.levels[-1].cut))
 
 
@@ -108,108 +112,115 @@ def landmark_cuts(
     targets: Iterable[int],
     allowed: Container[int],
     cost: Callable[[int], int],
-    dear: Mapping[int, int],
+    guide_costs: Mapping[int, int],
     expired: Callable[[], bool],
     guide: Callable[[Callable[[int], int]], Mapping[int, int]] | None = None,
-    most: float = math.inf,
+    max_members: float = math.inf,
 ) -> Cuts:
-    """Find weighted cuts before the targets, until what is left of the costs gives them all for nothing.
+    """Find landmark cuts and a cost partition by LM-cut, until the targets have reduced cost 0.
 
-    Or until their landmarks have ``most`` members together, or about.
-
-    Only ``allowed`` actions count, and all costs are above zero. ``dear`` says how dear each object is
-    thought to be, those not in it dearer than all: a cut passes through the dearest object that an action
-    needs. Each target in turn has a cut, the dearest first: more cuts of the dearest alone would take what
-    others have cuts of their own for. ``guide`` tells how dear objects are from the costs of actions, and is
-    asked now and then by what the cuts leave of them. What is made for nothing only grows, so that the time
-    goes with what the cuts touch and not with the size of the graph.
+    Ends early when the landmarks have about ``max_members`` actions together, and where time is up. Only
+    ``allowed`` actions count, and all costs are above zero. ``guide_costs`` are h-values of objects, infinite
+    where missing: a cut passes through the precondition of the greatest h-value, as in LM-cut. Targets take
+    turns, the greatest h-value first, so that the cuts of one do not take the costs that others need.
+    ``guide`` computes h-values from reduced costs, and is called now and then. Objects of reduced cost 0 only
+    grow, so the time is linear in what the cuts touch, not in the size of the graph.
     """
-    search = _Search(graph, allowed, cost, dear)
-    remaining = deque(_Target(o) for o in sorted(targets, key=search.dearness, reverse=True))
-    fresh = max(_FRESH, len(remaining))  # how many cuts there are when the guide is asked
+    search = _Search(graph, allowed, cost, guide_costs)
+    queue = deque(_Target(o) for o in sorted(targets, key=search.guide_key, reverse=True))
+    next_guide = max(_FRESH, len(queue))  # how many cuts there are when the guide is asked
     effort = 0
     try:
-        while remaining and effort < most and not expired():
-            target = remaining.popleft()
+        while queue and effort < max_members and not expired():
+            target = queue.popleft()
             level = target.level(search.free.objects)
             if level is None:
                 continue
-            remaining.append(target)
-            if guide is not None and len(search.cuts) >= fresh:
-                search.dear = guide(search.rest_of)
-                waiting = sum(len(each.objects) for each in target.levels)
-                fresh = len(search.cuts) + max(_FRESH, len(remaining), waiting, len(search.dear) // _GUIDES)
+            queue.append(target)
+            if guide is not None and len(search.cuts) >= next_guide:
+                search.guide_costs = guide(search.reduced_cost)
+                waiting = sum(len(level_above.objects) for level_above in target.levels)
+                next_guide = len(search.cuts) + max(
+                    _FRESH, len(queue), waiting, len(search.guide_costs) // _GUIDES
+                )
                 level.begin()
-            cut = search.cut(level, target.behind)
+            cut = search.cut(level, target.outer_zones)
             if cut is None:
-                return Cuts(search.bound, search.left, search.cuts, hopeless=True)
+                return Cuts(search.bound, search.reduced_costs, search.cuts, hopeless=True)
             effort += len(cut.members)
             target.add(search.needed_by_all(cut.members))
     except KeyboardInterrupt:
-        return Cuts(search.bound, search.left, search.cuts, interrupted=True)
-    return Cuts(search.bound, search.left, search.cuts)
+        return Cuts(search.bound, search.reduced_costs, search.cuts, interrupted=True)
+    return Cuts(search.bound, search.reduced_costs, search.cuts)
 
 
 class _Search:
-    """What cuts have taken of the costs so far, and the next cut."""
+    """The state of LM-cut: cuts so far, reduced costs, and objects of reduced cost 0."""
 
     def __init__(
-        self, graph: Hypergraph, allowed: Container[int], cost: Callable[[int], int], dear: Mapping[int, int]
+        self,
+        graph: Hypergraph,
+        allowed: Container[int],
+        cost: Callable[[int], int],
+        guide_costs: Mapping[int, int],
     ) -> None:
         self._graph, self._allowed, self._cost = graph, allowed, cost
-        self.dear = dear
-        self.left: dict[int, int] = {}
+        self.guide_costs = guide_costs
+        self.reduced_costs: dict[int, int] = {}
         self.free = _Free(graph)
         self.cuts: list[WeightedCut] = []
         self.bound = 0
 
-    def rest_of(self, action: int) -> int:
-        """Return what the cuts leave of the cost of an action."""
-        return self.left[action] if action in self.left else self._cost(action)
+    def reduced_cost(self, action: int) -> int:
+        """Return the reduced cost of an action."""
+        return self.reduced_costs[action] if action in self.reduced_costs else self._cost(action)
 
-    def dearness(self, o: int) -> tuple[float, int]:
-        """Return a key by which objects are ordered, the dearest last."""
-        return self.dear.get(o, math.inf), o
+    def guide_key(self, o: int) -> tuple[float, int]:
+        """Return a sort key of an object: its h-value, then its number."""
+        return self.guide_costs.get(o, math.inf), o
 
-    def cut(self, level: _Level, behind: set[int]) -> WeightedCut | None:
-        """Add the next cut of a level; ``None`` where no action crosses it."""
-        new = self._grown(level, behind)
+    def cut(self, level: _Level, outer_zones: set[int]) -> WeightedCut | None:
+        """Add and return the next cut of a level; ``None`` where no action crosses it."""
+        new = self._grow_zone(level, outer_zones)
         while new is None:
             level.begin()
-            new = self._grown(level, behind)
+            new = self._grow_zone(level, outer_zones)
         needs = self._graph.needs
         members = tuple(action for action in level.edge if level.zone.isdisjoint(needs[action]))
         if not members:
             return None
         level.edge = dict.fromkeys(members)
-        rests = {action: self.rest_of(action) for action in members}
-        cheapest = min(rests, key=rests.__getitem__)
-        weight = rests[cheapest]
+        reduced_costs = {action: self.reduced_cost(action) for action in members}
+        cheapest = min(reduced_costs, key=reduced_costs.__getitem__)
+        weight = reduced_costs[cheapest]
         level.cut = WeightedCut(frozenset(new), members, cheapest, weight, level.cut)
         self.bound += weight
         self.cuts.append(level.cut)
-        for action, rest in rests.items():
-            self.left[action] = rest - weight
-            if rest == weight:
+        for action, reduced_cost in reduced_costs.items():
+            self.reduced_costs[action] = reduced_cost - weight
+            if reduced_cost == weight:
                 self.free.release(action)
         return level.cut
 
     def needed_by_all(self, members: Sequence[int]) -> list[int]:
-        """Return what all members of a cut need and what is not free, the dearest last."""
+        """Return the common preconditions of a landmark that are not free, the greatest h-value last."""
         needs = self._graph.needs
         common = set(self.free.lacking(members[0])).intersection(*(needs[action] for action in members))
-        return sorted(common, key=self.dearness)
+        return sorted(common, key=self.guide_key)
 
-    def _grown(self, level: _Level, behind: set[int]) -> list[int] | None:
-        """Let a zone grow through what costs nothing; ``None`` where it holds what is free by now."""
-        needs, makers, left = self._graph.needs, self._graph.makers, self.left
+    def _grow_zone(self, level: _Level, outer_zones: set[int]) -> list[int] | None:
+        """Grow a zone through actions of reduced cost 0, and return its new objects.
+
+        ``None`` where an action of the zone has become free, so that the zone has to start anew.
+        """
+        needs, achievers, reduced_costs = self._graph.needs, self._graph.makers, self.reduced_costs
         zone, edge = level.zone, level.edge
         new = [] if zone else [level.objects[-1]]
         zone.update(new)
-        passed = [action for action in edge if not left.get(action, True)]
+        passed = [action for action in edge if not reduced_costs.get(action, True)]
         for action in passed:
             del edge[action]
-        place = 0
+        i = 0
         while True:
             for action in passed:
                 if not zone.isdisjoint(needs[action]):
@@ -217,23 +228,23 @@ class _Search:
                 lacking = self.free.lacking(action)
                 if not lacking:
                     return None
-                dearest = max(lacking, key=self.dearness)
+                dearest = max(lacking, key=self.guide_key)
                 zone.add(dearest)
                 new.append(dearest)
-            if place == len(new):
+            if i == len(new):
                 return new
             passed = []
-            for action in makers[new[place]]:
-                if action in self._allowed and behind.isdisjoint(needs[action]):
-                    if left.get(action, True):
+            for action in achievers[new[i]]:
+                if action in self._allowed and outer_zones.isdisjoint(needs[action]):
+                    if reduced_costs.get(action, True):
                         edge[action] = None
                     else:
                         passed.append(action)
-            place += 1
+            i += 1
 
 
 class _Free:
-    """What can be made for nothing, growing as actions run out of cost."""
+    """The objects reachable by actions of reduced cost 0, updated incrementally."""
 
     def __init__(self, graph: Hypergraph) -> None:
         self._graph = graph
@@ -242,12 +253,12 @@ class _Free:
         self._waiting: dict[int, list[int]] = {}
 
     def lacking(self, action: int) -> list[int]:
-        """Return what an action needs and what is neither free nor there from the start."""
+        """Return the preconditions of an action that are neither free nor initial."""
         free, start = self.objects, self._graph.start
         return [o for o in self._graph.needs[action] if o not in free and o not in start]
 
     def release(self, action: int) -> None:
-        """Let an action that has no cost left run as soon as all it needs is free."""
+        """Add an action of reduced cost 0, which makes its add effects free once its preconditions are."""
         lacking = self.lacking(action)
         self._missing[action] = len(lacking)
         for o in lacking:
@@ -256,7 +267,7 @@ class _Free:
         while stack:
             for o in self._graph.gives[stack.pop()]:
                 self.objects.add(o)
-                for taker in self._waiting.pop(o, ()):
-                    self._missing[taker] -= 1
-                    if not self._missing[taker]:
-                        stack.append(taker)
+                for consumer in self._waiting.pop(o, ()):
+                    self._missing[consumer] -= 1
+                    if not self._missing[consumer]:
+                        stack.append(consumer)

@@ -1,4 +1,4 @@
-"""Costs of several levels that are compared exactly: counts, and products of rates.
+"""Lexicographic costs that are compared exactly: counts, and products of rates.
 
 A cost is a vector of rational numbers. A level that counts has one coordinate. A level that multiplies rates
 has one for each rate ``r``: the exponent ``e`` in the product of all ``r ** e``, which costs ``-log`` of it.
@@ -15,12 +15,12 @@ from foon_asp.bounds.coprime_base import coprime_base, powers
 
 Vector = tuple[Fraction, ...]
 
-_MARGIN = 1e-9  # of a sum of logarithms, beyond which its float cannot have the wrong sign
+_MARGIN = 1e-9  # relative error of a sum of logarithms in floats, at most
 _TINY = 1e-290  # below this, floats lose their last digits
-_HELD = 10**15  # of exponents: times more, a logarithm that a float lost could count
+_MAX_EXPONENT = 10**15  # with greater exponents, lost digits of a logarithm could matter
 _DIGITS = 60  # of a logarithm, at first
 
-_GREATEST = 10**12  # of what a guess is made with: HiGHS gives up far above
+_GREATEST = 10**12  # exponents in approximations: HiGHS fails far above
 
 
 class Lexicographic:
@@ -31,7 +31,7 @@ class Lexicographic:
 
     def __init__(self, levels: Sequence[Sequence[Fraction] | None]) -> None:
         self.levels = tuple(None if rates is None else tuple(rates) for rates in levels)
-        # what a coordinate counts in its level, in floats
+        # the factor of each coordinate in its level, in floats
         self._measures = [
             [1.0] if rates is None else [float(minus_log(rate, _DIGITS)[0]) for rate in rates]
             for rates in self.levels
@@ -45,18 +45,20 @@ class Lexicographic:
 
     def total(self, vectors: Iterable[Vector]) -> Vector:
         """Add up costs."""
-        return tuple(sum(parts, Fraction(0)) for parts in zip(self.zero, *vectors, strict=True))
+        return tuple(sum(coordinates, Fraction(0)) for coordinates in zip(self.zero, *vectors, strict=True))
 
     def sign(self, vector: Sequence[Fraction | int]) -> int:
         """Return -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly.
 
         It can be 0 for a vector that is not: 7/10 * 7/10 is 49/100.
         """
-        for level, part in self._parts(vector):
+        for level, coordinates in self._parts(vector):
             rates = self.levels[level]
-            found = _sign(part[0]) if rates is None else self._sign_of_product(level, rates, part)
-            if found != 0:
-                return found
+            sign = (
+                _sign(coordinates[0]) if rates is None else self._sign_of_product(level, rates, coordinates)
+            )
+            if sign != 0:
+                return sign
         return 0
 
     def compare(self, one: Vector, other: Vector) -> int:
@@ -64,22 +66,22 @@ class Lexicographic:
         return self.sign(minus(one, other))
 
     def approximate(self, vector: Sequence[Fraction | int]) -> list[float]:
-        """Return each level as a float, for methods that guess what is then checked; none is beyond 10^12."""
+        """Return each level as a float, for heuristics; coordinates are capped at 10^12."""
         return [
-            sum(self._terms(level, [max(-_GREATEST, min(e, _GREATEST)) for e in part]))
-            for level, part in self._parts(vector)
+            sum(self._terms(level, [max(-_GREATEST, min(e, _GREATEST)) for e in coordinates]))
+            for level, coordinates in self._parts(vector)
         ]
 
     def _parts(self, vector: Sequence[Fraction | int]) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
-        """Return the coordinates of each level."""
+        """Yield the coordinates of each level."""
         begin = 0
         for level, measures in enumerate(self._measures):
             end = begin + len(measures)
             yield level, vector[begin:end]
             begin = end
 
-    def _terms(self, level: int, part: Sequence[Fraction | int]) -> list[float]:
-        return [float(e) * measure for e, measure in zip(part, self._measures[level], strict=True)]
+    def _terms(self, level: int, exponents: Sequence[Fraction | int]) -> list[float]:
+        return [float(e) * measure for e, measure in zip(exponents, self._measures[level], strict=True)]
 
     def _sign_of_product(
         self, level: int, rates: Sequence[Fraction], exponents: Sequence[Fraction | int]
@@ -87,7 +89,7 @@ class Lexicographic:
         """Compare a product of powers of a level's rates with 1: -1 where it is above 1."""
         if not any(exponents):
             return 0
-        if all(-_HELD < exponent < _HELD for exponent in exponents):
+        if all(-_MAX_EXPONENT < exponent < _MAX_EXPONENT for exponent in exponents):
             terms = self._terms(level, exponents)
             about = sum(terms)
             if abs(about) > _MARGIN * sum(map(abs, terms)) + _TINY:
@@ -97,8 +99,8 @@ class Lexicographic:
         digits = _DIGITS
         while True:
             total = error = Fraction(0)
-            for place, exponent in enumerate(exponents):
-                logarithm, off = minus_log(rates[place], digits)
+            for i, exponent in enumerate(exponents):
+                logarithm, off = minus_log(rates[i], digits)
                 total += logarithm * exponent
                 error += abs(off * exponent)
             if abs(total) > error:
@@ -107,35 +109,34 @@ class Lexicographic:
 
     @cached_property
     def _factors(self) -> list[dict[int, dict[int, int]]]:
-        """For each level numbers without common divisors, with the power of each in the rates, by place."""
-        found: list[dict[int, dict[int, int]]] = []
+        """For each level a coprime base, with the exponent of each factor by the index of the rate."""
+        factors_by_level: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:
             base = coprime_base(n for rate in rates or () for n in rate.as_integer_ratio())
             factors: dict[int, dict[int, int]] = {b: {} for b in base}
-            for place, rate in enumerate(rates or ()):
+            for i, rate in enumerate(rates or ()):
                 for b, power in powers(rate.numerator, base).items():
-                    factors[b][place] = power
+                    factors[b][i] = power
                 for b, power in powers(rate.denominator, base).items():
-                    factors[b][place] = -power
-            found.append(factors)
-        return found
+                    factors[b][i] = -power
+            factors_by_level.append(factors)
+        return factors_by_level
 
     def _is_one(self, level: int, exponents: Sequence[Fraction | int]) -> bool:
-        """Whether a product of powers of a level's rates is 1, however large the powers are."""
+        """Return whether a product of powers of a level's rates is exactly 1."""
         return not any(
-            sum(power * exponents[place] for place, power in rates.items())
-            for rates in self._factors[level].values()
+            sum(power * exponents[i] for i, power in rates.items()) for rates in self._factors[level].values()
         )
 
 
 def minus(one: Vector, other: Vector) -> Vector:
-    """Take one cost from another."""
+    """Return the difference of two costs, ``one - other``."""
     return tuple(a - b for a, b in zip(one, other, strict=True))
 
 
 def times(vector: Vector, factor: Fraction) -> Vector:
     """Multiply a cost by a rational number."""
-    return vector if factor == 1 else tuple(part * factor for part in vector)
+    return vector if factor == 1 else tuple(coordinate * factor for coordinate in vector)
 
 
 @lru_cache(maxsize=4096)

@@ -1,12 +1,12 @@
-"""Proofs that no derivation costs less than one in hand: weighted landmarks, and branching at a gap.
+"""Proofs that no derivation costs less than the incumbent: cost partitions over landmarks, and branching.
 
-Weights on landmarks that overload no action (what the landmarks of an action weigh together is at most its
-cost) add up to a lower bound on the cost of every derivation. The best such weights solve the dual of the
-linear relaxation of hitting every landmark; landmarks are added as long as one is found that the relaxed
-solution does not hit (Bonet and Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
+Weights on landmarks that overload no action (the weights of the landmarks of an action add up to at most its
+cost) are a cost partition: their sum is a lower bound on the cost of every derivation. The best weights solve
+the dual of the hitting set relaxation; landmarks are added as long as the LP solution violates one (Bonet and
+Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
 
-Where at most so much of something may be used, that is one more row of the relaxation: an action that takes
-of it may carry more weight, and what all that there is carries is taken from the bound.
+A limit on a resource is one more row of the relaxation: an action that consumes the resource may carry more
+weight, and the weight of the limit times its amount is taken from the bound.
 """
 
 import math
@@ -24,23 +24,23 @@ from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus, times
 from foon_asp.bounds.relaxation import Covering
 from foon_asp.bounds.shared_costs import PARTS, SharedCosts, share_costs
 
-_HIT = 0.999999  # a landmark of a greater share is taken to be hit
-_STEP = 0.99  # of what costs are multiples of: bounds are rounded up
-_BESIDE = 40  # cuts that are grown beside each other for one solution
-_ORDERS = 3  # in how many orders cuts are grown before the relaxation counts as the best there is
-_FINER = 1e-4  # how much less a level counts than the one before, in floats
-_MANY = 1000  # actions from which on rounded weights are looked for before exact ones
-_GREEDY = 200  # known cuts that get weights one after the other; all others only with all at once
-_WORTH = 0.5  # of the actions: so many that are too dear are left out before anything else
+_SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
+_STEP = 0.99  # of the step of costs: bounds are rounded up
+_DISJOINT_CUTS = 40  # cuts with disjoint landmarks separated for one solution
+_ORDERS = 3  # orders in which cuts are grown before the relaxation counts as optimal
+_FINER = 1e-4  # factor from a cost level to the next in floats
+_MANY = 1000  # with more actions, rounded weights are tried before exact ones
+_GREEDY = 200  # known cuts that get weights greedily; the others get weights only from the LP
+_WORTH = 0.5  # of the actions: with more above the cutoff, they are fixed before anything else
 
-_DEAR = 1000  # times what is to be proved: what it costs a relaxed solution to go beyond a limit
+_EXCESS_COST_FACTOR = 1000  # times the goal of the proof: what exceeding a limit by 1 costs an LP solution
 
 
 class Packing(NamedTuple):
-    """Weighted cuts; with the costs of the actions taken as used, the weights add up to a lower bound.
+    """A cost partition over cuts; its weights and the costs of the used actions add up to a lower bound.
 
-    ``limits`` are the weights of limits, by their place; what is left of a limit, times its weight, is taken
-    from the bound. What is left of the bound is rounded up at the coordinate ``rounded``.
+    ``limits`` are the weights of limits, by their index; the unused amount of a limit, times its weight, is
+    taken from the bound. The bound is rounded up at the coordinate ``rounded``, if not ``None``.
     """
 
     weights: tuple[tuple[Cut, Vector], ...]
@@ -49,13 +49,13 @@ class Packing(NamedTuple):
 
 
 class Hopeless(NamedTuple):
-    """A cut without members: under the branches taken, nothing reaches the targets."""
+    """A cut with an empty landmark: under the branches taken, no derivation reaches the targets."""
 
     cut: Cut
 
 
 class Broken(NamedTuple):
-    """Under the branches taken, a rule is broken: no derivation that keeps to it has the actions used."""
+    """A rule that every derivation with the used actions breaks, under the branches taken."""
 
     rule: int
 
@@ -68,24 +68,24 @@ class Branch(NamedTuple):
     using: "Proof"
 
 
-class Dear(NamedTuple):
-    """Weights by which a derivation with any of some actions costs too much, and a proof for all others."""
+class CostFixing(NamedTuple):
+    """Reduced-cost fixing: ``actions`` are above the cutoff by ``packing``; ``others`` does without them."""
 
     actions: tuple[int, ...]
     packing: Packing
     others: "Proof"
 
 
-Proof = Packing | Hopeless | Broken | Branch | Dear
-# An action, and the cases without it and with it, told apart further.
+Proof = Packing | Hopeless | Broken | Branch | CostFixing
+# A branching tree: an action, the cases without it and the cases with it.
 Cases = tuple[int, "Cases", "Cases"] | None
 
 
-# Proves the same of derivations with none of some actions, with some cuts to begin with.
+# Continues the proof for derivations without the given actions, from the given cuts.
 Others = Callable[[frozenset[int], Collection[frozenset[int]]], Proof]
 
-# Looks for a proof that no derivation of targets by some actions costs less than a total, all costs being
-# whole, with cuts to begin with, until it is expired. Weights are to be rounded up.
+# Searches for a proof that no derivation of the targets by the actions costs less than a total, for whole
+# costs, from the given cuts, until time is up. The sums of its weights are to be rounded up.
 Search = Callable[
     [
         Hypergraph,
@@ -101,20 +101,20 @@ Search = Callable[
 
 
 class Rules(Protocol):
-    """Rules that derivations keep to, and that neither targets nor limits say."""
+    """Rules on derivations that neither targets nor limits express."""
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        """Return by rule the actions that are in no derivation with those used and none of the others."""
+        """Return by rule the actions in no derivation with the actions used and none of ``without``."""
 
     def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
-        """Return some actions of a derivation by which it breaks a rule, none where it keeps to all."""
+        """Return actions of a derivation that together break a rule; empty where it keeps to all rules."""
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
-        """Return a limit that is not known yet and that a derivation exceeds; from then on it is known."""
+        """Return a limit not returned before that a derivation exceeds; ``None`` if it keeps to all."""
 
 
 class CheaperError(Exception):
-    """A derivation was found that costs less than the one to be proved best."""
+    """A derivation was found that costs less than the incumbent."""
 
     def __init__(self, actions: Sequence[int]) -> None:
         super().__init__("a cheaper derivation was found")
@@ -126,13 +126,13 @@ class _TimeUpError(Exception):
 
 
 class Prover:
-    """Looks for proofs about one hypergraph, its targets and the cost of each action.
+    """Searches for optimality proofs over one hypergraph, its targets and the cost of each action.
 
-    Derivations with an action of ``forbidden`` do not count, nor do those that go beyond one of the
-    ``limits`` or break one of the ``rules``. ``expired`` says when to give up; it is asked between steps that
-    take milliseconds on thousands of actions. What actions cost are multiples of those of ``multiples`` that
-    are above 0, coordinate by coordinate, so that bounds are rounded up. ``search`` is tried where many
-    actions have whole costs, and weights alone do not suffice.
+    Derivations with an action of ``forbidden`` do not count, nor do derivations that exceed one of the
+    ``limits`` or break one of the ``rules``. ``expired`` returns whether to give up; it is called between
+    steps that take milliseconds on thousands of actions. Costs are multiples of the positive ``multiples``,
+    coordinate by coordinate, so that bounds are rounded up. ``known_cuts`` are objects of cuts to begin
+    with. ``search`` is tried where many actions have whole costs and a cost partition does not suffice.
     """
 
     def __init__(
@@ -143,14 +143,14 @@ class Prover:
         order: Lexicographic,
         forbidden: frozenset[int] = frozenset(),
         expired: Callable[[], bool] = lambda: False,
-        known: Iterable[Iterable[int]] = (),
+        known_cuts: Iterable[Iterable[int]] = (),
         limits: Sequence[Limit] = (),
         rules: Rules | None = None,
         multiples: Sequence[Fraction] = (),
         search: Search | None = None,
     ) -> None:
         self._multiples, self._search = multiples, search
-        self._known, self._limits, self._rules = tuple(map(frozenset, known)), [*limits], rules
+        self._known_cuts, self._limits, self._rules = tuple(map(frozenset, known_cuts)), [*limits], rules
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
         self._random = random.Random(0)
@@ -165,34 +165,34 @@ class Prover:
             scale *= _FINER / (1 + largest / unit)
 
     def scaled(self, vector: Vector) -> float:
-        """Return a cost as one float, in which a level counts much less than the one before it."""
+        """Return a cost as one float: a sum in which each level weighs much less than the one before."""
         return sum(map(mul, self._order.approximate(vector), self._scales), 0.0)
 
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
-        """Prove that no derivation costs less than this one; ``None`` where that takes too long.
+        """Return a proof that no derivation costs less than this one; ``None`` where that takes too long.
 
-        ``cases`` are told apart first, where those cuts that are known do not suffice. Raises
-        :class:`CheaperError` when a derivation is met that costs less.
+        The proof branches on ``cases`` first, where the known cuts do not suffice. Raises
+        :class:`CheaperError` when a cheaper derivation is found.
         """
         actions = frozenset(derivation)
         try:
             goal, nothing = self._total(actions), frozenset[int]()
-            return self._prove(actions, goal, nothing, self._forbidden, self._known, cases, first=True)
+            return self._prove(actions, goal, nothing, self._forbidden, self._known_cuts, cases, at_root=True)
         except _TimeUpError:
             return None
 
     def prove_none(self) -> Proof | None:
-        """Prove that there is no derivation; ``None`` where that takes too long or there is one."""
+        """Return a proof that there is no derivation; ``None`` where that takes too long or one exists."""
         try:
             return self._prove(frozenset(), None, frozenset(), self._forbidden)
         except _TimeUpError:
             return None
 
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
-        """Return the weights, and their sum, that the relaxation alone has to offer: a lower bound.
+        """Return the optimal cost partition of the relaxation at the root and its sum, a lower bound.
 
-        Cuts are grown with a good derivation in mind. ``None`` where there was no time, and where the targets
-        are out of reach.
+        Cuts are grown around ``derivation``. ``None`` where time was up, and where the targets cannot be
+        reached.
         """
         nothing: frozenset[int] = frozenset()
         barred = self._bars(nothing, self._forbidden).values()
@@ -213,14 +213,14 @@ class Prover:
         goal: Vector | None,
         used: frozenset[int],
         forbidden: frozenset[int],
-        known: Collection[frozenset[int]] = (),
+        known_cuts: Collection[frozenset[int]] = (),
         cases: Cases = None,
-        first: bool = False,
+        at_root: bool = False,
     ) -> Proof:
-        """Prove that derivations with the used actions and none of the forbidden cost at least ``goal``.
+        """Return a proof that derivations with the used and no forbidden actions cost at least ``goal``.
 
-        ``None`` as the goal is more than any costs: there is none. Cuts that are ``known`` are tried first.
-        ``first`` is where nothing is told apart so far, but for what is too dear.
+        With ``None`` as the goal, it proves that there is no such derivation. ``known_cuts`` are tried first.
+        ``at_root`` is true before any branching, but perhaps after reduced-cost fixing.
         """
         targets = [*self._targets, *(o for action in sorted(used) for o in self._graph.needs[action])]
         bars = self._bars(used, forbidden)
@@ -230,47 +230,51 @@ class Prover:
         cutter = Cutter(self._graph, targets, forbidden.union(*bars.values()))
         if cutter.hopeless:
             return Hopeless(cutter.hopeless)
-        left = None if goal is None else minus(goal, self._total(used))
+        remaining_goal = None if goal is None else minus(goal, self._total(used))
         undecided = set(cutter.actions) - used if cases else ()
         while cases is not None and cases[0] not in undecided:
             cases = cases[2] if cases[0] in used else cases[1]
         widened: Sequence[Cut] = ()
-        if left is not None:
+        if remaining_goal is not None:
 
-            def others(dear: frozenset[int], known: Collection[frozenset[int]]) -> Proof:
-                return self._prove(derivation, goal, used, forbidden | dear, known, cases, first)
+            def others(above_cutoff: frozenset[int], known_cuts: Collection[frozenset[int]]) -> Proof:
+                return self._prove(
+                    derivation, goal, used, forbidden | above_cutoff, known_cuts, cases, at_root
+                )
 
-            many = len(cutter.actions) > _MANY or (first and forbidden != self._forbidden)
+            many = len(cutter.actions) > _MANY or (at_root and forbidden != self._forbidden)
             step = self._step() if many else Fraction(0)
-            alone = cases is not None and not first
-            found, widened = self._packed(cutter, used, left, known, others, step, alone, first)
-            if found is not None:
-                return found
+            alone = cases is not None and not at_root
+            proof, widened = self._packed(
+                cutter, used, remaining_goal, known_cuts, others, step, alone, at_root
+            )
+            if proof is not None:
+                return proof
         if cases is not None:
-            return self._branch(derivation, goal, used, forbidden, known, cases[0], cases[1:])
+            return self._branch(derivation, goal, used, forbidden, known_cuts, cases[0], cases[1:])
         while True:
             node = _Node(self, cutter, derivation, used, goal)
             node.admit(widened)
-            exact = node.relax(left)
-            if exact is not None and node.suffices(exact.value, left):
+            exact = node.relax(remaining_goal)
+            if exact is not None and node.suffices(exact.value, remaining_goal):
                 return node.packing(exact)
             action = node.undecided()
-            taken = [] if action is not None else node.taken()
-            limit = self._exceeded(taken)
+            rounded_solution = [] if action is not None else node.rounded_solution()
+            limit = self._exceeded(rounded_solution)
             if limit is None:
                 break
             self._limits.append(limit)
             widened = node.cuts
         if action is None:
-            breaking = [a for a in self._breaking(taken) if a not in used]
+            breaking = [a for a in self._breaking(rounded_solution) if a not in used]
             if not breaking:
-                cheaper = goal is not None and self._order.compare(self._total(taken), goal) < 0
-                if cheaper and cutter.reached_by(taken) and not node.exceeds(taken):
-                    raise CheaperError(self._able(taken))
+                cheaper = goal is not None and self._order.compare(self._total(rounded_solution), goal) < 0
+                if cheaper and cutter.reached_by(rounded_solution) and not node.exceeds(rounded_solution):
+                    raise CheaperError(self._able(rounded_solution))
                 raise _TimeUpError  # floats led nowhere
             action = breaking[0]
-        known = [frozenset(cut.objects) for cut in node.cuts]
-        return self._branch(derivation, goal, used, forbidden, known, action, (None, None))
+        known_cuts = [frozenset(cut.objects) for cut in node.cuts]
+        return self._branch(derivation, goal, used, forbidden, known_cuts, action, (None, None))
 
     def _branch(
         self,
@@ -278,24 +282,27 @@ class Prover:
         goal: Vector | None,
         used: frozenset[int],
         forbidden: frozenset[int],
-        known: Collection[frozenset[int]],
+        known_cuts: Collection[frozenset[int]],
         action: int,
-        told: Sequence[Cases],
+        cases: Sequence[Cases],
     ) -> Branch:
-        """Prove the same of derivations without an action, and of those with it."""
-        without, using = told
+        """Return a proof by branching: for the derivations without an action, and for those with it."""
+        without, using = cases
         return Branch(
             action,
-            self._prove(derivation, goal, used, forbidden | {action}, known, without),
-            self._prove(derivation, goal, used | {action}, forbidden, known, using),
+            self._prove(derivation, goal, used, forbidden | {action}, known_cuts, without),
+            self._prove(derivation, goal, used | {action}, forbidden, known_cuts, using),
         )
 
     def rounded(self, bound: Vector) -> tuple[Vector, int | None]:
-        """Round up a bound at the first coordinate that is no multiple of what all costs are multiples of."""
-        for place, (part, multiple) in enumerate(zip(bound, self._multiples, strict=False)):
-            if multiple and part % multiple:
-                after = self._order.zero[place + 1 :]
-                return (*bound[:place], math.ceil(part / multiple) * multiple, *after), place
+        """Round up a bound at its first coordinate that is no multiple of the step of costs.
+
+        Returns the bound and the index of the coordinate, ``None`` where no coordinate was rounded.
+        """
+        for i, (coordinate, multiple) in enumerate(zip(bound, self._multiples, strict=False)):
+            if multiple and coordinate % multiple:
+                after = self._order.zero[i + 1 :]
+                return (*bound[:i], math.ceil(coordinate / multiple) * multiple, *after), i
         return bound, None
 
     def _bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
@@ -309,7 +316,7 @@ class Prover:
         return None if self._rules is None or not chosen else self._rules.exceeded(chosen)
 
     def _able(self, actions: Sequence[int]) -> list[int]:
-        """Return those of some actions that can run by these alone."""
+        """Return the actions that can run in a derivation by the given actions alone."""
         graph = self._graph
         reached = graph.reach(frozenset(range(len(graph.needs))).difference(actions))
         return [action for action in actions if all(reached[o] for o in graph.needs[action])]
@@ -319,106 +326,110 @@ class Prover:
         cutter: Cutter,
         used: frozenset[int],
         goal: Vector,
-        known: Collection[frozenset[int]],
+        known_cuts: Collection[frozenset[int]],
         others: Others,
         step: Fraction,
         alone: bool,
-        first: bool,
+        at_root: bool,
     ) -> tuple[Proof | None, Sequence[Cut]]:
         """Return a proof of ``goal``, if one is found without exact arithmetic, and all cuts.
 
-        The weights of the ``known`` cuts are tried first. Where many actions cost multiples of a ``step``,
-        what is too dear by them is left out, if it is worth it, with a proof for ``others``. The same is done
-        with the weights of a relaxed solution in floats, rounded, if not ``alone``. The search comes last,
-        where nothing is told apart so far.
+        A greedy cost partition over ``known_cuts`` is tried first. Where many actions cost multiples of
+        ``step``, reduced-cost fixing by it follows, if it fixes enough actions, with a proof for ``others``.
+        If not ``alone``, both are done with the rounded dual solution of the LP, too. At the root, the search
+        comes last.
         """
         targets = set(cutter.targets)
-        known = [cut for cut in known if not targets.isdisjoint(cut)]
-        cuts = [self._widened(cutter, cut) for cut in known[:_GREEDY]]
+        known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
+        cuts = [self._widened(cutter, cut) for cut in known_cuts[:_GREEDY]]
         cuts = [cut for cut in cuts if used.isdisjoint(cut.members)]
-        packing, rests = self._share_out((cut, None) for cut in cuts)
+        packing, reduced_costs = self._share_out((cut, None) for cut in cuts)
         if self._reaches(packing, goal):
             return packing, cuts
-        found = self._narrowed(cutter, used, goal, packing, rests, others, known, step)
-        if found is not None or alone or not step:
-            return found, cuts
+        proof = self._fix_by_cost(cutter, used, goal, packing, reduced_costs, others, known_cuts, step)
+        if proof is not None or alone or not step:
+            return proof, cuts
 
         def steps(action: int) -> int:
             return 0 if action in used else int(self._costs[action][0] / step)
 
         enough = math.ceil(goal[0] / step)
 
-        def heard(shared: SharedCosts) -> int:
-            spare = (enough - 1) * PARTS - shared.bound
-            dear = sum(rest > spare for rest in shared.left.values())
-            return 0 if dear > _WORTH * len(cutter.actions) else enough
+        def still_needed(shared: SharedCosts) -> int:
+            cutoff = (enough - 1) * PARTS - shared.bound
+            above_cutoff = sum(reduced_cost > cutoff for reduced_cost in shared.reduced_costs.values())
+            return 0 if above_cutoff > _WORTH * len(cutter.actions) else enough
 
         shared = share_costs(
-            *(self._graph, targets, cutter.actions, steps, known, enough, self._expired, heard),
-            often=1,
+            *(self._graph, targets, cutter.actions, steps, known_cuts, enough, self._expired, still_needed),
+            every=1,
         )
         if shared is not None:
-            told = [(self._widened(cutter, cut), (weight * step / PARTS,)) for cut, weight in shared.cuts]
-            told = [(cut, weight) for cut, weight in told if used.isdisjoint(cut.members)]
-            packing, rests = self._share_out(told)
+            weighted_cuts = [
+                (self._widened(cutter, cut), (weight * step / PARTS,)) for cut, weight in shared.cuts
+            ]
+            weighted_cuts = [(cut, weight) for cut, weight in weighted_cuts if used.isdisjoint(cut.members)]
+            packing, reduced_costs = self._share_out(weighted_cuts)
             if self._reaches(packing, goal):
                 return packing, cuts
-            found = self._narrowed(cutter, used, goal, packing, rests, others, shared.tight, step)
-            if found is not None:
-                return found, cuts
-            cuts += [cut for cut, _ in told]
-        return self._searched(cutter, goal, cuts, step) if first else None, cuts
+            proof = self._fix_by_cost(cutter, used, goal, packing, reduced_costs, others, shared.tight, step)
+            if proof is not None:
+                return proof, cuts
+            cuts += [cut for cut, _ in weighted_cuts]
+        return self._searched(cutter, goal, cuts, step) if at_root else None, cuts
 
     def _step(self) -> Fraction:
-        """Return what all costs are multiples of, where they are one number each; else 0."""
-        told = self._limits or self._rules is not None
-        one = len(self._multiples) == 1 == len(self._order.zero)
-        return self._multiples[0] if one and not told else Fraction(0)
+        """Return the step that all costs are multiples of, where they are one number each; else 0."""
+        constrained = self._limits or self._rules is not None
+        one_number = len(self._multiples) == 1 == len(self._order.zero)
+        return self._multiples[0] if one_number and not constrained else Fraction(0)
 
-    def _narrowed(
+    def _fix_by_cost(
         self,
         cutter: Cutter,
         used: frozenset[int],
         goal: Vector,
         packing: Packing,
-        rests: Mapping[int, Vector],
+        reduced_costs: Mapping[int, Vector],
         others: Others,
-        known: Collection[frozenset[int]],
+        known_cuts: Collection[frozenset[int]],
         step: Fraction,
     ) -> Proof | None:
-        """Leave out what is too dear by weights that leave ``rests`` of costs, where it is a good part.
+        """Return a proof by reduced-cost fixing; ``None`` where too few actions are above the cutoff.
 
-        A derivation with an action costs at least what the weights add up to and what they leave of it.
+        A derivation with an action costs at least the sum of the weights and the reduced cost of the action.
         """
         if not step:
             return None
-        spare = (math.ceil(goal[0] / step) - 1) * step - sum(weight[0] for _, weight in packing.weights)
-        costs = ((a, rests.get(a, self._costs[a])[0]) for a in cutter.actions if a not in used)
-        dear = frozenset(a for a, rest in costs if rest > spare)
-        if len(dear) <= _WORTH * len(cutter.actions):
+        cutoff = (math.ceil(goal[0] / step) - 1) * step - sum(weight[0] for _, weight in packing.weights)
+        remaining = ((a, reduced_costs.get(a, self._costs[a])[0]) for a in cutter.actions if a not in used)
+        above_cutoff = frozenset(a for a, reduced_cost in remaining if reduced_cost > cutoff)
+        if len(above_cutoff) <= _WORTH * len(cutter.actions):
             return None
-        proof = others(dear, known)
-        needed = dear.intersection(self._crossing(proof))
-        return Dear(tuple(sorted(needed)), packing._replace(rounded=0), proof) if needed else proof
+        proof = others(above_cutoff, known_cuts)
+        needed = above_cutoff.intersection(self._crossing(proof))
+        return CostFixing(tuple(sorted(needed)), packing._replace(rounded=0), proof) if needed else proof
 
     def _crossing(self, proof: Proof) -> Iterator[int]:
-        """Return the actions that cross cuts of a proof, those that are left out somewhere with them."""
+        """Return the actions that cross cuts of a proof, including the fixed ones."""
         for objects in {cut.objects for cut in _cuts(proof)}:
             yield from self._members(frozenset(objects))
 
     def _widened(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
-        """Return a cut with more objects, if any action crosses it that cannot run."""
+        """Return a cut, with more objects if an action that cannot run crosses it."""
         inside = frozenset(o for o in objects if not self._graph.at_start[o])
         members = cutter.among(self._members(inside))
         return cutter.widened(inside) if members is None else Cut(tuple(sorted(inside)), members)
 
-    def _searched(self, cutter: Cutter, goal: Vector, known: Sequence[Cut], step: Fraction) -> Proof | None:
-        """Let the search find a proof, and state it with cuts that hold for all actions."""
+    def _searched(
+        self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
+    ) -> Proof | None:
+        """Return the proof of the search, its cuts widened to all actions; ``None`` where it finds none."""
         if self._search is None or not step:
             return None
-        found = self._search(
+        result = self._search(
             *(self._graph, cutter.targets, cutter.actions),
-            *(lambda action: int(self._costs[action][0] / step), [cut.objects for cut in known]),
+            *(lambda action: int(self._costs[action][0] / step), [cut.objects for cut in known_cuts]),
             *(math.ceil(goal[0] / step), self._expired),
         )
 
@@ -434,32 +445,37 @@ class Prover:
                 return Branch(proof.action, stated(proof.without), stated(proof.using))
             if isinstance(proof, Hopeless):
                 return Hopeless(widened(proof.cut.objects))
-            if isinstance(proof, Dear):
-                return Dear(proof.actions, packed(proof.packing)._replace(rounded=0), stated(proof.others))
+            if isinstance(proof, CostFixing):
+                return CostFixing(
+                    proof.actions, packed(proof.packing)._replace(rounded=0), stated(proof.others)
+                )
             assert isinstance(proof, Packing)
             return packed(proof)
 
-        return None if found is None else stated(found)
+        return None if result is None else stated(result)
 
     def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> tuple[Packing, dict[int, Vector]]:
-        """Return each cut in turn the weight that its members have left of their costs, or at most another.
+        """Partition costs greedily: each cut in turn gets the least reduced cost of its landmark actions.
 
-        Also give what is left of the costs of all members.
+        A cut with a number gets at most that. Returns the cost partition, and the reduced costs of the
+        landmark actions.
         """
-        left: dict[int, Vector] = {}
+        reduced_costs: dict[int, Vector] = {}
         weights: list[tuple[Cut, Vector]] = []
-        for cut, most in cuts:
-            rests = {a: left.get(a, self._costs[a]) for a in cut.members}
-            limits = [*rests.values()] if most is None else [*rests.values(), most]
+        for cut, max_weight in cuts:
+            remaining = {a: reduced_costs.get(a, self._costs[a]) for a in cut.members}
+            limits = [*remaining.values()] if max_weight is None else [*remaining.values(), max_weight]
             weight = min(limits, key=cmp_to_key(self._order.compare))
             if self._order.sign(weight) > 0:
                 weights.append((cut, weight))
-                left.update((a, minus(rest, weight)) for a, rest in rests.items())
+                reduced_costs.update(
+                    (a, minus(reduced_cost, weight)) for a, reduced_cost in remaining.items()
+                )
         _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
-        return Packing(tuple(weights), rounded=rounded), left
+        return Packing(tuple(weights), rounded=rounded), reduced_costs
 
     def _reaches(self, packing: Packing, goal: Vector) -> bool:
-        """Whether weights add up to a goal, rounded up."""
+        """Return whether the weights of a cost partition add up to a goal, rounded up."""
         value, _ = self.rounded(self._order.total(weight for _, weight in packing.weights))
         return self._order.compare(value, goal) >= 0
 
@@ -471,21 +487,21 @@ def _cuts(proof: Proof) -> Iterator[Cut]:
     """Return the cuts of a proof."""
     waiting = [proof]
     while waiting:
-        part = waiting.pop()
-        if isinstance(part, Branch):
-            waiting += [part.without, part.using]
-        elif isinstance(part, Dear):
-            waiting += [part.packing, part.others]
-        elif isinstance(part, Hopeless):
-            yield part.cut
-        elif isinstance(part, Packing):
-            yield from (cut for cut, _ in part.weights)
+        step = waiting.pop()
+        if isinstance(step, Branch):
+            waiting += [step.without, step.using]
+        elif isinstance(step, CostFixing):
+            waiting += [step.packing, step.others]
+        elif isinstance(step, Hopeless):
+            yield step.cut
+        elif isinstance(step, Packing):
+            yield from (cut for cut, _ in step.weights)
 
 
 class _Node:
-    """The relaxation at one place of the branching: cuts, their rows, and who covers them.
+    """The relaxation at one node of the branching, a column for each action and a row for each cut.
 
-    ``shares`` are those of the actions, in the solution that was looked at last, ``cuts`` those of the rows.
+    ``shares`` are the LP values of the columns in the last solution, ``cuts`` the cuts of the rows.
     """
 
     def __init__(
@@ -499,46 +515,55 @@ class _Node:
         self._prover, self._cutter, self._used = prover, cutter, used
         self._derivation = sorted(derivation)
         self._actions = cutter.actions
-        self._places = {action: place for place, action in enumerate(self._actions)}
+        self._columns = {action: column for column, action in enumerate(self._actions)}
         self._costs = [prover._costs[action] for action in self._actions]
         floats = {cost: prover.scaled(cost) for cost in set(self._costs)}
         self._floats = [floats[cost] for cost in self._costs]
-        self._limits = [self._limited(place, limit) for place, limit in enumerate(prover._limits)]
-        dear = (Fraction(1),) * prover._order.width if goal is None else times(goal, Fraction(_DEAR))
-        self._costs += [dear] * len(self._limits)
-        self._covering = Covering([*self._floats, *[prover.scaled(dear)] * len(self._limits)])
-        for amounts, most in self._limits:
-            self._covering.limit(amounts, most)
-        told = self._limits or prover._rules is not None
-        self._free = [] if told else [place for place, cost in enumerate(self._costs) if not any(cost)]
+        self._limits = [self._limited(column, limit) for column, limit in enumerate(prover._limits)]
+        excess_cost = (
+            (Fraction(1),) * prover._order.width
+            if goal is None
+            else times(goal, Fraction(_EXCESS_COST_FACTOR))
+        )
+        self._costs += [excess_cost] * len(self._limits)
+        self._covering = Covering([*self._floats, *[prover.scaled(excess_cost)] * len(self._limits)])
+        for amounts, max_amount in self._limits:
+            self._covering.limit(amounts, max_amount)
+        constrained = self._limits or prover._rules is not None
+        self._free = (
+            [] if constrained else [column for column, cost in enumerate(self._costs) if not any(cost)]
+        )
         self.cuts: list[Cut] = []
         self._rows: list[list[int]] = []
         self.shares: Sequence[float]
 
-    def _limited(self, place: int, limit: Limit) -> Limit:
-        """Give what is left of a limit for the columns; the last of them, at a price, makes up what lacks."""
-        amounts, most = limit
-        taken = {self._places[a]: amount for a, amount in amounts.items() if a in self._places}
-        left = most - sum(amounts[a] for a in self._used if a in amounts)
-        return {**taken, len(self._actions) + place: Fraction(-1)}, left
+    def _limited(self, row: int, limit: Limit) -> Limit:
+        """Return a limit over the columns without the used actions; its last column is the excess."""
+        amounts, max_amount = limit
+        columns = {self._columns[a]: amount for a, amount in amounts.items() if a in self._columns}
+        remaining = max_amount - sum(amounts[a] for a in self._used if a in amounts)
+        return {**columns, len(self._actions) + row: Fraction(-1)}, remaining
 
     def exceeds(self, actions: Iterable[int]) -> bool:
-        """Whether actions go beyond a limit."""
+        """Return whether actions exceed a limit."""
         chosen = set(actions)
         return any(
-            sum(amount for a, amount in amounts.items() if a in chosen) > most
-            for amounts, most in self._prover._limits
+            sum(amount for a, amount in amounts.items() if a in chosen) > max_amount
+            for amounts, max_amount in self._prover._limits
         )
 
     def suffices(self, value: Vector, enough: Vector | None) -> bool:
-        """Whether a bound is enough; ``None`` is more than nothing."""
+        """Return whether a bound is at least ``enough``; ``None`` asks for a bound above 0."""
         order = self._prover._order
         if enough is None:
             return order.sign(value) > 0
         return order.compare(self._prover.rounded(value)[0], enough) >= 0
 
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
-        """Add cuts until none is found that the relaxed solution misses, or the bound is enough."""
+        """Add cuts until the LP solution violates none that is found, or the bound is enough.
+
+        Returns the exact optimum of the rows; ``None`` where exact arithmetic fails.
+        """
         order = self._prover._order
         wanted = math.inf if enough is None else self._prover.scaled(enough)
         if enough is not None and len(enough) == len(self._prover._multiples) == 1:  # more than one step less
@@ -554,7 +579,7 @@ class _Node:
             if exact is not None:
                 if enough is not None and self.suffices(exact.value, enough):
                     return exact
-                self._share([float(exact.x.get(place, 0)) for place in range(len(self._actions))])
+                self._share([float(exact.x.get(column, 0)) for column in range(len(self._actions))])
             if not self._separate():
                 return exact
 
@@ -563,13 +588,13 @@ class _Node:
             raise _TimeUpError
 
     def _share(self, x: Sequence[float]) -> None:
-        """Record a solution, with all that costs nothing and is in no limit or rule taken as a whole."""
+        """Record an LP solution, with unconstrained actions of cost 0 at 1."""
         self.shares = [*x]
-        for place in self._free:
-            self.shares[place] = 1.0
+        for column in self._free:
+            self.shares[column] = 1.0
 
     def packing(self, exact: ExactOptimum) -> Packing:
-        """Return the weighted cuts of an exact optimum."""
+        """Return the cost partition of an exact optimum."""
         weights = sorted(exact.weights.items())
         first = len(self._limits)
         return Packing(
@@ -579,56 +604,63 @@ class _Node:
         )
 
     def undecided(self) -> int | None:
-        """Return the action that is most nearly half taken, the most expensive of several; else ``None``."""
+        """Return the most fractional action, the most expensive of several; ``None`` where all are whole."""
         halves = [
-            (abs(x - 0.5), -self._floats[place], self._actions[place])
-            for place, x in enumerate(self.shares[: len(self._actions)])
+            (abs(x - 0.5), -self._floats[column], self._actions[column])
+            for column, x in enumerate(self.shares[: len(self._actions)])
             if abs(x - 0.5) < 0.499999
         ]
         return min(halves)[2] if halves else None
 
-    def taken(self) -> list[int]:
-        """Return the actions that the relaxed solution takes, with those that are used anyway."""
+    def rounded_solution(self) -> list[int]:
+        """Return the actions of the rounded LP solution, with the used ones."""
         shares = zip(self._actions, self.shares, strict=False)  # after those of actions come those of limits
         return sorted({action for action, x in shares if round(x)} | self._used)
 
     def _separate(self) -> bool:
-        """Look for cuts whose landmarks have shares of less than 1; whether there were any."""
-        return self._admit_beside() or any(self._admit_missed() for _ in range(_ORDERS))
+        """Add cuts that the LP solution violates; return whether there were any."""
+        return self._add_disjoint_cuts() or any(self._add_violated_cuts() for _ in range(_ORDERS))
 
-    def _admit_beside(self) -> bool:
-        """Grow cuts with no action in common, of dear ones where it can be, and add those missed."""
-        chance = self._prover._random.random
+    def _add_disjoint_cuts(self) -> bool:
+        """Add violated cuts with disjoint landmarks; return whether there were any."""
+        random_number = self._prover._random.random
         shares = dict(zip(self._actions, self.shares, strict=False))
         missed: list[Cut] = []
-        while len(missed) < _BESIDE:
-            dear = {a: cost * (0.5 + chance()) for a, cost in zip(self._actions, self._floats, strict=True)}
-            cut = self._cutter.cut(self._used, sorted(self._actions, key=lambda a: (-shares[a], dear[a])))
-            if cut is None or sum(shares[a] for a in cut.members) >= _HIT:
+        while len(missed) < _DISJOINT_CUTS:
+            random_costs = {
+                a: cost * (0.5 + random_number()) for a, cost in zip(self._actions, self._floats, strict=True)
+            }
+            cut = self._cutter.cut(
+                self._used, sorted(self._actions, key=lambda a: (-shares[a], random_costs[a]))
+            )
+            if cut is None or sum(shares[a] for a in cut.members) >= _SATISFIED:
                 break
             missed.append(cut)
             shares.update(dict.fromkeys(cut.members, 1.0))
         self.admit(missed)
         return bool(missed)
 
-    def _admit_missed(self) -> bool:
-        """Grow cuts in an order with great shares first, arbitrary else, and add those that are missed."""
+    def _add_violated_cuts(self) -> bool:
+        """Add violated cuts grown around the incumbent less one action; return whether there were any.
+
+        Actions of great LP values are kept out of landmarks first, in a random order among equals.
+        """
         arbitrary = self._prover._random.random
-        order = sorted(self._actions, key=lambda a: (-self.shares[self._places[a]], arbitrary()))
+        order = sorted(self._actions, key=lambda a: (-self.shares[self._columns[a]], arbitrary()))
         keeps = [[b for b in self._derivation if b != a] for a in self._derivation]
         missed: dict[tuple[int, ...], Cut] = {}
         for keep in (*keeps, ()):
             cut = self._cutter.cut([*keep, *self._used], order)
-            if cut is not None and sum(self.shares[self._places[a]] for a in cut.members) < _HIT:
+            if cut is not None and sum(self.shares[self._columns[a]] for a in cut.members) < _SATISFIED:
                 missed[cut.members] = cut
         self.admit(missed.values())
         return bool(missed)
 
     def admit(self, cuts: Iterable[Cut]) -> None:
-        """Add cuts, all whose members the targets can need."""
+        """Add cuts whose landmark actions are all columns."""
         for cut in cuts:
-            if self._places.keys() >= set(cut.members):
-                row = [self._places[a] for a in cut.members]
+            if self._columns.keys() >= set(cut.members):
+                row = [self._columns[a] for a in cut.members]
                 self.cuts.append(cut)
                 self._rows.append(row)
                 self._covering.add(row)

@@ -1,8 +1,8 @@
-"""Proofs that no plan costs less: weighted conditions of counts, and branching over how often something is.
+"""Proofs that no plan costs less: Farkas combinations of conditions on counts, and branching over counts.
 
-The relaxation of whole counts (:mod:`foon_asp.bounds.counts`) gives weights of its rows in floats. Whatever
-they are, rounded or solved for exactly, they prove a bound: for each action by itself the least of what it
-costs less what it brings, over the counts that it may have, and what the conditions leave in all.
+The relaxation of whole counts (:mod:`foon_asp.bounds.counts`) has dual values of its rows in floats. Whatever
+they are, rounded or solved for exactly, they prove the bound of a Lagrangian relaxation: the right-hand sides
+of the weighted rows, plus for each action the least of its reduced cost over the counts that it may have.
 """
 
 import math
@@ -16,24 +16,24 @@ from foon_asp.bounds.exact_optimum import NowhereError, solve_exactly
 from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus, times
 from foon_asp.bounds.whole_program import Relaxation
 
-_PARTS = (720720, 2**40)  # what weights are rounded to: parts of the first that suffices
-_NEAR = 1e-6  # what differs less from a whole number is one, for choosing where to branch
-_ROUNDS = 20  # how often cuts are looked for that a solution hits in part
+_PARTS = (720720, 2**40)  # denominators of rounded weights; the first that suffices is used
+_INTEGRALITY = 1e-6  # integrality tolerance, for choosing where to branch
+_ROUNDS = 20  # of separation at a node
 _MOST_DEPTH = 150
 _MOST_LEAVES = 1_000
 
 
 class Weighted(NamedTuple):
-    """A part of all counts, with weights of conditions, each above 0."""
+    """A leaf: weights of conditions, each above 0, that prove the bound for its counts."""
 
     weights: Sequence[tuple[Condition, Vector]]
 
 
 class Split(NamedTuple):
-    """A part that is divided: a column, the counts of which are up to ``most``, or above."""
+    """A branching: proofs for values of a column up to ``max_count``, and above it."""
 
     column: int
-    most: int
+    max_count: int
     up_to: "CountProof"
     above: "CountProof"
 
@@ -42,12 +42,12 @@ CountProof = Weighted | Split
 
 
 class Claim(NamedTuple):
-    """What is to be proved of all plans: that they cost at least so much.
+    """The claim that all plans cost at least ``least``.
 
-    ``costs`` are those of each action, ``item`` that of each item and copy that is taken. ``least`` is
-    ``None`` where there is no plan at all, and nothing costs anything. ``parts`` says into how many parts 1
-    is divided by what plans can cost, if known, and ``caps`` how often a plan that costs less executes each
-    action.
+    ``costs`` are those of each action, ``item`` is that of each item and of each initial copy consumed.
+    ``least`` is ``None`` for the claim that there is no plan at all, with all costs 0. Costs of plans are
+    multiples of ``1 / parts``, if it is not ``None``. ``caps`` bound the counts of each action in plans that
+    cost less.
     """
 
     order: Lexicographic
@@ -59,15 +59,15 @@ class Claim(NamedTuple):
 
 
 class PlanProver(CountBound):
-    """Looks for a proof of a claim about all plans that are as good by some levels."""
+    """Searches for a proof of a claim about all plans that are as good as the incumbent by some levels."""
 
     def prove_claim(
         self, claim: Claim, measure: Measure, kept: Sequence[Level]
     ) -> tuple[CountProof, Vector | None, Mapping[int, int]] | None:
-        """Prove as much of a claim as can be: the proof, the bound, and the column of each item.
+        """Return a proof of a claim or of a weaker one, the bound proved, and the items by column.
 
-        The bound is that of the claim where all of it is proved. ``None`` where nothing is. ``measure`` is
-        what the claim is about, which says whether items are counted.
+        The bound is ``claim.least`` where the whole claim is proved. ``None`` where nothing is. ``measure``
+        is the objective of the claim, which counts items or not.
         """
         self._claim, self._least, self._leaves = claim, claim.least, 0
         model = self._model([measure, *(level.measure for level in kept)])
@@ -81,17 +81,17 @@ class PlanProver(CountBound):
         self._objective = {action: cost for action, cost in enumerate(floats) if cost}
         self._objective |= dict.fromkeys(self._columns, claim.order.approximate(claim.item)[0])
         self._failed = False
-        proof = self._part(model, 0)
+        proof = self._prove_part(model, 0)
         if self._failed:
             return None
         return proof, self._least, self._columns
 
     def require(self, landmarks: Sequence[Landmark]) -> None:
-        """Take landmarks that are known."""
+        """Add known landmarks."""
         self._landmarks += landmarks
 
-    def _part(self, model: _Model, depth: int) -> CountProof:
-        """Prove a part, or lower what is claimed to what is proved of it."""
+    def _prove_part(self, model: _Model, depth: int) -> CountProof:
+        """Return the proof of a node, and lower the claim where less is proved of it."""
         program = model.program
         model.tighten()
         if program.is_empty:
@@ -120,36 +120,40 @@ class PlanProver(CountBound):
             return self._leaf(model, best[1] if best else {})
         return self._split(model, *column, depth)
 
-    def _split(self, model: _Model, column: int, most: int, depth: int) -> Split:
+    def _split(self, model: _Model, column: int, max_count: int, depth: int) -> Split:
         program, size = model.program, self._size
         lower, upper = list(program.lower), list(program.upper)
         action = column < size
-        program.lower[column] = most + 1
+        program.lower[column] = max_count + 1
         if action:
             program.lower[size + column] = 1
-        above = self._part(model, depth + 1)
+        above = self._prove_part(model, depth + 1)
         program.lower, program.upper = list(lower), list(upper)
-        program.upper[column] = most
-        if action and not most:
+        program.upper[column] = max_count
+        if action and not max_count:
             program.upper[size + column] = 0
-        up_to = self._part(model, depth + 1)
+        up_to = self._prove_part(model, depth + 1)
         program.lower, program.upper = lower, upper
-        return Split(column, most, up_to, above)
+        return Split(column, max_count, up_to, above)
 
     def _choice(self, model: _Model, x: Sequence[float]) -> tuple[int, int] | None:
-        """Return a column to branch on, and the most of the lower side; ``None`` where all are whole."""
+        """Return a column to branch on, and the greatest value below; ``None`` if all are whole."""
         program, size = model.program, self._size
         for a in range(size):
-            most = program.upper[a]
-            if x[size + a] < min(1.0, x[a]) - _NEAR and not program.lower[a] and (most is None or most > 1):
-                return a, max(1, math.floor(x[a] + _NEAR))
+            upper = program.upper[a]
+            if (
+                x[size + a] < min(1.0, x[a]) - _INTEGRALITY
+                and not program.lower[a]
+                and (upper is None or upper > 1)
+            ):
+                return a, max(1, math.floor(x[a] + _INTEGRALITY))
         columns = [*range(size), *self._columns]
         halves = [(abs(x[column] - math.floor(x[column]) - 0.5), column) for column in columns]
-        half = min((each for each in halves if each[0] < 0.5 - _NEAR), default=None)
+        half = min((candidate for candidate in halves if candidate[0] < 0.5 - _INTEGRALITY), default=None)
         return None if half is None else (half[1], math.floor(x[half[1]]))
 
     def _give_up(self, best: tuple[Vector, object] | None) -> None:
-        """Claim no more than what is proved of a part."""
+        """Lower the claim to the bound proved of a node."""
         if self._least is None or best is None:
             self._failed = True
             return
@@ -170,7 +174,7 @@ class PlanProver(CountBound):
         return Weighted([(model.conditions[row], weight) for row, weight in sorted(weights.items())])
 
     def _weights(self, model: _Model, relaxed: Relaxation) -> "list[dict[int, Vector]]":
-        """Make weights of what floats say: rounded, and by the basis, where rounding may lose too much."""
+        """Return candidate weights of rows: the rounded duals, perhaps the exact duals of the basis."""
         claim = self._claim
         first = claim.order.levels[0]
         one = (Fraction(1), *claim.order.zero[1:])
@@ -192,13 +196,13 @@ class PlanProver(CountBound):
                 return [{row: times(weight, factor) for row, weight in ray.items()}]
             return []
         floats = [weight / scale for weight in floats]
-        found = [self._rounded_weights(model, floats, parts, one) for parts in _PARTS]
+        candidates = [self._rounded_weights(model, floats, parts, one) for parts in _PARTS]
         value = sum(cost * relaxed.x[column] for column, cost in self._objective.items())
         least = 0.0 if self._least is None else claim.order.approximate(self._least)[0]
-        close = value > least - _NEAR * max(1.0, abs(least))
+        close = value > least - _INTEGRALITY * max(1.0, abs(least))
         if close and (first is not None or claim.parts is None):
-            found += self._exact_weights(model, relaxed)
-        return found
+            candidates += self._exact_weights(model, relaxed)
+        return candidates
 
     def _rounded_weights(
         self, model: _Model, floats: Sequence[float], parts: int, one: Vector
@@ -207,13 +211,13 @@ class PlanProver(CountBound):
         return {row: times(one, Fraction(n, parts)) for row, n in rounded.items() if n > 0}
 
     def _exact_weights(self, model: _Model, relaxed: Relaxation) -> "list[dict[int, Vector]]":
-        """Solve the basis for weights that load its columns with just what they cost."""
+        """Return the exact duals of a basis, by which its columns have reduced cost 0; none if singular."""
         columns, tight = set(relaxed.columns), relaxed.rows
         matrix: dict[int, dict[int, Fraction]] = {column: {} for column in sorted(columns)}
         for row in tight:
-            for column, part in model.program.said(row)[0].items():
-                if column in columns and part:
-                    matrix[column][row] = Fraction(part)
+            for column, coefficient in model.program.row_of(row)[0].items():
+                if column in columns and coefficient:
+                    matrix[column][row] = Fraction(coefficient)
         if len(columns) != len(tight):
             return []
         try:
@@ -230,36 +234,36 @@ class PlanProver(CountBound):
         return claim.item if column in self._columns else claim.order.zero
 
     def _bound(self, model: _Model, weights: Mapping[int, Vector], free: bool = False) -> Vector | None:
-        """Return what weights prove of the part at hand; ``None`` where that is nothing.
+        """Return the bound that weights prove of the current node; ``None`` where they prove none.
 
-        Where all is ``free``, nothing costs anything.
+        With ``free``, all costs are 0.
         """
         program, size, order = model.program, self._size, self._claim.order
         loads: dict[int, list[Vector]] = {}
-        found: list[Vector] = []
+        terms: list[Vector] = []
         for row, weight in weights.items():
-            parts, least = program.said(row)
-            found.append(times(weight, Fraction(least)))
-            for column, part in parts.items():
-                loads.setdefault(column, []).append(times(weight, Fraction(part)))
+            coefficients, least = program.row_of(row)
+            terms.append(times(weight, Fraction(least)))
+            for column, coefficient in coefficients.items():
+                loads.setdefault(column, []).append(times(weight, Fraction(coefficient)))
         zero = order.zero
 
-        def left(column: int) -> Vector:
+        def reduced_cost(column: int) -> Vector:
             cost = zero if free else self._cost(column)
             return minus(cost, order.total(loads[column])) if column in loads else cost
 
         for column in (*range(size), *self._columns):
-            low, most = program.lower[column], program.upper[column]
-            once = left(size + column) if column < size else zero
+            low, high = program.lower[column], program.upper[column]
+            once = reduced_cost(size + column) if column < size else zero
             if column not in loads and size + column not in loads and not low:
                 continue
-            each = left(column)
+            per_execution = reduced_cost(column)
             ends = [zero] if low == 0 else []
-            if most is None or most >= 1:
-                ends.append(order.total([times(each, Fraction(max(low, 1))), once]))
-                if order.sign(each) < 0:
-                    if most is None:
+            if high is None or high >= 1:
+                ends.append(order.total([times(per_execution, Fraction(max(low, 1))), once]))
+                if order.sign(per_execution) < 0:
+                    if high is None:
                         return None
-                    ends.append(order.total([times(each, Fraction(most)), once]))
-            found.append(min(ends, key=cmp_to_key(order.compare)))
-        return order.total(found)
+                    ends.append(order.total([times(per_execution, Fraction(high)), once]))
+            terms.append(min(ends, key=cmp_to_key(order.compare)))
+        return order.total(terms)

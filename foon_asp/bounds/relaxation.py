@@ -1,4 +1,4 @@
-"""The linear relaxation of hitting every landmark, in floats: where exact weights start from."""
+"""The linear relaxation of the hitting set problem over landmarks, solved in floats by HiGHS."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -16,23 +16,25 @@ _OPTIONS: Final[dict[str, bool | str | float]] = {
     "primal_feasibility_tolerance": 1e-10,
     "dual_feasibility_tolerance": 1e-10,
 }
-_INSIDE: Final[dict[str, bool | str | float]] = {
+_INTERIOR_POINT: Final[dict[str, bool | str | float]] = {
     "solver": "ipm",
     "presolve": "on",
     "run_crossover": "off",
     "primal_feasibility_tolerance": 1e-7,
     "dual_feasibility_tolerance": 1e-7,
 }
-_CORNER: Final[dict[str, bool | str | float]] = _INSIDE | _OPTIONS | {"solver": "ipm", "run_crossover": "on"}
-_SOON = 2.0  # seconds: steps of the interior point method cannot be continued
+_VERTEX: Final[dict[str, bool | str | float]] = (
+    _INTERIOR_POINT | _OPTIONS | {"solver": "ipm", "run_crossover": "on"}
+)
+_RUN_SECONDS = 2.0  # limit of a run: the interior-point method cannot be continued
 
 
 class UnsolvedError(BugError):
-    """HiGHS ends a covering problem with something else than a solution."""
+    """HiGHS ended a covering problem without a solution."""
 
 
 class Relaxed(NamedTuple):
-    """A basic optimum: its value, the share ``x`` of every column, and its basis.
+    """A basic optimal solution: its value, the values ``x`` of the columns, and its basis.
 
     ``columns`` are the basic columns and ``rows`` the rows that hold with equality by the basis: both have
     the same number, and the square matrix between them gives the solution and the weights of the rows.
@@ -45,7 +47,7 @@ class Relaxed(NamedTuple):
 
 
 class Weighed(NamedTuple):
-    """An optimum, perhaps amid others: its value, the share ``x`` of each column, the weight of each row."""
+    """An optimal solution, basic or not: its value, the values ``x`` of columns, the duals of rows."""
 
     value: float
     x: list[float]
@@ -64,42 +66,42 @@ class Covering:
         self._library, self._array = highspy, np.array
         self._highs = silent_highs()
         self._set(_OPTIONS)
-        self._cornered = True  # the last solution, if any
+        self._at_vertex = True  # whether the last solution, if any, is basic
         count = len(costs)
         self._highs.addVars(count, np.zeros(count), np.full(count, highspy.kHighsInf))
         self._highs.changeColsCost(count, np.arange(count, dtype=np.int32), np.array(costs, dtype=float))
 
     def add(self, row: Sequence[int]) -> None:
-        """Add a row: the columns of which at least one, or shares of several, have to be taken."""
+        """Add a row: the values of its columns add up to at least 1."""
         np_row = self._array(row, dtype="int32")
         ones = self._array([1.0] * len(row))
         self._highs.addRow(1.0, self._library.kHighsInf, len(row), np_row, ones)
 
-    def limit(self, amounts: Mapping[int, Fraction], most: Fraction) -> None:
-        """Add a row of a limit; what a column takes of it may be less than nothing."""
+    def limit(self, amounts: Mapping[int, Fraction], max_amount: Fraction) -> None:
+        """Add a row of a limit; amounts may be negative."""
         columns = self._array(list(amounts), dtype="int32")
         takes = self._array([-float(amount) for amount in amounts.values()])
-        self._highs.addRow(-float(most), self._library.kHighsInf, len(amounts), columns, takes)
+        self._highs.addRow(-float(max_amount), self._library.kHighsInf, len(amounts), columns, takes)
 
-    def bound(self, column: int, least: float, most: float) -> None:
-        """Let a column take no less and no more than so much."""
-        self._highs.changeColBounds(column, least, most)
+    def bound(self, column: int, lower: float, upper: float) -> None:
+        """Set the bounds of a column."""
+        self._highs.changeColBounds(column, lower, upper)
 
-    def demand(self, row: int, least: float) -> None:
-        """Let a row ask for so much; 0 is nothing."""
-        self._highs.changeRowBounds(row, least, self._library.kHighsInf)
+    def demand(self, row: int, lower: float) -> None:
+        """Set the least sum of a row; 0 makes the row redundant."""
+        self._highs.changeRowBounds(row, lower, self._library.kHighsInf)
 
     def _set(self, options: dict[str, bool | str | float]) -> None:
         for option, value in options.items():
             self._highs.setOptionValue(option, value)
 
-    def inside(self, expired: Callable[[], bool] = lambda: False) -> Weighed | None:
-        """Find an optimum amid all others: of many rows sooner than a corner, and less exact.
+    def interior_point(self, expired: Callable[[], bool] = lambda: False) -> Weighed | None:
+        """Return an interior-point solution: with many rows faster than a basic one, and less exact.
 
-        ``None`` where nothing near enough to an optimum is found soon, or by the time that is up.
+        ``None`` where HiGHS does not converge within the run's seconds, or where time is up.
         """
-        self._cornered = False
-        self._run(_INSIDE, expired)
+        self._at_vertex = False
+        self._run(_INTERIOR_POINT, expired)
         if self._highs.getModelStatus() != self._library.HighsModelStatus.kOptimal:
             return None
         solution = self._highs.getSolution()
@@ -107,18 +109,18 @@ class Covering:
         return Weighed(value, list(solution.col_value), list(solution.row_dual))
 
     def _run(self, options: dict[str, bool | str | float], expired: Callable[[], bool]) -> None:
-        self._set(options | {"time_limit": self._highs.getRunTime() + _SOON})
+        self._set(options | {"time_limit": self._highs.getRunTime() + _RUN_SECONDS})
         run(self._highs, expired)
 
     def solve(self, expired: Callable[[], bool] = lambda: False) -> Relaxed:
-        """Find a basic optimum of the rows so far; or, where time is up by then, what there is by then.
+        """Return a basic optimal solution of the rows so far; where time is up, the current basic solution.
 
-        ``expired`` is asked now and then.
+        ``expired`` is called now and then. Raises :class:`UnsolvedError` where HiGHS ends otherwise.
         """
         highs = self._highs
-        if not self._cornered:  # steps of the simplex algorithm would start from nothing
-            self._cornered = True
-            self._run(_CORNER, expired)
+        if not self._at_vertex:  # steps of the simplex algorithm would start from nothing
+            self._at_vertex = True
+            self._run(_VERTEX, expired)
             self._set(_OPTIONS)
         ended = run(highs, expired)
         status = self._library.HighsModelStatus
@@ -134,5 +136,5 @@ class Covering:
         )
 
     def weights(self) -> list[float]:
-        """Return the weight of each row in the optimum found last."""
+        """Return the dual value of each row in the last solution."""
         return list(self._highs.getSolution().row_dual)

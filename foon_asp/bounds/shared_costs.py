@@ -1,9 +1,9 @@
-"""Costs shared out among landmarks as well as can be: the linear relaxation of hitting all of them.
+"""Optimal cost partitioning over landmark cuts: the dual of the hitting set relaxation.
 
-Greedy weights of cuts depend on the order in which these are found. Here all cuts are known at once, and
-those that the relaxed solution misses are added until none is found (Bonet and Helmert 2010). What HiGHS says
-are floats: the weights are rounded to parts, and no action carries more than it costs, so the bound holds
-whatever they were.
+Greedy weights of cuts depend on the order of the cuts. Here all cuts are weighed at once, and cuts that the
+LP solution violates are added until none is found (Bonet and Helmert 2010; Katz and Domshlak 2010 for cost
+partitioning). The floats of HiGHS are rounded to parts such that no action carries more than its cost, so the
+bound holds whatever they were.
 """
 
 import math
@@ -15,31 +15,31 @@ from typing import Any, NamedTuple
 from foon_asp.bounds.cut import Cutter
 from foon_asp.bounds.first_achievers import FirstAchievers
 from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.missed_cuts import missed_cuts
 from foon_asp.bounds.relaxation import Covering, UnsolvedError, Weighed
+from foon_asp.bounds.violated_cuts import disjoint_violated_cuts
 
 PARTS = 720720  # of 1: most weights are simple fractions
-_CUTS = 40  # before all targets that one relaxed solution is asked for; of smaller ones there are more
-_ALONE = 8  # times as many actions as there are, at most, for targets looked at by themselves
-_SMALL = 0.5  # of the actions, at most, that a target may need for this
-_STALLED = 8  # solutions, after which a bound that hardly grows counts as the best there is
-_GROWS = 0.01  # of what lacks, how much these have to bring
-_OFTEN = 8  # solutions, from one that is told of to the next
-_TWICE = 1.001  # a cut of a greater share is hit more than once
-_LARGE = 2**62  # sums that machine numbers do not hold
-_LOST = Fraction(1, 100)  # how much less than the solution the weights may add up to
+_CUTS = 40  # cuts of all targets separated for one LP solution; more where targets need few actions
+_ALONE = 8  # times all actions: the total size of the cutters for single targets, at most
+_SMALL = 0.5  # of the actions: the size of a cutter for a single target, at most
+_STALLED = 8  # solutions after which a bound that hardly grows counts as optimal
+_GROWS = 0.01  # of the gap: what these solutions have to gain
+_OFTEN = 8  # solutions from one call of ``on_solution`` to the next
+_TWICE = 1.001  # a cut with a greater sum of LP values is not tight
+_LARGE = 2**62  # sums that do not fit into 64 bits
+_LOST = Fraction(1, 100)  # how much the rounded bound may be below the LP value
 
 
 class SharedCosts(NamedTuple):
-    """Weighted cuts: objects and weight of each, in :data:`PARTS` of 1.
+    """A cost partition over cuts: objects and weight of each cut, in :data:`PARTS` of 1.
 
-    No derivation by the actions looked at costs less than ``bound``, in parts. ``left`` is what the cuts
-    leave of the cost of each action, in parts, and ``shares`` is how much of each the relaxed solution takes.
-    ``tight`` are the cuts that it hits just once: those to go on with.
+    No derivation by the actions looked at costs less than ``bound``, in parts. ``reduced_costs`` are those of
+    each action, in parts, and ``shares`` the LP value of each action. ``tight`` are the cuts that the LP
+    solution satisfies with equality: the ones to begin the next relaxation with.
     """
 
     bound: int
-    left: dict[int, int]
+    reduced_costs: dict[int, int]
     cuts: list[tuple[frozenset[int], int]]
     shares: dict[int, float]
     tight: Sequence[frozenset[int]] = ()
@@ -50,29 +50,31 @@ def share_costs(
     targets: Iterable[int],
     actions: Collection[int],
     cost: Callable[[int], int],
-    known: Iterable[Iterable[int]],
+    known_cuts: Iterable[Iterable[int]],
     enough: int,
     expired: Callable[[], bool],
-    heard: Callable[[SharedCosts], int] | None = None,
-    often: int = _OFTEN,
+    on_solution: Callable[[SharedCosts], int] | None = None,
+    every: int = _OFTEN,
 ) -> SharedCosts | None:
-    """Find cuts before the targets, and the weights of the greatest sum that the costs allow.
+    """Find landmark cuts of the targets and an optimal cost partition over them.
 
-    All of the actions can run, and those that cost nothing are taken as a whole. ``known`` are the objects of
-    cuts to begin with. A bound of ``enough`` is good enough. What is known is ``heard`` of ``often``, once in
-    so many solutions, which gives what is enough from then on, and nothing to end. ``None`` where nothing can
-    be shared out.
+    All of the actions can run, and actions of cost 0 count as used. ``known_cuts`` are the objects of cuts to
+    begin with. The search ends at a bound of ``enough``. After each ``every`` solutions, ``on_solution`` is
+    called with the cost partition so far, and returns the bound that is enough from then on, or 0 to end.
+    Returns ``None`` where the targets cannot be reached or are all available, and where HiGHS fails.
     """
-    return _Sharing(graph, targets, actions, cost, expired).share(known, enough, expired, heard, often)
+    return _Sharing(graph, targets, actions, cost, expired).share(
+        known_cuts, enough, expired, on_solution, every
+    )
 
 
 def renumbered(
     graph: Hypergraph, targets: Iterable[int], actions: Sequence[int]
 ) -> tuple[Hypergraph, list[int], list[int]]:
-    """Return a graph of some actions alone, its objects by their numbers before, and its targets."""
+    """Return the graph of the given actions, the old numbers of its objects, and its targets."""
     targets, start = tuple(targets), graph.start
     objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))
-    number = {o: place for place, o in enumerate(objects)}
+    number = {o: i for i, o in enumerate(objects)}
     small = Hypergraph(
         len(number),
         [[number[o] for o in graph.needs[a] if o in number] for a in actions],
@@ -83,7 +85,7 @@ def renumbered(
 
 
 def in_parts(costs: Sequence[int]) -> Any:
-    """Return an array of costs in parts: machine numbers where their sum is one, else of any size."""
+    """Return an array of costs in parts: 64-bit integers where their sum fits, else Python integers."""
     import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
     return np.array(costs, dtype=np.int64 if sum(costs) * PARTS < _LARGE else object) * PARTS
@@ -98,28 +100,28 @@ def _quotient(a: int, b: int) -> float:
 
 
 def shared_out(
-    told: Iterable[tuple[int, float]], of_1: int, rows: Sequence[Any], left: Any
+    dual_values: Iterable[tuple[int, float]], of_1: int, rows: Sequence[Any], capacity: Any
 ) -> dict[int, int]:
-    """Return rows the weights that they are told to have, rounded to parts, which ``left`` is able to carry.
+    """Return a feasible weight for each row: its dual value rounded to parts, limited by ``capacity``.
 
-    What rounding leaves goes to whom it helps. ``of_1`` are the parts of a weight of 1, ``rows`` the members
-    of each row, and ``left`` what each of these can carry, from which the weights are taken away.
+    Capacity that rounding leaves over is used greedily. ``of_1`` are the parts of a weight of 1, ``rows`` the
+    columns of each row, and ``capacity`` the cost of each column in parts, which becomes its reduced cost.
     """
-    wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in told}
+    wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in dual_values}
     weights = dict.fromkeys(wanted, 0)
     dearest_first = sorted(wanted, key=lambda row: -wanted[row])
     for limited in (True, False):
         for row in dearest_first:
-            most = wanted[row] if limited else math.inf
-            weight = int(min(most, left[rows[row]].min())) if most else 0
+            upper = wanted[row] if limited else math.inf
+            weight = int(min(upper, capacity[rows[row]].min())) if upper else 0
             if weight:
                 weights[row] += weight
-                left[rows[row]] -= weight
+                capacity[rows[row]] -= weight
     return weights
 
 
 def stalled(values: Sequence[float], lacks: float) -> bool:
-    """Whether the last solutions brought hardly any of what still lacks."""
+    """Return whether the last solutions closed hardly any of the gap ``lacks``."""
     return len(values) > _STALLED and values[-1] - values[-1 - _STALLED] < _GROWS * lacks
 
 
@@ -133,68 +135,72 @@ class _Sharing:
         expired: Callable[[], bool],
     ) -> None:
         self._actions = sorted(actions)
-        plain, self._objects, within = renumbered(graph, targets, self._actions)
+        plain, self._objects, small_targets = renumbered(graph, targets, self._actions)
         self._achievers = FirstAchievers(plain, expired)
         small = self._achievers.graph
-        self._cutter = Cutter(small, within)
+        self._cutter = Cutter(small, small_targets)
         self._costs = [cost(a) for a in self._actions]
         self._dearest = max(self._costs, default=1)
         self._random = random.Random(0)
-        self._alone, self._together = ([], []) if self._cutter.hopeless else self._by_target(small)
-        self._relative = [c / self._dearest for c in self._costs]  # the costs may be too great for floats
+        self._single_target_cutters, self._other_targets_cutters = (
+            ([], []) if self._cutter.hopeless else self._by_target(small)
+        )
+        self._relative = [
+            c / self._dearest for c in self._costs
+        ]  # between 0 and 1, as costs may be too great for floats
         self._covering = Covering(self._relative)
         self._rows: list[list[int]] = []
         self._cuts: list[frozenset[int]] = []
-        self._stated: dict[int, frozenset[int]] = {}  # cuts by row, as they hold in the whole graph
-        self._inside = True  # which is found sooner, until it is not exact enough
+        self._whole_cuts: dict[int, frozenset[int]] = {}  # by row, the objects of its cut in the whole graph
+        self._interior_point = True  # faster, until it is not exact enough
 
     def share(
         self,
-        known: Iterable[Iterable[int]],
+        known_cuts: Iterable[Iterable[int]],
         enough: int,
         expired: Callable[[], bool],
-        heard: Callable[[SharedCosts], int] | None,
-        often: int,
+        on_solution: Callable[[SharedCosts], int] | None,
+        every: int,
     ) -> SharedCosts | None:
         if self._cutter.hopeless or not self._cutter.targets:
             return None
-        number = {o: place for place, o in enumerate(self._objects)}
-        for objects in known:
-            self._add(frozenset(number[o] for o in objects if o in number))
+        position = {o: i for i, o in enumerate(self._objects)}
+        for objects in known_cuts:
+            self._add(frozenset(position[o] for o in objects if o in position))
         values: list[float] = []
         last: Weighed | None = None
         while last is None or not expired():
-            found = self._solved(expired)
-            if found is None:
+            relaxed = self._solved(expired)
+            if relaxed is None:
                 break
-            last = found
-            values.append(found.value)
+            last = relaxed
+            values.append(relaxed.value)
             above = 100 * enough - 99  # hundredths: costs are whole, and so are bounds
-            lacks = _quotient(above, 100 * self._dearest) - found.value
+            lacks = _quotient(above, 100 * self._dearest) - relaxed.value
             ends = lacks <= 0 or stalled(values, lacks)
-            if ends or not self._separate(found.x, expired):
-                if self._inside and not ends:
-                    self._inside = False
+            if ends or not self._separate(relaxed.x, expired):
+                if self._interior_point and not ends:
+                    self._interior_point = False
                     continue
-                shared = self._shared(found)
-                lost = Fraction(found.value) * self._dearest - Fraction(shared.bound, PARTS)
-                if not self._inside or lost < _LOST:
+                shared = self._shared(relaxed)
+                lost = Fraction(relaxed.value) * self._dearest - Fraction(shared.bound, PARTS)
+                if not self._interior_point or lost < _LOST:
                     return shared
-                self._inside = False
-            elif heard is not None and len(values) % often == 0:
-                shared = self._shared(found)
-                enough = heard(shared)
+                self._interior_point = False
+            elif on_solution is not None and len(values) % every == 0:
+                shared = self._shared(relaxed)
+                enough = on_solution(shared)
                 if not enough:
                     return shared
         return None if last is None else self._shared(last)
 
     def _solved(self, expired: Callable[[], bool]) -> Weighed | None:
-        """Return a relaxed solution, or ``None`` where HiGHS finds none, or not by the time that is up."""
-        if self._inside:
-            found = self._covering.inside(expired)
-            if found is not None:
-                return found
-            self._inside = False
+        """Return an LP solution; ``None`` where HiGHS finds none before time is up."""
+        if self._interior_point:
+            relaxed = self._covering.interior_point(expired)
+            if relaxed is not None:
+                return relaxed
+            self._interior_point = False
         try:
             solved = self._covering.solve(expired)
         except UnsolvedError:
@@ -207,16 +213,16 @@ class _Sharing:
         self._covering.add(self._rows[-1])
 
     def _separate(self, x: list[float], expired: Callable[[], bool]) -> bool:
-        """Add cuts that a relaxed solution misses, each beside those before; whether there are any."""
+        """Add disjoint cuts that an LP solution violates; return whether there are any."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
-        relative, chance = np.array(self._relative), self._random.random
+        relative, random_number = np.array(self._relative), self._random.random
         shares = np.where(relative > 0, x, 1.0)
-        found = False
+        any_added = False
         effort = _CUTS * len(self._actions)
-        self._random.shuffle(self._alone)
-        for cutter in (*self._alone, *self._together):
-            cuts = missed_cuts(cutter, (), shares, relative, chance)
+        self._random.shuffle(self._single_target_cutters)
+        for cutter in (*self._single_target_cutters, *self._other_targets_cutters):
+            cuts = disjoint_violated_cuts(cutter, (), shares, relative, random_number)
             while effort > 0:
                 if expired():
                     return False
@@ -224,22 +230,22 @@ class _Sharing:
                 cut = next(cuts, None)
                 if cut is None:
                     break
-                found = True
+                any_added = True
                 self._add(frozenset(cut.objects))
-        return found
+        return any_added
 
     def _by_target(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
-        """Give cutters before single targets that can need few of the actions, and one before all others."""
-        most, targets = len(self._actions), self._cutter.targets
+        """Return cutters of single targets that need few of the actions, and one of all other targets."""
+        count, targets = len(self._actions), self._cutter.targets
         alone: list[Cutter] = []
         others: list[int] = []
-        effort = _ALONE * most if len(targets) > 1 else 0
+        effort = _ALONE * count if len(targets) > 1 else 0
         everything = bytearray(b"\1") * graph.size
         for target in targets:
             if effort > 0:
                 cutter = Cutter(graph, [target], reachable=everything)
                 effort -= len(cutter.actions)
-                if len(cutter.actions) <= most * _SMALL:
+                if len(cutter.actions) <= count * _SMALL:
                     alone.append(cutter)
                     continue
             others.append(target)
@@ -247,14 +253,16 @@ class _Sharing:
         return alone, together
 
     def _shared(self, solved: Weighed) -> SharedCosts:
-        left = in_parts(self._costs)
-        told = [*solved.weights] + [0.0] * (len(self._rows) - len(solved.weights))  # of rows that came later
-        weights = shared_out(enumerate(told), self._dearest * PARTS, self._rows, left)
+        capacity = in_parts(self._costs)
+        dual_values = [*solved.weights] + [0.0] * (
+            len(self._rows) - len(solved.weights)
+        )  # for rows added since
+        weights = shared_out(enumerate(dual_values), self._dearest * PARTS, self._rows, capacity)
         shares = solved.x
         tight = [row for row, members in enumerate(self._rows) if sum(shares[a] for a in members) < _TWICE]
         return SharedCosts(
             sum(weights.values()),
-            dict(zip(self._actions, left.tolist(), strict=True)),
+            dict(zip(self._actions, capacity.tolist(), strict=True)),
             [(self._whole(row), weight) for row, weight in weights.items() if weight],
             {a: shares[n] for n, a in enumerate(self._actions)},
             [self._whole(row) for row in tight],
@@ -262,7 +270,7 @@ class _Sharing:
 
     def _whole(self, row: int) -> frozenset[int]:
         """Return the objects of a cut by their numbers in the whole graph, where it has the same landmark."""
-        if row not in self._stated:
-            wide = self._achievers.widened(self._cuts[row])
-            self._stated[row] = frozenset(self._objects[o] for o in wide)
-        return self._stated[row]
+        if row not in self._whole_cuts:
+            objects = self._achievers.widened(self._cuts[row])
+            self._whole_cuts[row] = frozenset(self._objects[o] for o in objects)
+        return self._whole_cuts[row]

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 from foon_asp.bounds.highs_run import libraries, run, silent_highs
 
-# What weights of rows are rounded to: parts of the first that suffices, since most weights are simple.
+# Denominators of rounded weights; the first that suffices is used, since most weights are simple fractions.
 _PARTS = (720720, 2**40)
-_GAP = 1e-6  # by which rows may fail, relatively, where floats find neither a solution nor a proof
+_GAP = 1e-6  # relative violation of rows allowed where floats find neither a solution nor a proof
 
 
 class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
@@ -30,7 +30,7 @@ class Solved(NamedTuple):
 class Relaxation(NamedTuple):
     """A relaxed solution ``x`` in floats, ``None`` if there is none, and the ``weights`` of the rows.
 
-    Those are of the optimum or, without a solution, of a combination of rows that has none. ``columns`` and
+    The weights are the duals or, without a solution, a Farkas combination of the rows. ``columns`` and
     ``rows`` are those of the basis: between them is the square system that the weights solve.
     """
 
@@ -41,10 +41,10 @@ class Relaxation(NamedTuple):
 
 
 class WholeProgram:
-    """Columns between ``lower`` and ``upper`` (``None`` is no bound), and rows of whole numbers.
+    """An integer program: columns between ``lower`` and ``upper`` (``None`` is no bound), and rows.
 
-    Each row says that its columns, times their parts, add up to at least a number. ``expired`` is asked now
-    and then: when time is up, solving a relaxation raises :class:`Stopped`.
+    Each row states that its columns, times whole coefficients, add up to at least a number. ``expired`` is
+    called now and then: when time is up, solving a relaxation raises :class:`Stopped`.
     """
 
     def __init__(self, columns: int, expired: Callable[[], bool] = lambda: False) -> None:
@@ -59,42 +59,42 @@ class WholeProgram:
 
     @property
     def columns(self) -> int:
-        """How many columns there are."""
+        """The number of columns."""
         return len(self.lower)
 
     @property
     def is_empty(self) -> bool:
         """Whether some column has nothing between its bounds."""
-        return any(most is not None and self.lower[c] > most for c, most in enumerate(self.upper))
+        return any(upper is not None and self.lower[c] > upper for c, upper in enumerate(self.upper))
 
     def column(self, lower: int, upper: int | None) -> int:
-        """Add a column, and give its number."""
+        """Add a column, and return its number."""
         self.lower.append(lower)
         self.upper.append(upper)
         self._highs = None
         return len(self.lower) - 1
 
     def row(self, parts: dict[int, int], least: int) -> int:
-        """Add a row, and give its number."""
+        """Add a row, and return its number."""
         self._rows.append((parts, least))
         return len(self._rows) - 1
 
     def open_row(self, columns: Iterable[int], least: int) -> int:
-        """Add a row of some columns whose parts are told later, and give its number."""
+        """Add a row of some columns whose coefficients are set by :meth:`change`, and return its number."""
         return self.row(dict.fromkeys(columns, 0), least)
 
     def change(self, row: int, parts: dict[int, int]) -> None:
-        """Change the parts of the columns that a row has; without parts, all become 0."""
-        now = self._rows[row][0]
-        new = {column: parts.get(column, 0) for column in now}
-        if new != now:
+        """Change the coefficients of the columns of a row; those not in ``parts`` become 0."""
+        current = self._rows[row][0]
+        new = {column: parts.get(column, 0) for column in current}
+        if new != current:
             self._rows[row] = new, self._rows[row][1]
             self._changed.add(row)
 
-    def cap(self, column: int, most: int) -> None:
+    def cap(self, column: int, upper: int) -> None:
         """Bound a column from above, if it is not bounded more tightly."""
-        known = self.upper[column]
-        self.upper[column] = most if known is None else min(known, most)
+        current = self.upper[column]
+        self.upper[column] = upper if current is None else min(current, upper)
 
     def with_bounds(
         self, column: int, lower: int | None, upper: int | None
@@ -108,13 +108,13 @@ class WholeProgram:
         return lowers, uppers
 
     def solve(self, objective: Mapping[int, int], cutoff: float = math.inf) -> Solved:
-        """Solve the relaxation; a bound above ``cutoff`` is enough."""
+        """Return the solution and bound of the relaxation; a bound above ``cutoff`` is enough."""
         if self.is_empty:
             return Solved(None, math.inf)
         highs = self._run(objective)
         if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
             solution = highs.getSolution()
-            # of very large costs it may have none
+            # very large costs may leave no dual solution
             weights = list(solution.row_dual) if solution.dual_valid else [0.0] * len(self._rows)
             return Solved(list(solution.col_value), self._bound(objective, weights, cutoff))
         ray = [abs(weight) for weight in highs.getDualRay()[2]]
@@ -124,22 +124,22 @@ class WholeProgram:
         return Solved(self._nearly(), -math.inf)
 
     def _nearly(self) -> list[float] | None:
-        """Return a solution of the rows but for a little, where floats find none and prove nothing.
+        """Return a solution that may violate rows a little, where floats find none and prove nothing.
 
-        Rows with large parts may leave so narrow a gap that it is lost in floats.
+        Rows with large coefficients may leave so small a feasible region that it is lost in floats.
         """
         highs, count = self._highs, len(self._rows)
-        every, most = self._np.arange(count, dtype="int32"), self._np.full(count, self._library.kHighsInf)
+        rows, infinite = self._np.arange(count, dtype="int32"), self._np.full(count, self._library.kHighsInf)
         least = self._np.array([float(least) for _, least in self._rows])
-        highs.changeRowsBounds(count, every, least - _GAP * self._np.maximum(1.0, abs(least)), most)
+        highs.changeRowsBounds(count, rows, least - _GAP * self._np.maximum(1.0, abs(least)), infinite)
         self._run_to_the_end(highs)
-        found = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
-        x = list(highs.getSolution().col_value) if found else None
+        optimal = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
+        x = list(highs.getSolution().col_value) if optimal else None
         self._highs = None
         return x
 
     def relaxation(self, objective: Mapping[int, float]) -> Relaxation:
-        """Solve the relaxation, and give the weights of its rows, of which nothing is proved."""
+        """Return the solution of the relaxation in floats, with the weights of its rows and its basis."""
         highs = self._run(objective)
         if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
             solution, basis = highs.getSolution(), highs.getBasis()
@@ -152,12 +152,12 @@ class WholeProgram:
             )
         return Relaxation(None, [abs(weight) for weight in highs.getDualRay()[2]], [], [])
 
-    def said(self, row: int) -> tuple[dict[int, int], int]:
-        """Return a row: its parts, and what they add up to at least."""
+    def row_of(self, row: int) -> tuple[dict[int, int], int]:
+        """Return a row: its coefficients, and the least sum."""
         return self._rows[row]
 
     def whole_optimum(self, objective: Mapping[int, int]) -> list[float] | None:
-        """Return the best whole solution by HiGHS' word; ``None`` if it finds none, or when time is up."""
+        """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or when time is up."""
         highs = self._send(objective)
         count = self.columns
         whole = self._library.HighsVarType.kInteger
@@ -166,13 +166,13 @@ class WholeProgram:
         )
         highs.setOptionValue("presolve", "on")
         ended = not self._expired() and run(highs, self._expired, whole=True)
-        found = ended and highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
-        values = list(highs.getSolution().col_value) if found else None
+        optimal = ended and highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
+        values = list(highs.getSolution().col_value) if optimal else None
         self._highs = None
         return values
 
     def _run(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
-        """Let HiGHS solve the relaxation; anew where it got lost on the way from the solution before."""
+        """Solve the relaxation with HiGHS, from scratch where the warm start fails; return the instance."""
         highs = self._send(objective)
         self._run_to_the_end(highs)
         if highs.getModelStatus() != self._library.HighsModelStatus.kOptimal and not highs.getDualRay()[1]:
@@ -182,12 +182,12 @@ class WholeProgram:
         return highs
 
     def _run_to_the_end(self, highs: Any) -> None:
-        """Let HiGHS solve a relaxation, which has to end within the time that there is."""
+        """Solve a relaxation with HiGHS; raises :class:`Stopped` where time is up."""
         if not run(highs, self._expired):
             raise Stopped
 
     def _send(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
-        """Tell HiGHS what has changed."""
+        """Return the HiGHS instance, brought up to date with rows, bounds and costs."""
         np, inf = self._np, self._library.kHighsInf
         count = self.columns
         if self._highs is None:
@@ -201,40 +201,42 @@ class WholeProgram:
             columns = np.array(list(parts), dtype="int32")
             highs.addRow(float(least), inf, len(parts), columns, np.array(list(parts.values()), dtype=float))
         for row in self._changed:
-            for column, part in self._rows[row][0].items():
-                highs.changeCoeff(row, column, float(part))
+            for column, coefficient in self._rows[row][0].items():
+                highs.changeCoeff(row, column, float(coefficient))
         self._sent = len(self._rows)
         self._changed.clear()
-        every = np.arange(count, dtype="int32")
-        upper = [inf if most is None else most for most in self.upper]
-        highs.changeColsBounds(count, every, np.array(self.lower, dtype=float), np.array(upper, dtype=float))
+        all_columns = np.arange(count, dtype="int32")
+        upper = [inf if bound is None else bound for bound in self.upper]
+        highs.changeColsBounds(
+            count, all_columns, np.array(self.lower, dtype=float), np.array(upper, dtype=float)
+        )
         costs = np.zeros(count)
         for column, cost in objective.items():
             costs[column] = cost
-        highs.changeColsCost(count, every, costs)
+        highs.changeColsCost(count, all_columns, costs)
         return highs
 
     def _bound(
         self, objective: Mapping[int, int], weights: Sequence[float], cutoff: float
     ) -> float | Fraction:
-        """Return the bound that weights of rows prove, whatever they are, computed in whole numbers."""
+        """Return the Lagrangian bound that weights of rows prove, whatever they are, in whole numbers."""
         best: float | Fraction = -math.inf
         for parts in _PARTS:
             scaled = [max(0, round(weight * parts)) if abs(weight) < 1e15 else 0 for weight in weights]
             total = 0
-            left = dict.fromkeys(range(self.columns), 0)
+            reduced_costs = dict.fromkeys(range(self.columns), 0)
             for column, cost in objective.items():
-                left[column] = cost * parts
+                reduced_costs[column] = cost * parts
             for (row, least), weight in zip(self._rows, scaled, strict=True):
                 if weight:
                     total += weight * least
-                    for column, part in row.items():
-                        left[column] -= weight * part
-            for column, rest in left.items():
-                cheapest = self.lower[column] if rest >= 0 else self.upper[column]
+                    for column, coefficient in row.items():
+                        reduced_costs[column] -= weight * coefficient
+            for column, reduced_cost in reduced_costs.items():
+                cheapest = self.lower[column] if reduced_cost >= 0 else self.upper[column]
                 if cheapest is None:
                     break
-                total += rest * cheapest
+                total += reduced_cost * cheapest
             else:
                 best = max(best, Fraction(total, parts))
                 if best > cutoff:

@@ -1,4 +1,4 @@
-"""A problem and its objectives as the plain arrays that bounds are computed on."""
+"""A problem and its objectives as plain arrays, on which bounds are computed."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -15,13 +15,13 @@ from foon_asp.proof import ruled, verify
 
 
 class Arrays:
-    """What is asked of a problem, in numbers: units are actions, and taking a kitchen item may be one.
+    """A question about trees in numbers: units are actions, and taking a kitchen item may be one.
 
-    Where ``kitchen`` is an objective, nothing is at hand from the start, and each item is given by an
-    action of its own that needs nothing and costs 1: the action's number is ``items[k]`` for item ``k``.
-    Elsewhere ``items`` is empty. What the covered constraints add comes last: nodes, and steps that are
-    actions and cost nothing. ``forbidden`` are the units that they rule out, and ``limits`` what they limit.
-    Without objectives, everything costs nothing.
+    Where ``kitchen`` is an objective, no node is initial, and each item has an achiever of its own without
+    preconditions and of cost 1: the action's number is ``items[k]`` for item ``k``. Elsewhere ``items`` is
+    empty. The additions of covered constraints come last: nodes, and steps, which are actions of cost 0.
+    ``forbidden`` are the units that constraints remove, and ``limits`` their limits. Without objectives, all
+    costs are 0.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], covered: Coverage) -> None:
@@ -32,7 +32,7 @@ class Arrays:
         self.ruled = covered.ruled(problem)
         self._own = covered.limits
         self._of_rules = len(covered.rules)  # the number of the first limit beyond those of the rules
-        for limit in covered.limits.known if covered.limits else ():
+        for limit in covered.limits.found_limits if covered.limits else ():
             self._admit(limit)
         self.goals = [goal for goal in problem.goals if goal not in problem.kitchen] + self.ruled.goals
         self.forbidden = self.ruled.removed
@@ -43,8 +43,8 @@ class Arrays:
         self.items: dict[int, int] = {}
         if any(objective.row.item for objective in objectives):
             kitchen = sorted(problem.kitchen)
-            self.items = {o: len(network) + place for place, o in enumerate(kitchen)}
-            gives = [[o for o in given if o not in problem.kitchen] for given in gives]
+            self.items = {o: len(network) + index for index, o in enumerate(kitchen)}
+            gives = [[o for o in effects if o not in problem.kitchen] for effects in gives]
             needs += [()] * len(kitchen)
             gives += [(o,) for o in kitchen]
             taking = tuple(Fraction(o.row.item) for o in objectives for _ in range(self.parts(o)))
@@ -53,9 +53,9 @@ class Arrays:
             needs[unit] = (*needs[unit], *nodes)
         for unit, nodes in self.ruled.gives.items():
             gives[unit] = (*gives[unit], *nodes)
-        self._steps = {step: len(needs) + place for place, step in enumerate(self.ruled.steps)}
-        for asked, node in self.ruled.steps.values():
-            needs.append(asked)
+        self._steps = {step: len(needs) + index for index, step in enumerate(self.ruled.steps)}
+        for preconditions, node in self.ruled.steps.values():
+            needs.append(preconditions)
             gives.append((node,))
         self.costs += [self.order.zero] * len(self._steps)
         start = () if self.items else sorted(problem.kitchen)
@@ -63,36 +63,36 @@ class Arrays:
 
     @property
     def limits(self) -> list[Limit]:
-        """What the constraints limit: how much each action takes of it, and how much there is."""
+        """The limits of constraints: the amount of each action, and the greatest sum."""
         return [
-            ({self._steps.get(member, member): amount for member, amount in amounts.items()}, most)
-            for amounts, most in self.ruled.limits.values()
+            ({self._steps.get(member, member): amount for member, amount in amounts.items()}, max_amount)
+            for amounts, max_amount in self.ruled.limits.values()
         ]
 
     @cached_property
     def multiples(self) -> list[Fraction]:
-        """By coordinate what all costs are multiples of; 0 where that is not known, or not stated briefly."""
-        found: list[Fraction] = []
-        every = set(self.costs)
+        """By coordinate the greatest common divisor of all costs; 0 where it is not used."""
+        multiples: list[Fraction] = []
+        all_costs = set(self.costs)
         for objective in self.objectives:
-            known = not multiplies(objective) and objective not in self.problem.measures
-            for place in range(len(found), len(found) + self.parts(objective)):
-                costs = {cost[place] for cost in every} if known else ()
+            additive = not multiplies(objective) and objective not in self.problem.measures
+            for i in range(len(multiples), len(multiples) + self.parts(objective)):
+                costs = {cost[i] for cost in all_costs} if additive else ()
                 below = math.lcm(*(cost.denominator for cost in costs))
-                found.append(Fraction(math.gcd(*(int(cost * below) for cost in costs)), below))
-        return found
+                multiples.append(Fraction(math.gcd(*(int(cost * below) for cost in costs)), below))
+        return multiples
 
-    def multiple(self, place: int) -> dict[str, str]:
-        """State what all costs are multiples of at a coordinate."""
+    def multiple(self, coordinate: int) -> dict[str, str]:
+        """Return the JSON of the common divisor of all costs at a coordinate."""
         coordinates = [str(objective) for objective in self.objectives for _ in range(self.parts(objective))]
-        return {coordinates[place]: written(self.multiples[place])}
+        return {coordinates[coordinate]: written(self.multiples[coordinate])}
 
     def _admit(self, limit: Limit) -> None:
-        """Number a limit of rules of the user's own."""
+        """Add a limit by user rules."""
         self.ruled.limits[self._of_rules + len(self.own_limits)] = ruled.Limit(*limit)
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
-        """Return a limit that a derivation exceeds by rules of the user's own."""
+        """Return a limit by user rules that a derivation exceeds; ``None`` where it keeps to them."""
         limit = self._own and self._own.exceeded(self._units(derivation))
         if limit:
             self._admit(limit)
@@ -100,27 +100,29 @@ class Arrays:
 
     @property
     def asks(self) -> bool:
-        """Whether rules of the user's own are asked what derivations exceed."""
+        """Whether limits by user rules are searched for during the proof."""
         return self._own is not None
 
     @property
     def own_limits(self) -> dict[int, Limit]:
-        """The limits of rules of the user's own that are known, by their numbers."""
-        return {n: (each.amounts, each.most) for n, each in self.ruled.limits.items() if n >= self._of_rules}
+        """The limits by user rules found so far, by their numbers."""
+        return {
+            n: (limit.amounts, limit.max_sum) for n, limit in self.ruled.limits.items() if n >= self._of_rules
+        }
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
-        """Return by constraint the units that no tree has which uses some actions and none of others."""
+        """Return by constraint the units in no tree with the used actions and none of ``without``."""
         return self.ruled.bars(self._units(used), without)
 
     def breaking(self, derivation: frozenset[int]) -> list[int]:
-        """Return as few units of a derivation as break a constraint, first what the others bar."""
+        """Return an irreducible set of units of a derivation that break a constraint, barred units first."""
         chosen = self._units(derivation)
         for barred in self.ruled.barred.values():
             if broken := chosen & barred(chosen, self.forbidden):
                 for unit in sorted(chosen):
                     fewer = chosen - {unit}
-                    if found := fewer & barred(fewer, self.forbidden):
-                        chosen, broken = fewer, found
+                    if still_broken := fewer & barred(fewer, self.forbidden):
+                        chosen, broken = fewer, still_broken
                 return [*broken, *(chosen - broken)]
         return []
 
@@ -140,26 +142,26 @@ class Arrays:
         return [*units, *taking, *map(self._steps.__getitem__, sorted(steps))]
 
     def cases(self, cases: Cases) -> Cases:
-        """Return cases of an answer by the numbers of actions here, as far as these are known.
+        """Return the branching cases of an answer by the numbers of actions here, ``None`` for unknown ones.
 
-        There, the taking of an item is numbered by the object, after all units.
+        In answers, the taking of an item is numbered by the object, after all units.
         """
         if cases is None:
             return None
         action, without, using = cases
         units = len(self.problem.network)
-        here = action if action < units else self.items.get(action - units)
-        return None if here is None else (here, self.cases(without), self.cases(using))
+        own_action = action if action < units else self.items.get(action - units)
+        return None if own_action is None else (own_action, self.cases(without), self.cases(using))
 
     def stated(self, vector: Sequence[Fraction]) -> list[object]:
-        """Write a cost or weight as certificates do, one part an objective; raises like :func:`written`."""
+        """Return the JSON of a cost or weight, one part an objective; raises like :func:`written`."""
         if not self.objectives:
             return [written(vector[0])]
         parts: list[object] = []
-        place = 0
+        begin = 0
         for objective in self.objectives:
-            values = vector[place : place + self.parts(objective)]
-            place += len(values)
+            values = vector[begin : begin + self.parts(objective)]
+            begin += len(values)
             if multiplies(objective):
                 parts.append({str(r): written(e) for r, e in zip(self.rates, values, strict=True) if e})
             else:
@@ -167,7 +169,7 @@ class Arrays:
         return parts
 
     def member(self, action: int) -> dict[str, int]:
-        """Name an action as certificates do, by ids in the whole network."""
+        """Return the JSON of an action, by ids in the whole network."""
         network = self.problem.network
         if action < len(network):
             return {"unit": network.unit_number(action)}
@@ -180,7 +182,7 @@ class Arrays:
         return map(self.problem.rate, range(len(self.problem.network)))
 
     def _measures(self, unit: int) -> Iterator[Fraction | int | None]:
-        """Yield what the cost of a unit is made of: its rate, where rates count, and its counts."""
+        """Yield the rate of a unit, ``None`` where rates do not count, and its other figures."""
         yield self.problem.rate(unit) if self.rates else None
         for objective in self.objectives:
             if not multiplies(objective):
@@ -188,17 +190,17 @@ class Arrays:
 
     def _cost(self, rate: Fraction | None, *counts: int | Fraction) -> Vector:
         cost: list[Fraction] = []
-        left = iter(counts)
+        remaining = iter(counts)
         for objective in self.objectives:
             if multiplies(objective):
                 cost += [Fraction(r == rate) for r in self.rates]
             else:
-                cost.append(Fraction(next(left)))
+                cost.append(Fraction(next(remaining)))
         return tuple(cost) or self.order.zero
 
 
 def written(number: Fraction) -> str:
-    """Write a fraction as certificates do; raises :class:`LimitError` for one that is too long."""
+    """Return a fraction as text; raises :class:`LimitError` for one that is too long."""
     try:
         return str(number)
     except ValueError:  # Python writes no whole number of more than 4,300 digits

@@ -1,7 +1,7 @@
-"""Certificates: JSON that proves a tree optimal, a bound on all trees, or that there is none.
+"""Certificates: JSON that proves a tree optimal, a bound on all trees, or that there is no tree.
 
-docs/dev/certificates.md describes the format. Nothing is given out that ``foon_asp.proof.verify`` does not
-accept.
+docs/dev/certificates.md describes the format. Every certificate returned was accepted by
+``foon_asp.proof.verify``.
 """
 
 import hashlib
@@ -12,7 +12,16 @@ from typing import Any, NamedTuple
 from foon_asp.bounds.branching import branched
 from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.lexicographic import Vector
-from foon_asp.bounds.lower_bound import Broken, Cases, CheaperError, Dear, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds.lower_bound import (
+    Broken,
+    Cases,
+    CheaperError,
+    CostFixing,
+    Hopeless,
+    Packing,
+    Proof,
+    Prover,
+)
 from foon_asp.certificate.arrays import Arrays, written
 from foon_asp.certificate.coverage import NOTHING, Coverage, needed
 from foon_asp.errors import BugError
@@ -23,7 +32,7 @@ from foon_asp.text.json_value import json_line
 
 
 class NotBestError(Exception):
-    """A tree that was to be proved optimal is not: ``units`` make the goals for less."""
+    """A tree that was to be proved optimal is not: the tree ``units`` costs less."""
 
     def __init__(self, units: tuple[int, ...], costs: Costs) -> None:
         super().__init__("the tree is not the best: another one costs less")
@@ -31,7 +40,7 @@ class NotBestError(Exception):
 
 
 class Certificate(NamedTuple):
-    """A certificate that was verified, and what it says.
+    """A verified certificate with its claim.
 
     ``claim`` is ``optimal``, ``bound`` or ``infeasible``. ``certified`` are the objectives, from the first
     on, that it speaks about; those after them are only the solver's.
@@ -49,9 +58,9 @@ class Certificate(NamedTuple):
                 shown = "[\n" + ",\n".join("  " + json_line(cut) for cut in value) + "\n ]"
             elif key == "proof" and isinstance(value, dict) and value.get("weights"):
                 pairs = ",\n".join("  " + json_line(pair) for pair in value["weights"])
-                others = {name: part for name, part in value.items() if name != "weights"}
-                more = "".join(f', "{name}": {json_line(part)}' for name, part in others.items())
-                shown = f'{{"weights": [\n{pairs}\n ]{more}}}'
+                others = {name: content for name, content in value.items() if name != "weights"}
+                suffix = "".join(f', "{name}": {json_line(content)}' for name, content in others.items())
+                shown = f'{{"weights": [\n{pairs}\n ]{suffix}}}'
             else:
                 shown = json_line(value)
             lines.append(f' "{key}": {shown}')
@@ -68,7 +77,7 @@ def certify(
     subject: verify.Subject | None = None,
     cases: Cases = None,
 ) -> Certificate | None:
-    """Prove a tree optimal by a lexicographic list of objectives, or by as many from the first as can be.
+    """Return a certificate that a tree is optimal by the first objectives, as many as are proved, or a bound.
 
     ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that is
     not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
@@ -89,10 +98,10 @@ def certify(
         return None
     guide = tuple(units)
     # of an answer under rules, a cut can hold what its search added for them
-    known = [[o for o in cut if o < len(problem.network.objects)] for cut in cuts]
+    known_cuts = [[o for o in cut if o < len(problem.network.objects)] for cut in cuts]
     for count in range(len(objectives), 0, -1):
         arrays = Arrays(problem, objectives[:count], covered)
-        prover = _prover(arrays, expired, known)
+        prover = _prover(arrays, expired, known_cuts)
         try:
             proof = prover.prove(arrays.actions(units), arrays.cases(cases))
         except CheaperError as cheaper:
@@ -120,10 +129,10 @@ def certify_infeasible(
     expired: Callable[[], bool] = lambda: False,
     subject: verify.Subject | None = None,
 ) -> Certificate | None:
-    """Prove that there is no tree; ``subject`` is as for :func:`certify`.
+    """Return a certificate that there is no tree; ``subject`` is as for :func:`certify`.
 
-    ``None`` where only constraints that are not covered leave none, and where no proof is found before
-    ``expired`` says so.
+    ``None`` where a tree exists without the constraints that are not covered, and where no proof is found
+    before time is up.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -142,7 +151,7 @@ def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence
         arrays.order,
         arrays.forbidden,
         expired,
-        known=cuts,
+        known_cuts=cuts,
         limits=arrays.limits,
         rules=rules,
         multiples=arrays.multiples,
@@ -169,19 +178,19 @@ def _write(
         return cuts.setdefault(cut.objects, len(cuts))
 
     def limit(row: int) -> int:
-        """Return the number of a limit; those of the user's own are numbered anew, after the rules."""
-        place = places[row]
-        return len(covered.rules) + of_own.setdefault(place, len(of_own)) if place in own else place
+        """Return the number of a limit; limits by user rules are numbered anew, after the rules."""
+        index = places[row]
+        return len(covered.rules) + of_own.setdefault(index, len(of_own)) if index in own else index
 
     def packed(packing: Packing) -> dict[str, object]:
         weights = sorted((number(cut), arrays.stated(weight)) for cut, weight in packing.weights)
         limits = sorted((limit(row), arrays.stated(weight)) for row, weight in packing.limits)
-        found: dict[str, object] = {"weights": [list(pair) for pair in weights]}
+        content: dict[str, object] = {"weights": [list(pair) for pair in weights]}
         if limits:
-            found["limits"] = [list(pair) for pair in limits]
+            content["limits"] = [list(pair) for pair in limits]
         if packing.rounded is not None:
-            found["multiples"] = arrays.multiple(packing.rounded)
-        return found
+            content["multiples"] = arrays.multiple(packing.rounded)
+        return content
 
     def stated(proof: Proof) -> dict[str, object]:
         if isinstance(proof, Hopeless):
@@ -190,9 +199,9 @@ def _write(
             return packed(proof)
         if isinstance(proof, Broken):
             return {"broken": proof.rule}
-        if isinstance(proof, Dear):
-            dear = [arrays.member(action) for action in proof.actions]
-            return {"dear": dear, **packed(proof.packing), "others": stated(proof.others)}
+        if isinstance(proof, CostFixing):
+            above_cutoff = [arrays.member(action) for action in proof.actions]
+            return {"dear": above_cutoff, **packed(proof.packing), "others": stated(proof.others)}
         return {
             "branch": arrays.member(proof.action),
             "without": stated(proof.without),
@@ -200,17 +209,19 @@ def _write(
         }
 
     try:
-        found = stated(proof)
+        proof_content = stated(proof)
         least = None if bound is None else arrays.stated(bound)
     except verify.LimitError:
         return None
     graph = arrays.graph
     members = (u for cut in cuts for o in cut for u in graph.makers[o] if {*cut}.isdisjoint(graph.needs[u]))
-    limits = [own[place] for place in of_own]
+    limits = [own[index] for index in of_own]
     rules = needed(covered.rules, members, limits) if covered.partial else covered.rules
     numbered = [list(map(network.object_number, objects)) for objects in cuts]
     claimed = Claimed(claim, arrays.objectives, units, least)
-    return write(verify.TREE, problem, claimed, covered._replace(rules=rules), numbered, found, subject)
+    return write(
+        verify.TREE, problem, claimed, covered._replace(rules=rules), numbered, proof_content, subject
+    )
 
 
 class Claimed(NamedTuple):
@@ -230,11 +241,11 @@ def write(
     cuts: Sequence[Sequence[int]],
     proof: object,
     subject: verify.Subject,
-    **more: object,
+    **more_keys: object,
 ) -> Certificate | None:
-    """Write a certificate, seal it and verify it as it is written; ``None`` where that is beyond the limits.
+    """Return a sealed and verified certificate; ``None`` where it is beyond the limits of the verifier.
 
-    Of measures it keeps the costs of those units that the proof looks at.
+    Of measures it states only the costs of units that the proof looks at.
     """
     network, (claim, objectives, units, bound) = problem.network, claimed
     try:
@@ -257,7 +268,7 @@ def write(
                 if objective in problem.measures
             },
             "not_covered": list(covered.not_covered),
-            **more,
+            **more_keys,
             "tree": None if units is None else list(map(network.unit_number, units)),
             "costs": None if units is None else _costs(problem, objectives, units),
             "bound": bound,
@@ -278,7 +289,7 @@ def write(
 
 
 def _costs(problem: Problem, objectives: Sequence[Objective], units: Sequence[int]) -> list[object]:
-    """Return what a tree or plan costs by each objective, as certificates state it."""
+    """Return the JSON of the costs of a tree or plan by each objective."""
     measured = problem.costs(units)
     figures = [measured.measure(objective) for objective in objectives]
     return [figure if isinstance(figure, int) else written(figure) for figure in figures]
@@ -291,14 +302,14 @@ def _verified(certificate: Certificate, subject: verify.Subject) -> verify.Verif
 
 
 def subject_of(problem: Problem) -> verify.Subject:
-    """Return what certificates of a problem over a whole network speak about."""
+    """Return the data that certificates of a problem over a whole network are about."""
     return verify.Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     )
 
 
 def _measure(problem: Problem, objective: Objective) -> dict[str, Any]:
-    """Return the rules of a measure, and what they say of all units."""
+    """Return the JSON of a measure: its rules, their digest, and the costs of all units."""
     rules = problem.measures[objective].text
     numbers = map(problem.network.unit_number, range(len(problem.network)))
     costs = problem.figures(objective, range(len(problem.network)))
@@ -310,7 +321,7 @@ def _measure(problem: Problem, objective: Objective) -> dict[str, Any]:
 
 
 def _by_cost(costs: Mapping[int, int | Fraction]) -> dict[str, list[int]]:
-    """List the units of each cost."""
+    """Return the units of each cost."""
     listed: dict[str, list[int]] = {}
     for unit in sorted(costs):
         listed.setdefault(str(costs[unit]), []).append(unit)

@@ -1,4 +1,4 @@
-"""Which of a user's constraints a certificate can speak about."""
+"""The constraints of a question that a certificate can cover."""
 
 import hashlib
 import re
@@ -27,11 +27,11 @@ _UNSET = frozenset(("", '""', "#sup", "#inf"))
 
 
 class Coverage(NamedTuple):
-    """What narrows the trees: the ``rules`` that a certificate speaks of, and what it does not.
+    """The constraints on trees: the ``rules`` that a certificate covers, and those that it does not.
 
     Each rule is one of :data:`foon_asp.proof.constraint.LIBRARY` with its values. ``not_covered`` names
     rules, by their text or by file, with a digest, and the constants that were set. ``limits`` are those of
-    rules of the user's own, which are found one by one.
+    user rules, which are found one by one.
     """
 
     rules: tuple[Rule, ...] = ()
@@ -40,20 +40,20 @@ class Coverage(NamedTuple):
 
     @property
     def partial(self) -> bool:
-        """Whether trees may have to keep to more than the rules say here."""
+        """Whether trees may have to keep to more constraints than ``rules``."""
         return bool(self.not_covered) or any(rule["rule"] == OWN for rule in self.rules)
 
     def ruled(self, problem: Problem) -> Ruled:
-        """Return what the rules add to the network of a problem."""
-        asked, nodes = question_of(problem), len(problem.network.objects)
-        return Ruled([meaning(rule, asked) for rule in self.rules], nodes, len(problem.network) + nodes)
+        """Return the rules compiled into the network of a problem."""
+        question, nodes = question_of(problem), len(problem.network.objects)
+        return Ruled([meaning(rule, question) for rule in self.rules], nodes, len(problem.network) + nodes)
 
     def forbids(self, problem: Problem) -> frozenset[int]:
-        """Return the units of a problem that are ruled out one by one."""
+        """Return the units of a problem that rules remove."""
         return self.ruled(problem).removed
 
     def beyond(self) -> list[str]:
-        """Name the rules that may say more than which units are ruled out."""
+        """Return the names of the rules that may do more than remove units."""
         return [rule["rule"] for rule in self.rules if not LIBRARY[rule["rule"]].removes]
 
 
@@ -61,53 +61,56 @@ NOTHING = Coverage()  # no constraints at all
 
 
 def coverage(settings: Settings) -> Coverage:
-    """Sort the constraints of a question into those that a certificate covers and the others.
+    """Return the constraints of a question, divided into those that a certificate covers and the others.
 
-    Those of ours are covered, with the values that were set. Other rules only narrow the trees, so a bound
-    without them still holds; a replaced encoding may say anything, and is named, too. With it, only what
-    rules units out one by one is covered.
+    Ready-made constraints are covered, with the values that were set. Other rules only exclude trees, so a
+    bound without them still holds; a replaced encoding may do anything, and is named, too. With a replaced
+    encoding, only rules that remove units are covered.
     """
     constants = dict(setting.partition("=")[::2] for setting in settings.constants)
     uses: list[tuple[str, Mapping[str, str]]] = []
     others: list[Constraint] = []
-    for each in dict.fromkeys(map(find_constraint, settings.constraints)):
-        file = each.file if isinstance(each, LibraryUse) else each
+    for constraint in dict.fromkeys(map(find_constraint, settings.constraints)):
+        file = constraint.file if isinstance(constraint, LibraryUse) else constraint
         stem = file.stem if isinstance(file, Path) and is_own(file) else ""
         if stem in LIBRARY and (settings.replaced is None or LIBRARY[stem].removes):
-            uses.append((stem, each.constants if isinstance(each, LibraryUse) else constants))
+            uses.append((stem, constraint.constants if isinstance(constraint, LibraryUse) else constants))
         else:
-            others.append(each)
+            others.append(constraint)
     read = {name for stem, _ in uses for name in LIBRARY[stem].values}
     facts: dict[str, set[str]] = {name: set() for name in LISTED if name in read}
-    for stem, given in uses:  # what one use lists, the others read
+    for stem, constants_given in uses:  # what one use lists, the others read
         for name in facts.keys() & LIBRARY[stem].values.keys():
-            facts[name] |= {string_constant(given.get(LISTED[name], ""))} - {""}
-    if "heats" in facts:  # which begins with motions of ours
+            facts[name] |= {string_constant(constants_given.get(LISTED[name], ""))} - {""}
+    if "heats" in facts:  # which begins with motions of the ready-made constraint
         facts["heats"] |= _facts(find_constraint(Path("never_heated")), among_others=True)["heats"]
     named: list[str] = []
-    for each in others:
-        listed = _facts(each) if facts else {}
+    for constraint in others:
+        listed = _facts(constraint) if facts else {}
         if listed and listed.keys() <= facts.keys():
-            for name, found in listed.items():
-                facts[name] |= found
+            for name, listed_values in listed.items():
+                facts[name] |= listed_values
         else:
-            named.append(_named(each))
+            named.append(_named(constraint))
     rules: dict[str, Rule] = {}
-    for stem, given in uses:
+    for stem, constants_given in uses:
         kinds = LIBRARY[stem].values.items()
         values = {
-            name: sorted(facts[name]) if kind is list else _value(given.get(name, ""), kind)
+            name: sorted(facts[name]) if kind is list else _value(constants_given.get(name, ""), kind)
             for name, kind in kinds
         }
         if all(value not in (None, "", []) for value in values.values()):
             rule = {"rule": stem, **values}
             rules[canonical(rule)] = rule
-    taken = {
-        LISTED.get(name, name) for stem, given in uses if given is constants for name in LIBRARY[stem].values
+    used_constants = {
+        LISTED.get(name, name)
+        for stem, constants_given in uses
+        if constants_given is constants
+        for name in LIBRARY[stem].values
     }
     if settings.replaced is not None:
         named.append(f"encodings {settings.replaced.name}")
-    named += [f"{name}={value}" for name, value in constants.items() if name not in taken]
+    named += [f"{name}={value}" for name, value in constants.items() if name not in used_constants]
     return Coverage(tuple(rules[text] for text in sorted(rules)), tuple(sorted(set(map(_printable, named)))))
 
 
@@ -123,18 +126,18 @@ def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[
     from foon_asp.encoding import encoding  # noqa: PLC0415 - they load clingo
     from foon_asp.rules import stating  # noqa: PLC0415 - they load clingo
 
-    found: dict[str, set[str]] = {}
+    values: dict[str, set[str]] = {}
     for line in encoding.read_encoding(stating.loaded((constraint,))[constraint]).text.splitlines():
         fact = _FACT.fullmatch(line)
         if fact is not None:
-            found.setdefault(fact[1], set()).update(map(string_constant, _TEXT.findall(fact[2])))
+            values.setdefault(fact[1], set()).update(map(string_constant, _TEXT.findall(fact[2])))
         elif not among_others and line != "#program base." and not line.startswith("% "):
             return {}
-    return found
+    return values
 
 
 def _named(constraint: Constraint) -> str:
-    """Name rules by what they are called and their digest; those given as text with it."""
+    """Return the name of rules with their digest, and with their text if they were given as text."""
     if isinstance(constraint, RuleText):
         return (
             f"{constraint.name} {_digest(constraint.text.encode('utf-8', 'surrogatepass'))} {constraint.text}"
@@ -148,9 +151,9 @@ def _digest(content: bytes) -> str:
 
 
 def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()) -> tuple[Rule, ...]:
-    """State what a proof needs of rules of the user's own: which units are removed, and limits.
+    """Return the rules with only those claims of user rules that a proof needs: removed units, and limits.
 
-    The removal of units that would be no ``members`` of any cut anyway is left out.
+    The removal of units that are not ``members`` of any cut is left out.
     """
     kept, stated = set(members), [_stated(*limit) for limit in limits]
     return tuple(
@@ -165,12 +168,12 @@ def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit
     )
 
 
-def _stated(amounts: Mapping[int, Fraction], most: Fraction) -> list[Any]:
-    """Write a limit as certificates do: units by how much they count, and the limit."""
+def _stated(amounts: Mapping[int, Fraction], max_sum: Fraction) -> list[Any]:
+    """Return the JSON of a limit: units by their amount, and the greatest sum."""
     units: dict[str, list[int]] = {}
     for unit in sorted(amounts):
         units.setdefault(str(amounts[unit]), []).append(unit)
-    return [units, int(most)]
+    return [units, int(max_sum)]
 
 
 def _printable(name: str) -> str:

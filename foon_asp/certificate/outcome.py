@@ -25,13 +25,13 @@ def certify_outcome(
     expired: Callable[[], bool] = lambda: False,
     subject: Subject | None = None,
 ) -> tuple[Outcome, Certificate | None]:
-    """Find a certificate for an answer to a question under these settings, and mark the answer with it.
+    """Return an answer marked with its certificate, and the certificate, ``None`` where none is found.
 
     The answer is marked ``certificate`` where the whole of its claim is proved, and a plan that was found at
     a limit is optimal then; where only the first of its objectives are, it says for each. Where more than a
-    bound is proved only by taking on trust what rules of the user's own remove and ask for, the answer is
-    left as it is. Raises :class:`BugError` when a tree that the solver called optimal is not, and when answer
-    and certificate cannot both be true. ``subject`` is the whole that its network is a part of, as for
+    bound is proved only by taking on trust what user rules remove and require, the answer is left as it is.
+    Raises :class:`BugError` when a tree that the solver called optimal is not, and when answer and
+    certificate cannot both be true. ``subject`` is the whole that its network is a part of, as for
     :func:`~foon_asp.certificate.certify`.
     """
     began = time.perf_counter()
@@ -39,32 +39,32 @@ def certify_outcome(
     plans = outcome.problem.items is not None
     if plans:
         covered = covered_for_plans(covered)
-    found = _certified(outcome, settings, covered, expired, subject)
+    certificate = _certified(outcome, settings, covered, expired, subject)
     if (
         not plans
         and covered.not_covered
-        and (found is None or found.claim == "bound")
+        and (certificate is None or certificate.claim == "bound")
         and outcome.proof is not None
     ):
         from foon_asp.certificate.own_rules import with_own_rules  # noqa: PLC0415 - it loads clingo
 
-        more = with_own_rules(covered, outcome.problem, settings)
-        trusting = None if more is None else _certified(outcome, settings, more, expired)
-        if more is not None and trusting is not None and trusting.claim != "bound":
-            covered, found = more, trusting
+        with_own = with_own_rules(covered, outcome.problem, settings)
+        trusting = None if with_own is None else _certified(outcome, settings, with_own, expired)
+        if with_own is not None and trusting is not None and trusting.claim != "bound":
+            covered, certificate = with_own, trusting
     outcome.seconds["certificate"] = time.perf_counter() - began
-    if found is not None:
-        why = _at_odds(outcome, found, covered)
+    if certificate is not None:
+        why = _at_odds(outcome, certificate, covered)
         if why is not None:
             raise _contradiction(outcome, settings, why)
-    if found is None or found.claim == "bound" or trusted(found.content):
-        return outcome, found
-    complete = found.claim == "infeasible" or found.certified == levels(outcome.objectives)
+    if certificate is None or certificate.claim == "bound" or trusted(certificate.content):
+        return outcome, certificate
+    complete = certificate.claim == "infeasible" or certificate.certified == levels(outcome.objectives)
     if complete and outcome.status is Status.FEASIBLE and outcome.costs is not None:
-        bounds = {objective: outcome.costs.measure(objective) for objective in found.certified}
+        bounds = {objective: outcome.costs.measure(objective) for objective in certificate.certified}
         outcome = outcome._replace(status=Status.OPTIMAL, bounds=bounds, stopped=None)
     proof = Proof.CERTIFICATE if complete else outcome.proof
-    return outcome._replace(proof=proof, certified=found.certified), found
+    return outcome._replace(proof=proof, certified=certificate.certified), certificate
 
 
 def _certified(
@@ -74,7 +74,7 @@ def _certified(
     expired: Callable[[], bool],
     subject: Subject | None = None,
 ) -> Certificate | None:
-    """Find a certificate among trees that keep to what is covered."""
+    """Return a certificate about the trees that keep to the covered rules; ``None`` where none is found."""
     if outcome.problem.items is not None:
         return _certified_plan(outcome, covered, expired)
     if outcome.status is Status.INFEASIBLE:
@@ -92,7 +92,7 @@ def _certified(
 
 
 def _certified_plan(outcome: Outcome, covered: Coverage, expired: Callable[[], bool]) -> Certificate | None:
-    """Find a certificate among plans that keep to what is covered; also of a plan at a limit."""
+    """Return a certificate about the plans that keep to the covered rules, also of a plan at a limit."""
     if outcome.status is Status.INFEASIBLE:
         return certify_no_plan(outcome.problem, covered, expired)
     if outcome.units is None:
@@ -108,8 +108,8 @@ def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> s
     """
     problem, content = outcome.problem, certificate.content
     goals = tuple(goal["id"] for goal in content["goals"])
-    asked = tuple(map(problem.network.object_number, problem.goals))
-    if (goals, content["containers"]) != (asked, str(problem.containers)):
+    goals_asked = tuple(map(problem.network.object_number, problem.goals))
+    if (goals, content["containers"]) != (goals_asked, str(problem.containers)):
         return f"the certificate speaks of the goals {list(goals)} under {content['containers']} containers"
     if outcome.units is None:
         return None if certificate.claim == "infeasible" else f"the certificate claims {certificate.claim}"
@@ -142,34 +142,34 @@ def _costs_at_odds(
 def _read(arrays: Arrays, stated: Sequence[Any]) -> Vector:
     """Read a bound as certificates state it back into a cost."""
     vector: list[Fraction] = []
-    for objective, part in zip(arrays.objectives, stated, strict=True):
+    for objective, stated_part in zip(arrays.objectives, stated, strict=True):
         if multiplies(objective):
-            vector += [Fraction(part.get(str(rate), 0)) for rate in arrays.rates]
+            vector += [Fraction(stated_part.get(str(rate), 0)) for rate in arrays.rates]
         else:
-            vector.append(Fraction(part))
+            vector.append(Fraction(stated_part))
     return tuple(vector)
 
 
 def _contradiction(outcome: Outcome, settings: Settings, why: str) -> BugError:
-    """Say that the solver's answer is not true, with all that asking again takes but the data."""
+    """Return an error for a wrong answer of the solver, with the question but without the data."""
     problem = outcome.problem
-    asked = [
+    question = [
         f"goals: {' | '.join(str(problem.network.objects[goal]) for goal in problem.goals)}",
         f"containers: {problem.containers}, level {problem.network.level}",
         f"objectives: {', '.join(levels(outcome.objectives))}",
         f"network: {len(problem.network)} units, {len(problem.network.objects)} object nodes",
         f"kitchen: {len(problem.kitchen)} items",
     ]
-    asked += [f"constraint: {file}" for file in settings.constraints]
-    asked += [f"constant: {constant}" for constant in settings.constants]
+    question += [f"constraint: {file}" for file in settings.constraints]
+    question += [f"constant: {constant}" for constant in settings.constants]
     if settings.replaced is not None:
-        asked.append(f"encodings: {settings.replaced}")
+        question.append(f"encodings: {settings.replaced}")
     answer = "no tree" if outcome.units is None else _tree(outcome, outcome.units)
-    return BugError(f"the answer is {outcome.status}, {answer}, but {why}\n" + "\n".join(asked))
+    return BugError(f"the answer is {outcome.status}, {answer}, but {why}\n" + "\n".join(question))
 
 
 def _tree(outcome: Outcome, units: Sequence[int]) -> str:
-    """Name a tree and its costs."""
+    """Return the description of a tree and its costs."""
     return f"the units {list(units)} ({_figures(outcome.problem, units)})"
 
 

@@ -1,4 +1,4 @@
-"""What shrinking rules of the user's own limit: sums of units, and units that together break one."""
+"""Limits by antimonotone user rules: sums over units, and minimal sets of units that break a rule."""
 
 from collections.abc import Iterable
 from fractions import Fraction
@@ -17,10 +17,10 @@ from foon_asp.rules.rules import Rules
 
 
 class OwnLimits:
-    """Limits that follow from shrinking rules of the user's own: ``known`` are those found so far.
+    """Limits that follow from antimonotone user rules; ``found_limits`` are those found so far.
 
-    First these are the sums that rules limit. Others are found of units that break a rule: of the fewest of
-    these that do, a tree has all but one at most.
+    At first they are the sums that rules limit. Further limits come from minimal sets of units that break a
+    rule: a tree lacks at least one unit of each set.
     """
 
     def __init__(
@@ -31,9 +31,9 @@ class OwnLimits:
         own: frozenset[Constraint],
         covered: Iterable[Limit],
     ) -> None:
-        """Look at the rules of a question, of which some constraints are the user's ``own``.
+        """Read the rules of a question, of which the constraints ``own`` are user rules.
 
-        What follows from limits that are ``covered`` is left out.
+        Limits that follow from the ``covered`` ones are left out.
         """
         self._problem, self._deadline = problem, settings.begun
         numbered, relaxed = relax(
@@ -48,27 +48,32 @@ class OwnLimits:
         self._program = program._replace(files=(question_encoding("breaking_units.lp"), *others))
         self._any = bool(theirs)
         self._local = all(rule.local for rule in rules.rules if rule.source in shrinking)
-        self.known: list[Limit] = []
+        self.found_limits: list[Limit] = []
         if self._any:
-            found = (each for each in rules.limits(problem) if not each.at_least)
-            limits = [({u: Fraction(n) for u, n in each.weights.items() if n}, each.bound) for each in found]
+            sums = (sum_limit for sum_limit in rules.limits(problem) if not sum_limit.at_least)
+            limits = [
+                ({u: Fraction(n) for u, n in sum_limit.weights.items() if n}, sum_limit.bound)
+                for sum_limit in sums
+            ]
             stated = [*covered]
-            self.known = [
-                (amounts, Fraction(most))
-                for amounts, most in limits
-                if not any(m <= most and all(a.get(u, 0) >= n for u, n in amounts.items()) for a, m in stated)
+            self.found_limits = [
+                (amounts, Fraction(max_sum))
+                for amounts, max_sum in limits
+                if not any(
+                    m <= max_sum and all(a.get(u, 0) >= n for u, n in amounts.items()) for a, m in stated
+                )
             ]
 
     def exceeded(self, units: frozenset[int]) -> Limit | None:
-        """Return a limit that units exceed, and know it from now on; ``None`` where they keep to the rules.
+        """Return a limit that units exceed, and record it; ``None`` where they keep to the rules.
 
-        Raises ``KeyboardInterrupt`` at a limit of time.
+        Raises ``KeyboardInterrupt`` where time is up.
         """
         if not self._any:
             return None
         network = self._problem.network
         seen = units if self._local else units.union(reach(self._problem).units)
-        asked = Prepared(
+        question = Prepared(
             self._problem,
             (Objective.UNITS,),
             self._settings,
@@ -76,7 +81,7 @@ class OwnLimits:
             self._program,
             tuple(sorted(seen)),
         )
-        ended = asked.run(write_given(list(map(network.unit_number, sorted(units)))))
+        ended = question.run(write_given(list(map(network.unit_number, sorted(units)))))
         if ended.units is None:
             if not ended.exhausted:
                 self._deadline.check()
@@ -84,5 +89,5 @@ class OwnLimits:
             return None
         fewest = {network.unit_of_number(number) for number in ended.units}
         limit: Limit = ({unit: Fraction(1) for unit in sorted(units & fewest)}, Fraction(len(fewest) - 1))
-        self.known.append(limit)
+        self.found_limits.append(limit)
         return limit

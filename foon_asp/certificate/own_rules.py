@@ -1,4 +1,4 @@
-"""What rules of the user's own remove and ask for: taken on trust by certificates, and checked by clingo."""
+"""Removals and requirements by user rules: taken on trust by certificates, and checked by clingo."""
 
 import hashlib
 from collections.abc import Mapping, Sequence
@@ -21,39 +21,41 @@ from foon_asp.proof.verify import LimitError, RefusedError, canonical
 from foon_asp.reduce import NONE
 from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint, named_constraint
 
-_GREATEST = 2**31 - 1  # number of clingo's
+_GREATEST = 2**31 - 1  # the greatest number of clingo
 
 
 def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> Coverage | None:
-    """Cover rules of the user's own by what they remove and ask for; ``None`` where nothing is known of that.
+    """Return the coverage with user rules as claims about removed and required units.
 
-    What the covered rules remove and ask for already is left out, since it is not taken on trust. What
-    shrinking rules limit is found while a proof is.
+    Claims that follow from covered rules are left out, since they need no trust. Limits by antimonotone rules
+    are found during the proof. ``None`` where the meaning of the rules is not known.
     """
     rules = assemble(settings, lambda _: None).understood
     if rules is None:
         return None
-    found = rules.applied(problem)
+    applied = rules.applied(problem)
     claims: list[list[list[int]]] = []
-    if isinstance(found, Contradiction):
+    if isinstance(applied, Contradiction):
         claims.append([[], []])
     else:
         ruled = covered.ruled(problem)
-        asked = {frozenset(makers) for makers in ruled.makers.values()}
-        gone = (u for u in range(len(problem.network)) if u not in ruled.removed and found.removed(u))
+        required = {frozenset(makers) for makers in ruled.makers.values()}
+        gone = (u for u in range(len(problem.network)) if u not in ruled.removed and applied.removed(u))
         claims += ([[unit], []] for unit in gone)
-        claims += ([[], sorted(units)] for units in found.required if units not in asked)
-    given = [find_constraint(each) for each in settings.constraints]
+        claims += ([[], sorted(units)] for units in applied.required if units not in required)
+    constraints = [find_constraint(constraint) for constraint in settings.constraints]
     own: dict[str, Any] = {
         "rule": OWN,
         "claims": claims,
         "limits": [],
         "constants": sorted(set(settings.constants)),
-        "files": [_file(each) for each in dict.fromkeys(given) if not _is_library(each)],
-        "library": sorted({_written(each) for each in given if _is_library(each)}),
+        "files": [
+            _file(constraint) for constraint in dict.fromkeys(constraints) if not _is_library(constraint)
+        ],
+        "library": sorted({_written(constraint) for constraint in constraints if _is_library(constraint)}),
     }
-    theirs = frozenset(each for each in given if not _is_library(each))
-    stated = [(limit.amounts, limit.most) for limit in covered.ruled(problem).limits.values()]
+    theirs = frozenset(constraint for constraint in constraints if not _is_library(constraint))
+    stated = [(limit.amounts, limit.max_sum) for limit in covered.ruled(problem).limits.values()]
     limits = OwnLimits(problem, settings, rules, theirs, stated)
     return Coverage(tuple(sorted((*covered.rules, own), key=canonical)), limits=limits)
 
@@ -61,36 +63,37 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
 def check_with_clingo(
     content: Mapping[str, Any], own: Rule, problem: Problem, deadline: Deadline | None = None
 ) -> None:
-    """Let clingo check what a certificate takes on trust; the problem is the one that it is about.
+    """Check with clingo the claims that a certificate of a problem takes on trust.
 
-    Asks for a tree that keeps to the rules and of which a claim is not true, and whether its own tree keeps
-    to them. Raises :class:`RefusedError` where something is not true, and where clingo cannot be asked.
+    Clingo searches for a tree that keeps to the rules and violates a claim, and checks that the certificate's
+    tree keeps to the rules. Raises :class:`RefusedError` where a claim is false or clingo cannot run, and
+    :class:`LimitError` where it does not finish.
     """
-    given = [RuleText(file["text"]) for file in own["files"]]
-    found = (*given, *map(named_constraint, own["library"]))
-    how = Settings(found, constants=tuple(own["constants"]), reductions=NONE, deadline=deadline)
+    texts = [RuleText(file["text"]) for file in own["files"]]
+    constraints = (*texts, *map(named_constraint, own["library"]))
+    settings = Settings(constraints, constants=tuple(own["constants"]), reductions=NONE, deadline=deadline)
     bodies = [_claim(*claim) for claim in own["claims"]] + [_beyond(*limit) for limit in own["limits"]]
     wrong = "".join(f"_wrong :- {body}.\n" for body in bodies)
-    if wrong and _some_tree(content, problem, how, f"{wrong}:- not _wrong.\n"):
+    if wrong and _some_tree(content, problem, settings, f"{wrong}:- not _wrong.\n"):
         raise RefusedError("what is taken on trust is not true: clingo finds a tree without it")
     if content["tree"] is not None:
         chosen = set(content["tree"])
         fixed = (f":- {'not ' * (u in chosen)}use({u}).\n" for u in range(len(problem.network)))
-        if not _some_tree(content, problem, how, "".join(fixed)):
+        if not _some_tree(content, problem, settings, "".join(fixed)):
             raise RefusedError("the tree does not keep to the rules: clingo says so")
 
 
-def _some_tree(content: Mapping[str, Any], problem: Problem, how: Settings, rules: str) -> bool:
-    """Ask clingo whether there is a tree that keeps to more rules, among all units that can be made."""
+def _some_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, rules: str) -> bool:
+    """Return whether clingo finds a tree that keeps to additional rules, among all executable units."""
     ours = set(Objective)
     objectives = tuple(Objective(name) for name in content["objective"] if name in ours)
     try:
-        found = solve(problem, objectives, how._replace(bounded=Bounded(rules, ())))
+        outcome = solve(problem, objectives, settings._replace(bounded=Bounded(rules, ())))
     except UserError as error:
         raise RefusedError(f"clingo cannot be asked what is taken on trust: {error}") from None
-    if found.status is Status.UNKNOWN:
+    if outcome.status is Status.UNKNOWN:
         raise LimitError("clingo does not finish with what is taken on trust")
-    return found.status is not Status.INFEASIBLE
+    return outcome.status is not Status.INFEASIBLE
 
 
 def _claim(used: list[int], without: list[int]) -> str:
@@ -98,12 +101,12 @@ def _claim(used: list[int], without: list[int]) -> str:
     return ", ".join(literals) or "#true"
 
 
-def _beyond(amounts: Mapping[str, Sequence[int]], most: int) -> str:
-    """Say that units come to more than a limit; raises :class:`LimitError` for what clingo cannot add up."""
+def _beyond(amounts: Mapping[str, Sequence[int]], max_sum: int) -> str:
+    """Return an aggregate that exceeds a limit; raises :class:`LimitError` for sums too large for clingo."""
     counted = [(int(amount), unit) for amount, units in amounts.items() for unit in units]
-    if max(sum(amount for amount, _ in counted), abs(most)) > _GREATEST:
+    if max(sum(amount for amount, _ in counted), abs(max_sum)) > _GREATEST:
         raise LimitError("clingo cannot add up what a limit counts")
-    return f"#sum {{ {'; '.join(f'{amount},{unit} : use({unit})' for amount, unit in counted)} }} > {most}"
+    return f"#sum {{ {'; '.join(f'{amount},{unit} : use({unit})' for amount, unit in counted)} }} > {max_sum}"
 
 
 def _is_library(constraint: Constraint) -> bool:
@@ -115,7 +118,7 @@ def _written(constraint: Constraint) -> str:
 
 
 def _file(constraint: Constraint) -> dict[str, str]:
-    """Return the text of rules; of a file that includes others, all that it says."""
+    """Return the text of rules with its digest; a file that includes others is expanded."""
     if isinstance(constraint, Path):
         alone = len(included_files(constraint)) == 1
         text = constraint.read_text("utf-8") if alone else read_encoding(constraint).text

@@ -1,4 +1,4 @@
-"""Certificates of plans, where items are used up: what is asked as plain arrays, and proofs as JSON."""
+"""Certificates of plans with consumable items: the question as plain arrays, and its proofs as JSON."""
 
 import math
 from collections import Counter
@@ -32,12 +32,12 @@ from foon_asp.proof.verify_plan import FINE, PLAN, RULES
 
 _LARGEST = 10**9  # a cost of a unit, as a whole number that conditions are written with
 _DIGITS = 60  # of a logarithm
-_NEAR = 1e-6
+_TOLERANCE = 1e-6
 _HALF = Fraction(1, 2)
 
 
 def covered_for_plans(covered: Coverage) -> Coverage:
-    """Leave to what is not covered the rules that plans are not held against by certificates."""
+    """Return the coverage with the rules that certificates of plans cannot check moved to ``not_covered``."""
     rules = tuple(rule for rule in covered.rules if rule["rule"] in RULES)
     others = {verify.canonical(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN}
     return Coverage(rules, tuple(sorted({*covered.not_covered, *others})))
@@ -50,10 +50,10 @@ def certify_plan(
     covered: Coverage = NOTHING,
     expired: Callable[[], bool] = lambda: False,
 ) -> Certificate | None:
-    """Prove a plan optimal by as many objectives from the first as can be, or a bound by the first.
+    """Return a certificate that a plan is optimal by the first objectives, as many as are proved, or a bound.
 
-    ``plan`` lists units in the order of execution. ``None`` where nothing is proved before ``expired`` says
-    so, and for objectives that need rates with rates of 0, or with rates that are not those of the motions.
+    ``plan`` lists units in the order of execution. ``None`` where nothing is proved before time is up, and
+    for objectives that need rates where a rate is 0 or is not that of a motion.
     """
     if problem.own_rates and (covered.rules or any(o.row.needs is Known.RATES for o in objectives)):
         return None
@@ -62,10 +62,10 @@ def certify_plan(
     for objective in objectives:
         if objective.row.needs is Known.RATES and not all(map(problem.rate, range(len(problem.network)))):
             break
-        found = question.prove(objective, certified)
-        if found is None:
+        proved = question.prove(objective, certified)
+        if proved is None:
             break
-        proof, least = found
+        proof, least = proved
         if least is not None:
             return question.write("bound", [objective], [proof], plan, [least])
         certified.append(objective)
@@ -80,7 +80,7 @@ def certify_plan(
 def certify_no_plan(
     problem: Problem, covered: Coverage = NOTHING, expired: Callable[[], bool] = lambda: False
 ) -> Certificate | None:
-    """Prove that there is no plan; ``None`` where that is not proved before ``expired`` says so."""
+    """Return a certificate that there is no plan; ``None`` where that is not proved before time is up."""
     if covered.rules and problem.own_rates:
         return None
     question = _Question(problem, covered_for_plans(covered), (), expired)
@@ -89,7 +89,7 @@ def certify_no_plan(
 
 
 class _Question:
-    """What is asked of plans, in numbers: the units that can matter are actions, by place."""
+    """A question about plans as arrays; its actions are the relevant units, by their index."""
 
     def __init__(
         self, problem: Problem, covered: Coverage, plan: Sequence[int], expired: Callable[[], bool]
@@ -100,30 +100,33 @@ class _Question:
         self._cuts: dict[tuple[int, ...], int] = {}
         self._balanced: set[int] = set()
         required = tuple(frozenset(ruled.makers[goal]) for goal in ruled.goals)
-        there = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
-        left = Restriction(ruled.removed.__contains__, required)
-        self._lasting = replace(problem, kitchen=there, restriction=left)
+        initial = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
+        restriction = Restriction(ruled.removed.__contains__, required)
+        self._lasting = replace(problem, kitchen=initial, restriction=restriction)
         self._reached = reached = reach(self._lasting)
         self._units = sorted(reached.units if required else relevant_to_plans(problem, reached))
-        self._adders: dict[int, list[int]] = {}
+        self._achievers: dict[int, list[int]] = {}
         for unit, flow in enumerate(problem.flows):
             for o in flow.adds:
-                self._adders.setdefault(o, []).append(unit)
+                self._achievers.setdefault(o, []).append(unit)
         self._limits: list[tuple[int, SumLimit, int]] = []  # place of the rule, the sum and its scale
-        for place, limit in ruled.limits.items():
-            scale = math.lcm(limit.most.denominator, *(each.denominator for each in limit.amounts.values()))
+        for rule_number, limit in ruled.limits.items():
+            scale = math.lcm(
+                limit.max_sum.denominator, *(amount.denominator for amount in limit.amounts.values())
+            )
             weights = {a: int(limit.amounts.get(unit, 0) * scale) for a, unit in enumerate(self._units)}
             weights = {a: weight for a, weight in weights.items() if weight}
-            self._limits.append((place, (weights, int(limit.most * scale), False, False), scale))
+            self._limits.append((rule_number, (weights, int(limit.max_sum * scale), False, False), scale))
 
     # --- finding
 
     def prove(self, objective: Objective, before: Sequence[Objective]) -> tuple[Any, Vector | None] | None:
-        """Prove what the plan costs by an objective, of all that are as good by those before.
+        """Return a proof that no plan as good by the objectives before costs less than the incumbent.
 
-        Gives the proof, and by the first objective the bound where that is less.
+        Also returns the bound, where by the first objective only a smaller one is proved. ``None`` without a
+        proof.
         """
-        kept = [self._level(each) for each in before]
+        kept = [self._level(earlier) for earlier in before]
         if any(level is None for level in kept):
             return None
         levels = [level for level, _ in filter(None, kept)]
@@ -133,17 +136,17 @@ class _Question:
             return {}, None  # nothing costs less than nothing
         prover = self._prover([a for a, unit in enumerate(self._units) if unit in self._plan])
         measure = Measure([0] * len(self._units), objective.row.item)
-        found = prover.prove_claim(claim, measure, levels)
-        if found is None:
+        proved = prover.prove_claim(claim, measure, levels)
+        if proved is None:
             return None
-        proof, least, columns = found
+        proof, least, columns = proved
         if least != claim.least and before:
             return None
         stated = _Stated(self, claim.order if multiplies(objective) else None, levels, scales, columns)
         return stated.proof(proof), None if least == claim.least else least
 
     def prove_none(self) -> Any | None:
-        """Prove that there is no plan."""
+        """Return a proof that there is no plan; ``None`` where none is found."""
         problem, ruled = self._problem, self._ruled
         if ruled.never:
             return {}
@@ -157,8 +160,8 @@ class _Question:
         claim = Claim(order, nothing, order.zero, None, None, [None] * len(nothing))
         tree = first_tree(self._lasting, self._reached) or ()
         prover = self._prover([a for a, unit in enumerate(self._units) if unit in tree])
-        found = prover.prove_claim(claim, Measure([0] * len(nothing)), ())
-        return None if found is None else _Stated(self, None, (), (), found[2]).proof(found[0])
+        proved = prover.prove_claim(claim, Measure([0] * len(nothing)), ())
+        return None if proved is None else _Stated(self, None, (), (), proved[2]).proof(proved[0])
 
     def _prover(self, derivation: Sequence[int]) -> PlanProver:
         flows: Flows = flows_of(self._problem, self._units)
@@ -173,17 +176,17 @@ class _Question:
         return list(map(Fraction, self._problem.figures(objective, self._units)))
 
     def _claim(self, objective: Objective) -> Claim:
-        """Return what is to be proved: that no plan costs less than the one in hand."""
+        """Return the claim that no plan costs less than the incumbent."""
         problem, figures = self._problem, self._figures(objective)
         if multiplies(objective):
             rates = sorted({rate for rate in figures if rate != 1}) or [_HALF]
             order = Lexicographic([rates])
             counts = Counter(problem.rate(unit) for unit in self._plan)
             least = tuple(Fraction(counts[rate]) for rate in rates)
-            costs = [tuple(Fraction(rate == each) for each in rates) for rate in figures]
+            costs = [tuple(Fraction(rate == own_rate) for own_rate in rates) for rate in figures]
             whole = order.approximate(least)[0]
-            each_float = (order.approximate(cost)[0] for cost in costs)
-            caps = [math.floor(whole / cost + _NEAR) if cost else None for cost in each_float]
+            float_costs = (order.approximate(cost)[0] for cost in costs)
+            caps = [math.floor(whole / cost + _TOLERANCE) if cost else None for cost in float_costs]
             return Claim(order, costs, order.zero, least, None, caps)
         cost = Fraction(problem.costs(self._plan).measure(objective))
         parts = None
@@ -195,12 +198,12 @@ class _Question:
         return Claim(order, [(f,) for f in figures], (Fraction(objective.row.item),), (cost,), parts, caps)
 
     def _level(self, objective: Objective) -> tuple[Level, int] | None:
-        """Return what plans may cost by an objective in whole numbers, and how many make up 1."""
+        """Return the level of the incumbent by an objective in whole numbers, and its scale."""
         figures = self._figures(objective)
         if multiplies(objective):
             costs = [_fine(rate, up=False) for rate in figures]
-            most = sum(_minus_log(self._problem.rate(unit), up=True) for unit in self._plan)
-            return Level(Measure(costs), Fraction(0), math.ceil(FINE * most)), FINE
+            max_cost = sum(_minus_log(self._problem.rate(unit), up=True) for unit in self._plan)
+            return Level(Measure(costs), Fraction(0), math.ceil(FINE * max_cost)), FINE
         cost = Fraction(self._problem.costs(self._plan).measure(objective))
         scale = math.lcm(cost.denominator, *(figure.denominator for figure in figures))
         if scale * max(figures, default=0) > _LARGEST:
@@ -211,11 +214,11 @@ class _Question:
     # --- writing
 
     def cut(self, objects: Iterable[int]) -> int:
-        """Return the number of a cut, which is noted."""
+        """Return the number of a cut, which is added to the certificate."""
         return self._cuts.setdefault(tuple(sorted(set(objects))), len(self._cuts))
 
     def balance(self, o: int) -> int:
-        """Record that the balance of an object is used."""
+        """Record that the proof uses the balance of an object, and return the object."""
         self._balanced.add(o)
         return o
 
@@ -224,29 +227,29 @@ class _Question:
         return self._units[action]
 
     def limit(self, number: int) -> tuple[int, int]:
-        """Return the place of the rule of a limit, and its scale."""
-        place, _, scale = self._limits[number]
-        return place, scale
+        """Return the number of the rule of a limit, and its scale."""
+        rule_number, _, scale = self._limits[number]
+        return rule_number, scale
 
     def _unreached(self) -> list[int]:
-        """Return nodes that nothing reaches, by which some units are known to be executed by no plan.
+        """Return unreachable nodes, which prove that some irrelevant units are executed by no plan.
 
-        Those are units that could cross a cut or add to what is balanced; each asks for one of the nodes.
+        These units could cross a cut or achieve a balanced node; each has one of the nodes as a precondition.
         """
         flows, units, removed = self._problem.flows, set(self._units), self._ruled.removed
         touched = {o for cut in self._cuts for o in cut} | self._balanced
         own = self._ruled.makers
         touched -= self._problem.endless  # of which only taking them crosses a cut
-        makers = (own[o] if o in own else self._adders.get(o, ()) for o in sorted(touched))
-        waiting = [u for each in makers for u in each if u not in units and u not in removed]
-        found: set[int] = set()
+        makers = (own[o] if o in own else self._achievers.get(o, ()) for o in sorted(touched))
+        waiting = [u for units_of in makers for u in units_of if u not in units and u not in removed]
+        unreached: set[int] = set()
         while waiting:
             asks = flows[waiting.pop()].asks
-            if found.isdisjoint(asks):
+            if unreached.isdisjoint(asks):
                 lacking = next(o for o in asks if not self._reached.available[o])
-                found.add(lacking)
-                waiting += (unit for unit in self._adders.get(lacking, ()) if unit not in removed)
-        return sorted(found)
+                unreached.add(lacking)
+                waiting += (unit for unit in self._achievers.get(lacking, ()) if unit not in removed)
+        return sorted(unreached)
 
     def write(
         self,
@@ -261,16 +264,16 @@ class _Question:
         items, network = problem.items, problem.network
         assert items is not None
         stock = sorted((o, problem.stock_of(o) or 0) for o in problem.kitchen - problem.endless)
-        told = ((name, stays) for name, stays in items.told.items() if isinstance(name, str))
+        stated_labels = ((name, stays) for name, stays in items.told.items() if isinstance(name, str))
         nodes = (
             (network.object_id(name), stays)
             for name, stays in items.told.items()
             if isinstance(name, ObjectNode)
         )
-        known = ((o, stays) for o, stays in nodes if o is not None)
+        stated_nodes = ((o, stays) for o, stays in nodes if o is not None)
         try:
             order = None if bound is None else self._claim(objectives[0]).order
-            stated = None if bound is None else [weight_text(each, order) for each in bound]
+            stated = None if bound is None else [weight_text(vector, order) for vector in bound]
         except verify.LimitError:
             return None
         return write(
@@ -283,14 +286,14 @@ class _Question:
             subject_of(problem),
             items={
                 "stock": [list(pair) for pair in stock],
-                "stays": [list(pair) for pair in (*sorted(told), *sorted(known))],
+                "stays": [list(pair) for pair in (*sorted(stated_labels), *sorted(stated_nodes))],
             },
             unreached=self._unreached(),
         )
 
 
 class _Stated:
-    """Proofs by counts as certificates state them."""
+    """The JSON of proofs by counts."""
 
     def __init__(
         self,
@@ -304,25 +307,25 @@ class _Stated:
         self._levels = [(level, scale) for level, scale in zip(levels, scales, strict=True)]
 
     def proof(self, proof: CountProof) -> Any:
-        """State a proof."""
+        """Return the JSON of a proof."""
         if isinstance(proof, Split):
             item = self._columns.get(proof.column)
             branch = {"unit": self._question.unit(proof.column)} if item is None else {"item": item}
             above, up_to = self.proof(proof.above), self.proof(proof.up_to)
-            return {"branch": branch, "most": proof.most, "up_to": up_to, "above": above}
-        found: dict[str, dict[tuple[int, ...], Vector]] = {}
+            return {"branch": branch, "most": proof.max_count, "up_to": up_to, "above": above}
+        by_kind: dict[str, dict[tuple[int, ...], Vector]] = {}
         for condition, weight in proof.weights:
-            kind, place, scale = self._place(condition)
-            scaled = tuple(scale * part for part in weight)
-            known = found.setdefault(kind, {}).get(place)
-            found[kind][place] = scaled if known is None else tuple(map(add, known, scaled))
+            kind, key, scale = self._key(condition)
+            scaled = tuple(scale * coordinate for coordinate in weight)
+            previous = by_kind.setdefault(kind, {}).get(key)
+            by_kind[kind][key] = scaled if previous is None else tuple(map(add, previous, scaled))
         return {
-            kind: [[*place, weight_text(weight, self._order)] for place, weight in sorted(weights.items())]
-            for kind, weights in found.items()
+            kind: [[*key, weight_text(weight, self._order)] for key, weight in sorted(weights.items())]
+            for kind, weights in by_kind.items()
         }
 
-    def _place(self, condition: Condition) -> tuple[str, tuple[int, ...], int]:
-        """Return what a condition is in a certificate, and by how much its weight counts more there."""
+    def _key(self, condition: Condition) -> tuple[str, tuple[int, ...], int]:
+        """Return the kind and key of a condition in a certificate, and the factor of its weight there."""
         question = self._question
         if isinstance(condition, Landmark):
             cut = question.cut(condition.objects)
@@ -332,14 +335,14 @@ class _Stated:
         if isinstance(condition, Balance):
             return "balance", (question.balance(condition.object),), 1
         if isinstance(condition, Sum):
-            place, scale = question.limit(condition.limit)
-            return "limits", (place,), scale
-        place = next(place for place, (level, _) in enumerate(self._levels) if level is condition)
-        return "levels", (place,), self._levels[place][1]
+            index, scale = question.limit(condition.limit)
+            return "limits", (index,), scale
+        index = next(index for index, (level, _) in enumerate(self._levels) if level is condition)
+        return "levels", (index,), self._levels[index][1]
 
 
 def weight_text(weight: Vector, order: Lexicographic | None) -> str | dict[str, str]:
-    """Write a weight by an objective: a number, or the exponents of rates."""
+    """Return the JSON of a weight by an objective: a number, or the exponents of rates."""
     rates = None if order is None else order.levels[0]
     if rates is None:
         return written(weight[0])
@@ -347,7 +350,7 @@ def weight_text(weight: Vector, order: Lexicographic | None) -> str | dict[str, 
 
 
 def _minus_log(rate: Fraction, up: bool) -> Fraction:
-    """Return ``-log(rate)``, at most or at least."""
+    """Return an upper or lower bound of ``-log(rate)``."""
     if rate == 1:
         return Fraction(0)
     about, off = minus_log(rate, _DIGITS)

@@ -160,7 +160,7 @@ class _Search:
             subproblem = reduce(relaxed, self._order, expired=lambda: deadline.passed, brief=True).wide
             if subproblem is None:
                 return None
-            units = subproblem.within(subproblem.costs.of(costs), lambda: deadline.passed)
+            units = subproblem.units_within(subproblem.costs.of(costs), lambda: deadline.passed)
             deadline.check()
             open_nodes = nearby.open_to(units)
             if not open_nodes:

@@ -1,4 +1,4 @@
-"""What the ready-made constraints say of a tree, read from the plain network.
+"""The meanings of the ready-made constraints, computed from the plain network.
 
 This is what a certificate is checked by, so nothing of clingo is here: each constraint of
 ``encodings/constraints`` is a few lines of Python, and :data:`LIBRARY` lists them. docs/dev/certificates.md
@@ -19,10 +19,10 @@ Barred = Callable[[Units, Units], Units]
 
 
 class Question(NamedTuple):
-    """What constraints look at.
+    """The data that constraints depend on.
 
-    ``rate`` and ``price`` tell the success rate and the price of a unit, ``None`` where it is not known,
-    ``needs`` and ``gives`` the nodes that it needs and makes.
+    ``rate`` and ``price`` return the success rate and the price of a unit, ``None`` where it is not known,
+    ``needs`` and ``gives`` its preconditions and add effects.
     """
 
     network: Network
@@ -63,20 +63,20 @@ class Question(NamedTuple):
 
 
 class Meaning(NamedTuple):
-    """What a constraint says of the trees that keep to it, all of it together.
+    """The meaning of a constraint: conditions on the trees that keep to it, all of them together.
 
-    They have no unit of ``removed``. Each of the ``wanted`` lists alternatives, and of one of them a tree
-    has a unit of each set. The ``things`` that it uses come to at most ``most``: a thing is a set of units
-    and how much it counts, not below 0, and is used by a tree that has one of the units. Where ``never`` is
-    true, there is no such tree. A tree with all units of one set and none of another has none of the units
-    that ``barred`` gives for the two. Each of the ``limits`` says how much units count, not below 0, and what
-    those of a tree come to at most.
+    They have no unit of ``removed``. Each of the ``wanted`` lists alternatives, and of one of them a tree has
+    a unit of each set. The amounts of the ``things`` that it uses add up to at most ``max_sum``: a thing is a
+    set of units with an amount from 0, and a tree uses it that has one of the units. Where ``never`` is true,
+    there is no such tree. A tree with all units of one set and none of another has none of the units that
+    ``barred`` returns for the two. Each of the ``limits`` has the amounts of units, from 0, and their
+    greatest sum.
     """
 
     removed: Units = frozenset()
     wanted: Sequence[Sequence[Sequence[Units]]] = ()
     things: Sequence[tuple[Units, Fraction]] = ()
-    most: Fraction | None = None
+    max_sum: Fraction | None = None
     never: bool = False
     barred: Barred | None = None
     limits: Sequence[tuple[Mapping[int, Fraction], Fraction]] = ()
@@ -96,14 +96,14 @@ class Constraint(NamedTuple):
 
 
 def meaning(rule: Rule, question: Question) -> Meaning:
-    """Return what a constraint with its values says, or what is claimed of rules of the user's own."""
+    """Return the meaning of a constraint with its values, or of the claims about user rules."""
     if rule["rule"] == OWN:
         return own(rule)
     return LIBRARY[rule["rule"]].meaning(question, **_values(rule))
 
 
 def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
-    """Return what a constraint looks at of the places of each unit; ``None`` where it does not."""
+    """Return the sources of each unit that a constraint depends on; ``None`` where it depends on none."""
     places = None if rule["rule"] == OWN else LIBRARY[rule["rule"]].places
     if places is None:
         return None
@@ -192,18 +192,18 @@ def _require_intermediate(question: Question, required_intermediate: str) -> Mea
     return Meaning(wanted=[wanted])
 
 
-def _each(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
+def _one_each(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
     """Return units as things of their own that count 1 each."""
     one = Fraction(1)
     return [(frozenset({unit}), one) for unit in sorted(units)]
 
 
 def _at_most_units(question: Question, max_units: int) -> Meaning:
-    return Meaning(things=_each(range(len(question.network))), most=Fraction(max_units))
+    return Meaning(things=_one_each(range(len(question.network))), max_sum=Fraction(max_units))
 
 
 def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> Meaning:
-    return Meaning(things=_each(question.with_motion(limited_motion)), most=Fraction(max_uses))
+    return Meaning(things=_one_each(question.with_motion(limited_motion)), max_sum=Fraction(max_uses))
 
 
 def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
@@ -211,16 +211,16 @@ def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
     labels = {o: node.label for o, node in enumerate(network.objects) if node.label in utensils}
     touching: dict[str, list[int]] = {label: [] for label in sorted(utensils)}
     for unit, sides in enumerate(zip(network.inputs, network.outputs, strict=True)):
-        for label in {labels[o] for side in sides for o in side if o in labels}:
+        for label in {labels[o] for nodes in sides for o in nodes if o in labels}:
             touching[label].append(unit)
     one = Fraction(1)
-    each = [(frozenset(units), one) for units in touching.values() if units]
-    return Meaning(things=each, most=Fraction(max_utensils))
+    touched = [(frozenset(units), one) for units in touching.values() if units]
+    return Meaning(things=touched, max_sum=Fraction(max_utensils))
 
 
 def _at_most_utensil_uses(question: Question, limited_utensil: str, max_utensil_uses: int) -> Meaning:
     units = question.touching(question.labelled(limited_utensil))
-    return Meaning(things=_each(units), most=Fraction(max_utensil_uses))
+    return Meaning(things=_one_each(units), max_sum=Fraction(max_utensil_uses))
 
 
 def _at_most_price(question: Question, max_price: int) -> Meaning:
@@ -228,12 +228,12 @@ def _at_most_price(question: Question, max_price: int) -> Meaning:
     prices = {unit: question.price(unit) for unit in range(len(question.network))}
     unknown = frozenset(unit for unit, price in prices.items() if price is None)
     things = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
-    return Meaning(unknown, things=things, most=Fraction(max_price))
+    return Meaning(unknown, things=things, max_sum=Fraction(max_price))
 
 
 def _not_both_motions(question: Question, one_motion: str, other_motion: str) -> Meaning:
     motions = [question.with_motion(motion) for motion in (one_motion, other_motion)]
-    return Meaning(things=[(units, Fraction(1)) for units in motions], most=Fraction(1))
+    return Meaning(things=[(units, Fraction(1)) for units in motions], max_sum=Fraction(1))
 
 
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
@@ -248,35 +248,35 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
     later = question.with_motion(later_motion) - first
 
     def early(used: Units) -> set[int | None]:
-        at_hand: set[int | None] = set(question.kitchen)
+        available: set[int | None] = set(question.kitchen)
         waiting = used - first
-        while runs := {unit for unit in waiting if needs(unit) <= at_hand}:
-            at_hand.update(o for unit in runs for o in gives(unit))
+        while runs := {unit for unit in waiting if needs(unit) <= available}:
+            available.update(o for unit in runs for o in gives(unit))
             waiting -= runs
-        return at_hand
+        return available
 
     def barred(used: Units, without: Units) -> Units:
-        at_hand = early(used)
+        available = early(used)
         late: set[int | None] = set()
         stack = list(first - without)
         for unit in stack:  # grows while it is walked through
-            for o in gives(unit) - at_hand - late:
+            for o in gives(unit) - available - late:
                 late.add(o)
-                takers = network.consumers[o] if o is not None else ()
-                stack += (u for u in takers if u not in without and o in needs(u))
+                consumers = network.consumers[o] if o is not None else ()
+                stack += (u for u in consumers if u not in without and o in needs(u))
         return frozenset(unit for unit in later if late.isdisjoint(needs(unit)))
 
     return Meaning(barred=barred)
 
 
-OWN = "own"  # in place of a constraint's name: rules of the user's own
+OWN = "own"  # in place of a constraint's name: user rules
 
 
 def own(rule: Rule) -> Meaning:
-    """Return what is claimed of rules of the user's own: no tree has all units of a set and none of another.
+    """Return the meaning of claims about user rules: no tree has all units of a set and none of another.
 
-    Nor more of units than a limit says. What follows of a claim on a branch: where all units of the first set
-    but one are used, and the second set is left out, that one is barred.
+    Limits are claims, too. On a branch, unit propagation applies: where all units of the first set but one
+    are used and the units of the second set are excluded, that one is barred.
     """
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]
@@ -284,13 +284,13 @@ def own(rule: Rule) -> Meaning:
     others = [(used, without) for used, without in claims if used and (len(used) > 1 or without)]
 
     def barred(used: Units, without: Units) -> Units:
-        left = [some - used for some, none in others if none <= without]
-        whole = [some for some, none in others if none <= without and some <= used]
-        return frozenset().union(*(one for one in left if len(one) == 1), *whole)
+        unused = [together - used for together, excluded in others if excluded <= without]
+        whole = [together for together, excluded in others if excluded <= without and together <= used]
+        return frozenset().union(*(one for one in unused if len(one) == 1), *whole)
 
     limits = [
-        ({unit: Fraction(amount) for amount, units in amounts.items() for unit in units}, Fraction(most))
-        for amounts, most in rule["limits"]
+        ({unit: Fraction(amount) for amount, units in amounts.items() for unit in units}, Fraction(max_sum))
+        for amounts, max_sum in rule["limits"]
     ]
     bars = barred if others else None
     return Meaning(frozenset().union(*removed), wanted, barred=bars, limits=limits)

@@ -31,12 +31,12 @@ class Executions:
         self.of = cache(self._of)
 
     def _of(self, unit: FunctionalUnit) -> Execution:
-        """Return what running a unit once does."""
+        """Return preconditions, consumption and add effects of one execution of a unit."""
         problem = self._problem
-        how = problem.containers, problem.utensils, problem.network
-        preconditions = tuple(dict.fromkeys(needed_inputs(unit, *how)))
+        rules = problem.containers, problem.utensils, problem.network
+        preconditions = tuple(dict.fromkeys(needed_inputs(unit, *rules)))
         stays = {node: self._items.fate(unit, node, problem.utensils).stays for node in preconditions}
-        made = dict.fromkeys(given_outputs(unit, *how))
+        made = dict.fromkeys(given_outputs(unit, *rules))
         return Execution(
             preconditions,
             tuple(node for node in preconditions if not stays[node]),
@@ -44,9 +44,9 @@ class Executions:
         )
 
     def is_endless(self, node: ObjectNode) -> bool:
-        """Whether a node never runs out: it is in the kitchen, and the stock does not count it."""
+        """Return whether a node is not consumable: it is in the kitchen, and the stock does not count it."""
         return self._problem.at_hand(node) and node not in self._items.stock
 
     def stock(self) -> Counter[ObjectNode]:
-        """Return how many copies of each node there are at first, of those that may run out."""
+        """Return the initial number of copies of each consumable node."""
         return Counter({n: count for n, count in self._items.stock.items() if self._problem.at_hand(n)})

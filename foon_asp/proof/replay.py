@@ -1,4 +1,4 @@
-"""Does a plan run where items are used up? Replayed copy by copy, in plain Python, without a solver."""
+"""Replay of a plan with consumable items, copy by copy, in plain Python and independent of the solver."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -20,17 +20,17 @@ class Copy(NamedTuple):
 class Shortage(NamedTuple):
     """The copy that is missing: of ``node``, at the position ``step`` (from 0), or at the end if ``None``.
 
-    ``taken`` are the positions of the steps that used up the copies there were, in order; where it is empty,
-    there never was one.
+    ``consumers`` are the positions of the steps that used up the copies, in order; where it is empty, there
+    never was a copy.
     """
 
     step: int | None
     node: ObjectNode
-    taken: tuple[int, ...]
+    consumers: tuple[int, ...]
 
 
 class Step(NamedTuple):
-    """What a step does: the copies that it uses up, those of what stays, and those that it makes."""
+    """A step that ran, with the copies that it uses up, those that it reads, and those that it makes."""
 
     unit: FunctionalUnit
     gone: tuple[Copy, ...]
@@ -39,11 +39,11 @@ class Step(NamedTuple):
 
 
 class Replay(NamedTuple):
-    """What a replay found: the ``steps`` that ran, and the ``shortage`` that stopped it, if one did.
+    """The result of a replay: the ``steps`` that ran, and the ``shortage`` that stopped it, if one did.
 
-    ``left`` are the copies there are after the last of these steps: those that were made, and what is left
-    of the stock. What never runs out is not in it. ``stock`` says how many copies of each node with a finite
-    stock the plan cannot do without.
+    ``left`` are the copies after the last step: those that were made, and those remaining of the stock, but
+    not of nodes that are not consumable. ``stock`` maps each node with a finite stock to the number of copies
+    that the plan needs.
     """
 
     steps: tuple[Step, ...]
@@ -53,7 +53,7 @@ class Replay(NamedTuple):
 
 
 def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
-    """Run a plan from the kitchen of a problem in which items are used up, and look for its goals at the end.
+    """Return the replay of a plan from the kitchen of a problem with consumable items, up to its goals.
 
     The kitchen never runs out, but for what the stock counts. A repeated unit runs again.
     """
@@ -69,10 +69,10 @@ def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
 
 
 def waits(replay: Replay) -> Iterator[set[int]]:
-    """Yield for each step, in order, the positions of those that have to be done before it.
+    """Yield for each step, in order, the positions of the steps that have to be done before it.
 
-    They made the copies that it takes, or read a copy that it uses up. Of what never runs out there is
-    always another copy.
+    These steps made the copies that it takes, or read a copy that it uses up. Nodes that are not consumable
+    always have another copy.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
     spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
@@ -90,27 +90,27 @@ def waits(replay: Replay) -> Iterator[set[int]]:
 def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
     """Return, for each copy that several steps need and leave there, the positions of these steps.
 
-    A copy is made by a step or in the stock: of what never runs out there is always another one, and so there
-    is of what ``is_free``, by its label.
+    A copy is made by a step or in the stock: nodes that are not consumable, and labels that ``is_free``
+    accepts, always have another copy.
     """
-    found: dict[tuple[Copy, int], list[int]] = {}
+    reading: dict[tuple[Copy, int], list[int]] = {}
     spent: Counter[Copy] = Counter()  # as in waits
     for number, step in enumerate(replay.steps):
         for copy in step.stayed:
             if (copy.made is not None or copy.node in replay.stock) and not is_free(copy.node.label):
-                found.setdefault((copy, spent[copy]), []).append(number)
+                reading.setdefault((copy, spent[copy]), []).append(number)
         spent.update(step.gone)
-    return [tuple(steps) for steps in found.values() if len(steps) > 1]
+    return [tuple(steps) for steps in reading.values() if len(steps) > 1]
 
 
 class _Kitchen:
-    """What is there: nodes without end, and single copies of others, the oldest first."""
+    """The state of the kitchen: nodes that are not consumable, and single copies of others, oldest first."""
 
     def __init__(self, problem: Problem) -> None:
         assert problem.items is not None
         self._goals, self._executions = problem.goal_nodes, Executions(problem)
         self._copies = {node: [Copy(node, None)] * n for node, n in self._executions.stock().items()}
-        self._taken: dict[ObjectNode, list[int]] = {}
+        self._consumers_of: dict[ObjectNode, list[int]] = {}
         self._made: Counter[ObjectNode] = Counter()  # copies made less copies used up
         self._least: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
 
@@ -128,8 +128,8 @@ class _Kitchen:
             missing = [node for node in self._goals if not self._has(node)]
             if missing:
                 shortage = self._shortage(None, missing[0])
-        left = tuple(copy for copies in self._copies.values() for copy in copies)
-        return Replay(tuple(steps), shortage, left, self._least)
+        remaining = tuple(copy for copies in self._copies.values() for copy in copies)
+        return Replay(tuple(steps), shortage, remaining, self._least)
 
     def _step(self, position: int, unit: FunctionalUnit) -> Step:
         preconditions, consumes, adds = self._executions.of(unit)
@@ -151,7 +151,7 @@ class _Kitchen:
         return Copy(node, None) if self._executions.is_endless(node) else None
 
     def _has(self, node: ObjectNode) -> bool:
-        """Whether a copy of a node is there, which is then one that the plan needs."""
+        """Return whether there is a copy of a node, and note that the plan needs it."""
         if self._endless(node):
             return True
         if node in self._least:
@@ -162,9 +162,9 @@ class _Kitchen:
         endless = self._endless(node)
         if endless:
             return endless
-        self._taken.setdefault(node, []).append(position)
+        self._consumers_of.setdefault(node, []).append(position)
         self._made[node] -= 1
         return self._copies[node].pop(0)
 
     def _shortage(self, step: int | None, node: ObjectNode) -> Shortage:
-        return Shortage(step, node, tuple(self._taken.get(node, ())))
+        return Shortage(step, node, tuple(self._consumers_of.get(node, ())))

@@ -1,4 +1,4 @@
-"""What constraints add to a network: nodes and steps of their own, and limits, in place of what they say."""
+"""Compilation of constraints into a network: additional nodes, steps and limits."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
@@ -8,14 +8,14 @@ from foon_asp.proof.constraint import Barred, Meaning, Units
 
 
 class Limit(NamedTuple):
-    """How much of a limit each unit or step takes, and how much there is."""
+    """A limit on a sum: the amount of each unit or step, and the greatest sum."""
 
     amounts: Mapping[int, Fraction]
-    most: Fraction
+    max_sum: Fraction
 
-    def left(self, used: Iterable[int]) -> Fraction:
-        """Return what is left of the limit where some units and steps are used."""
-        return self.most - sum(self.amounts.get(member, 0) for member in used)
+    def remaining(self, used: Iterable[int]) -> Fraction:
+        """Return the greatest sum less the amounts of used units and steps."""
+        return self.max_sum - sum(self.amounts.get(member, 0) for member in used)
 
 
 class Ruled:
@@ -32,7 +32,7 @@ class Ruled:
 
     def __init__(self, meanings: Sequence[Meaning], first_node: int, first_step: int) -> None:
         self.removed: Units = frozenset().union(*(meaning.removed for meaning in meanings))
-        self.never = {place for place, meaning in enumerate(meanings) if meaning.never}
+        self.never = {index for index, meaning in enumerate(meanings) if meaning.never}
         self.barred: dict[int, Barred] = {p: m.barred for p, m in enumerate(meanings) if m.barred}
         self.goals: list[int] = []
         self.makers: dict[int, list[int]] = {}
@@ -41,7 +41,7 @@ class Ruled:
         self.steps: dict[int, tuple[Sequence[int], int]] = {}
         self.limits: dict[int, Limit] = {}
         self._first_node, self._first_step = first_node, first_step
-        for place, meaning in enumerate(meanings):
+        for index, meaning in enumerate(meanings):
             for alternatives in meaning.wanted:
                 goal = self._node()
                 self.goals.append(goal)
@@ -51,18 +51,18 @@ class Ruled:
                         self._make(node, units)
                     if nodes != [goal]:
                         self._step(nodes, goal)
-            if meaning.most is not None:
+            if meaning.max_sum is not None:
                 amounts: dict[int, Fraction] = {}
                 for units, amount in meaning.things:
                     thing = self._thing(units)
                     amounts[thing] = amounts[thing] + amount if thing in amounts else amount
-                self.limits[place] = Limit(amounts, meaning.most)
+                self.limits[index] = Limit(amounts, meaning.max_sum)
         several = (limit for meaning in meanings for limit in meaning.limits)
         self.limits.update((len(meanings) + number, Limit(*limit)) for number, limit in enumerate(several))
 
     def bars(self, used: Units, without: Units) -> dict[int, Units]:
-        """Return by constraint the units that no tree has which has those used and none of the others."""
-        return {place: barred(used, without) for place, barred in self.barred.items()}
+        """Return by constraint the units in no tree with the used units and none of ``without``."""
+        return {number: barred(used, without) for number, barred in self.barred.items()}
 
     def fault(self, units: Units, others: Units) -> str | None:
         """Return why a tree of these units, and none of the others, does not keep to the constraints."""
@@ -71,7 +71,7 @@ class Ruled:
             return f"has unit {min(removed)}, which a rule removes"
         if not all(any(m in members for m in self.makers[goal]) for goal in self.goals):
             return "lacks what a rule asks for"
-        if any(limit.left(members) < 0 for limit in self.limits.values()):
+        if any(limit.remaining(members) < 0 for limit in self.limits.values()):
             return "exceeds what a rule limits"
         if self.never or any(units & barred for barred in self.bars(units, others).values()):
             return "breaks a rule"
@@ -79,10 +79,10 @@ class Ruled:
 
     def used(self, units: Units) -> Units:
         """Return a tree's units together with the steps that it uses."""
-        given = {node for unit in units for node in self.gives.get(unit, ())}
-        asked = {node for unit in units for node in self.needs.get(unit, ())}.union(self.goals)
+        made = {node for unit in units for node in self.gives.get(unit, ())}
+        required = {node for unit in units for node in self.needs.get(unit, ())}.union(self.goals)
         steps = (
-            step for step, (needs, node) in self.steps.items() if node in asked and given.issuperset(needs)
+            step for step, (needs, node) in self.steps.items() if node in required and made.issuperset(needs)
         )
         return units.union(steps)
 
@@ -103,7 +103,7 @@ class Ruled:
             self.makers[node].append(unit)
 
     def _thing(self, units: Units) -> int:
-        """Return what stands for a thing: its only unit, or a step that all of its units need."""
+        """Return the member that counts for a thing: its only unit, or a step that all its units need."""
         if len(units) == 1:
             (only,) = units
             return only

@@ -1,4 +1,4 @@
-"""Does a tree execute? Simulated forwards, in plain Python, with no solver in sight."""
+"""Forward simulation of a tree, in plain Python and independent of the solver."""
 
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
@@ -27,9 +27,9 @@ class Obstacle(NamedTuple):
 
     ``unit`` is ``None`` when every unit runs and a goal is still missing; ``missing`` is then the goal.
     ``cycle`` lists positions of units each of which waits for what the next makes, and the last for what the
-    first makes, where such a circle is what ``unit`` waits for; otherwise it is empty, and somewhere behind
-    ``unit`` an input is missing that no unit of the tree makes. ``used_up_by`` are the positions of the steps
-    of a plan that use up the copies there are.
+    first makes, where ``unit`` waits for such a cycle; otherwise it is empty, and ``unit`` needs, perhaps
+    through other units, an input that no unit of the tree makes. ``used_up_by`` are the positions of the
+    steps of a plan that use up the copies there are.
     """
 
     unit: int | None
@@ -39,7 +39,7 @@ class Obstacle(NamedTuple):
 
 
 class Simulation(NamedTuple):
-    """What a simulation of a tree found.
+    """The result of a simulation of a tree.
 
     ``verdict`` tells how the tree executes. ``order`` has positions in the tree, in an order that executes,
     as far as one does. ``as_listed`` is what stops the listed order, ``obstacle`` what stops every order;
@@ -61,9 +61,9 @@ def simulate_for(problem: Problem, tree: TaskTree) -> Simulation:
     """Execute a tree from the kitchen of a problem, for its goals and under its container rule."""
     network = problem.network
     goals = tuple(network.objects[goal] for goal in problem.goals)
-    # Only what the tree or a goal asks for: a large kitchen takes longer to hash than a tree to execute.
-    asked = {*goals, *(node for unit in tree for node in unit.inputs)}
-    kitchen = frozenset(node for node in asked if network.object_id(node) in problem.kitchen)
+    # Only goals and inputs of the tree: a large kitchen takes longer to hash than a tree to execute.
+    relevant = {*goals, *(node for unit in tree for node in unit.inputs)}
+    kitchen = frozenset(node for node in relevant if network.object_id(node) in problem.kitchen)
     return simulate(tree, kitchen, goals, problem.containers, problem.utensils, network)
 
 
@@ -77,8 +77,8 @@ def simulate(
 ) -> Simulation:
     """Execute the units of a tree from the kitchen, first as listed, then in any order that works.
 
-    Items do not run out. The tree executes when all of its units do and all goals are then at hand. Below
-    level 3 the ``network`` of the units says what they stand for, and so what they need and make.
+    Items are not consumed. The tree executes when all of its units do and all goals are then available. Below
+    level 3 the ``network`` gives the units that each unit stands for, and so its preconditions and effects.
     """
     needs = [needed_inputs(unit, containers, utensils, network) for unit in tree]
     gives = [given_outputs(unit, containers, utensils, network) for unit in tree]
@@ -129,7 +129,7 @@ def _cycle(
     waiting: Sequence[int],
     at_hand: set[ObjectNode],
 ) -> tuple[int, ...]:
-    """Find a circle of waiting units behind the first of them, depth first; empty where there is none."""
+    """Return a cycle of units that the first waiting one waits for, by depth-first search; else empty."""
     makers: dict[ObjectNode, list[int]] = {}
     for position in waiting:
         for node in gives[position]:

@@ -1,4 +1,4 @@
-"""Does a schedule hold? Played through in time, in plain Python, knowing nothing of how it was found."""
+"""Check of a schedule by simulating it in time, in plain Python and independent of the scheduler."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -30,7 +30,7 @@ class Tool(NamedTuple):
 
 
 class TimedStep(NamedTuple):
-    """When a step is done, by whom, and with what.
+    """A scheduled step: its times, its agent and its tools.
 
     ``start`` and ``end`` are in seconds. ``agent`` is a number from 1, ``None`` where nobody has to stand by.
     ``tools`` are in use by it alone, in the order of the unit's objects.
@@ -43,10 +43,10 @@ class TimedStep(NamedTuple):
 
 
 class Means(NamedTuple):
-    """What there is to work with.
+    """The resources of a schedule.
 
-    ``durations`` are those of motions. ``tools`` says how many there are of some tools, ``None`` for what is
-    free: as many as are asked for. Of other utensils there is one each.
+    ``durations`` are those of motions. ``tools`` maps some tools to their number, ``None`` for an unlimited
+    number. Of other utensils there is one each.
     """
 
     durations: Mapping[str, Duration]
@@ -54,20 +54,20 @@ class Means(NamedTuple):
     tools: Mapping[ToolName, int | None]
 
     def waited_for(self, problem: Problem, label: str) -> bool:
-        """Whether what has a label is a tool that one may have to wait for."""
+        """Return whether objects of a label are tools that a step may have to wait for."""
         if label in self.tools:
             return self.tools[label] is not None
         named = any(isinstance(name, ObjectNode) and name.label == label for name in self.tools)
         return named or label in problem.utensils
 
     def is_free(self, label: str) -> bool:
-        """Whether several steps can have one thing with a label at once."""
+        """Return whether several steps can use one object with a label at once."""
         return label in self.tools and self.tools[label] is None
 
     def name(self, node: ObjectNode, label: str) -> ToolName:
-        """Return what a tool of the kitchen is counted by, which has a label and is, or has in it, a node.
+        """Return the name by which a tool with a label, which is or contains a node, is counted.
 
-        Those with contents are counted by these.
+        Tools with contents are counted by their contents.
         """
         if node in self.tools:
             return node
@@ -77,20 +77,20 @@ class Means(NamedTuple):
         return ObjectNode.of(label, (), (), [Contents("contains", tuple(sorted({*inside})))])
 
     def number_of(self, problem: Problem, name: ToolName) -> int:
-        """Return how many there are: as is said, or as the stock has them, or one."""
-        said = self.tools.get(name)
-        if said is not None:
-            return said
+        """Return the number of tools of a name: as in ``tools``, else as in the stock, else 1."""
+        stated = self.tools.get(name)
+        if stated is not None:
+            return stated
         stock = {} if problem.items is None else problem.items.stock
         return max(1, sum(n for node, n in stock.items() if self.name(node, node.label) == name))
 
 
-class Asked(NamedTuple):
-    """What a unit asks of tools of one label.
+class ToolNeed(NamedTuple):
+    """The tools of one label that a unit needs.
 
-    It takes ``kept`` ones that are as they were when it is done, and ``changed`` ones; ``made`` are what they
-    are then. ``others`` are those that it does not ask for as items: containers that were skipped, or
-    what is in a tool that it does not list, or ``None`` for one that something is put in, on or by.
+    ``kept`` are inputs that stay as they are, ``changed`` inputs that change, and ``made`` are the outputs.
+    ``others`` are tools that are no preconditions: skipped containers, the contents of a tool that the unit
+    does not list, or ``None`` for a tool that something is put in, on or by.
     """
 
     kept: tuple[ObjectNode, ...]
@@ -100,14 +100,14 @@ class Asked(NamedTuple):
 
     @property
     def number(self) -> int:
-        """How many tools that are."""
+        """The number of these tools."""
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
 
-def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, Asked]:
-    """Return what a unit asks for by label: its utensils, and those that its objects are in, on or at."""
+def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, ToolNeed]:
+    """Return the tools a unit needs by label: its utensils, and those that its objects are in, on or at."""
     needed, _, made = Executions(problem).of(unit)
-    asked: dict[str, Asked] = {}
+    needs: dict[str, ToolNeed] = {}
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
     around = (relation.object for node in nodes for relation in node.relations)
     for label in dict.fromkeys([*(node.label for node in nodes), *around]):
@@ -121,8 +121,8 @@ def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[st
         if not own and not out:
             inside = sorted((node for node in needed if node.is_in(label)), key=problem.at_hand)
             others.append(next(iter(inside), None))  # preferably one that was made: it is known where
-        asked[label] = Asked(kept, changed, out, tuple(others))
-    return asked
+        needs[label] = ToolNeed(kept, changed, out, tuple(others))
+    return needs
 
 
 def timetable_fault(
@@ -206,30 +206,32 @@ class _Run:
             self._working.pop(hand, None)
 
     def _wrong_tools(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
-        """Yield what is wrong with the tools of a step, as far as one sees it when it starts."""
+        """Yield the faults of the tools of a step at its start."""
         problem, means = self._problem, self._means
-        asked, needed = tools_asked(problem, means, unit), self._executions.of(unit).preconditions
-        given = Counter(tool.label for tool in tools)
-        for label in asked.keys() | given.keys():
-            wanted = asked[label].number if label in asked else 0
-            if given[label] != wanted:
-                yield f"has {given[label]} of {label}, and asks for {wanted}"
+        needs, needed = tools_asked(problem, means, unit), self._executions.of(unit).preconditions
+        brought = Counter(tool.label for tool in tools)
+        for label in needs.keys() | brought.keys():
+            wanted = needs[label].number if label in needs else 0
+            if brought[label] != wanted:
+                yield f"has {brought[label]} of {label}, and asks for {wanted}"
         for tool in tools:
             if not 1 <= tool.number <= means.number_of(problem, tool.name):
                 yield f"has {tool}, and there are {means.number_of(problem, tool.name)}"
-        for label, each in asked.items():
-            here = [tool for tool in tools if tool.label == label]
-            there = {node for tool in here for node in self._states.get(tool, ())}
-            taken = {node for node in (*each.kept, *each.changed, *each.others) if node is not None}
-            for node in taken - there:
-                fetched = problem.at_hand(node) and means.name(node, label) in {tool.name for tool in here}
+        for label, need in needs.items():
+            brought_tools = [tool for tool in tools if tool.label == label]
+            held_nodes = {node for tool in brought_tools for node in self._states.get(tool, ())}
+            wanted_nodes = {node for node in (*need.kept, *need.changed, *need.others) if node is not None}
+            for node in wanted_nodes - held_nodes:
+                fetched = problem.at_hand(node) and means.name(node, label) in {
+                    tool.name for tool in brought_tools
+                }
                 if not fetched and node in needed:
                     yield f"has no {label} for {node}"
-            for tool in here:  # what is fetched is as the kitchen has it, whatever it was before
-                if taken and taken.isdisjoint(self._states.get(tool, ())):
+            for tool in brought_tools:  # what is fetched is as the kitchen has it, whatever it was before
+                if wanted_nodes and wanted_nodes.isdisjoint(self._states.get(tool, ())):
                     self._states[tool] = frozenset()
 
 
 def _hands(step: TimedStep) -> list[int | Tool]:
-    """Return who and what is at a step."""
+    """Return the tools and the agent of a step."""
     return [*step.tools] + ([] if step.agent is None else [step.agent])

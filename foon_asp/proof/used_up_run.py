@@ -1,4 +1,4 @@
-"""Whether a tree runs where items are used up: each of its steps once, in the order listed or in another.
+"""Search for an order in which a tree with consumable items runs, each of its steps once.
 
 Whether each of a multiset of steps can be done once is a question about the firing sequences of a Petri net.
 Where some node is used up more often than it is made, there is no such sequence; otherwise it is searched
@@ -18,11 +18,11 @@ _MAX_LOOKS = 100_000  # at steps that may be next: some 50 ms; no tree of the co
 
 
 class UsedUpRun(NamedTuple):
-    """How a tree runs where items are used up and each of its steps is done once.
+    """The result of a search for an order of a tree with consumable items.
 
-    ``order`` has positions in the tree, from 0, in an order that runs, the listed one where that does. It is
-    ``None`` where there is none, which is ``proved``, or where the search for one was given up. ``shortage``
-    is the copy that is missing then.
+    ``order`` has positions in the tree, from 0, in an order that runs, the listed one where that runs. It is
+    ``None`` where no order runs, which is then ``proved``, or where the search was given up. ``shortage`` is
+    the copy that is missing then.
     """
 
     order: tuple[int, ...] | None
@@ -31,16 +31,16 @@ class UsedUpRun(NamedTuple):
 
     @property
     def runs(self) -> bool | None:
-        """Whether it runs, ``None`` where that is not known."""
+        """Whether the tree runs in some order, ``None`` where that is not known."""
         return None if not self.proved else self.order is not None
 
 
 def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
-    """Look for an order in which the steps of a tree, each once, run from the kitchen to the goals.
+    """Return an order in which the steps of a tree, each once, run from the kitchen to the goals.
 
     Items are used up as the problem says, or, where they last in it, by the rule of docs/plans.md, and what
-    is in the kitchen never runs out. A unit that is listed several times is as many steps. Below level 3 it
-    is not asked, since contents say what is used up.
+    is in the kitchen never runs out. A unit that is listed several times is as many steps. Below level 3
+    nothing is searched, since consumption depends on contents.
 
     Parameters:
         problem: What the tree is for.
@@ -67,10 +67,10 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
 
 
 class _OrderSearch:
-    """A search for an order of steps, depth first and the earliest listed step first.
+    """A depth-first search for an order of steps, the earliest listed step first.
 
-    ``looks_left`` says how many steps may still be looked at; at 0 the search was given up. ``dead_end`` is
-    what was missing after the most steps that could be done, where some other could not.
+    ``looks_left`` is the remaining budget of steps looked at; at 0 the search was given up. ``dead_end`` is
+    the copy missing after the longest partial order.
     """
 
     def __init__(
@@ -89,12 +89,12 @@ class _OrderSearch:
         )
 
     def listed(self) -> Shortage | None:
-        """Return the copy that is missing when the steps are done as listed; ``None`` where none is."""
-        copies, taken = self._copies.copy(), dict[ObjectNode, list[int]]()
+        """Return the copy that is missing when the steps are done as listed; ``None`` where they run."""
+        copies, consumers = self._copies.copy(), dict[ObjectNode, list[int]]()
 
         def missing(step: int | None, nodes: Iterable[ObjectNode]) -> Shortage | None:
             node = next((node for node in nodes if not copies[node]), None)
-            return None if node is None else Shortage(step, node, tuple(taken.get(node, ())))
+            return None if node is None else Shortage(step, node, tuple(consumers.get(node, ())))
 
         for step, (preconditions, consumes, adds) in enumerate(self._steps):
             shortage = missing(step, preconditions)
@@ -103,7 +103,7 @@ class _OrderSearch:
             copies.subtract(consumes)
             copies.update(adds)
             for node in consumes:
-                taken.setdefault(node, []).append(step)
+                consumers.setdefault(node, []).append(step)
         return missing(None, self._goals)
 
     def overdrawn(self) -> Shortage | None:
@@ -122,10 +122,10 @@ class _OrderSearch:
                 lacking.append((step, Shortage(step, node, tuple(served))))
             elif len(served) == copies[node] and node in self._goals:
                 lacking.append((ends, Shortage(None, node, tuple(served))))
-        return min(lacking, key=lambda each: each[0])[1] if lacking else None
+        return min(lacking, key=lambda shortage: shortage[0])[1] if lacking else None
 
     def order(self) -> tuple[int, ...] | None:
-        """Return an order that runs, where no node is overdrawn; ``None`` where there is none."""
+        """Return an order that runs, where no node is overdrawn; ``None`` where none is found."""
         done: list[int] = []
         dead: set[int] = set()  # what was done where no order of the others was found
         choices, longest = [self._ready(dead)], -1
@@ -168,16 +168,18 @@ class _OrderSearch:
         step = self._next[-1]
         while step != len(self._steps):
             for node in self._steps[step].preconditions:
-                taken = tuple(each for each in sorted(done) if node in self._steps[each].consumes)
-                if taken and not self._copies[node]:
-                    return Shortage(step, node, taken)
+                consumers = tuple(
+                    earlier for earlier in sorted(done) if node in self._steps[earlier].consumes
+                )
+                if consumers and not self._copies[node]:
+                    return Shortage(step, node, consumers)
             step = self._next[step]
         return None
 
     def _plentiful(self, node: ObjectNode) -> bool:
-        """Whether there are copies of a node for all steps that wait, and for the end."""
-        spare = node in self._goals or self._readers[node] > 0
-        return self._copies[node] >= self._consumers[node] + spare
+        """Return whether there are copies of a node for all waiting steps, and for the goals."""
+        reserved = node in self._goals or self._readers[node] > 0
+        return self._copies[node] >= self._consumers[node] + reserved
 
     def _do(self, step: int) -> None:
         before, after = self._previous[step], self._next[step]

@@ -44,15 +44,15 @@ _NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
 _RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
 _SURROGATE = re.compile("[\ud800-\udfff]")
 _DIGITS = 50  # of a logarithm
-_NINES = 400  # the most digits more that a rate next to 1 gets
+_NINES = 400  # additional digits for a rate close to 1, at most
 
-# A certificate may come from a stranger: what goes beyond these limits is refused rather than computed.
-_LETTERS = 16_000_000  # of the file
+# A certificate may come from a stranger: beyond these limits it is refused rather than checked.
+_LETTERS = 16_000_000  # characters of the file
 _BRACKETS = 1_000_000  # lists and objects in it
 _STEPS = 5_000_000  # a look at a unit is one; adding and comparing numbers takes more
-_STEPS_EACH = 200  # more of them for each unit and object node of the network
-_RULES = 100  # that a claim is about
-_STEPS_RULE = 10  # for each unit and object node that a rule is held against
+_STEPS_EACH = 200  # additional steps for each unit and object node of the network
+_RULES = 100  # rules of a claim
+_STEPS_RULE = 10  # for each unit and object node that a rule is checked against
 _DIGITS_READ = 2_000  # of a fraction that is read
 _LONG = 40_000  # bits of a sum of fractions
 _LARGEST = 250_000  # bits of a product of rates
@@ -74,9 +74,10 @@ TREE = Form("foon-asp certificate", 5, KEYS)
 
 
 class Subject(NamedTuple):
-    """What a certificate speaks about; ``kitchen`` are object node ids.
+    """The data that a certificate is about; ``kitchen`` are object node ids.
 
-    ``stated`` are digests that are not worked out of the others, by name; those of ``trusted`` nobody did.
+    ``stated`` are digests by name that are not computed from the other fields; those named in ``trusted``
+    were never computed.
     """
 
     network: Network
@@ -90,11 +91,11 @@ class Subject(NamedTuple):
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
         """Return the SHA-256 digests that a certificate of it names; ids mean nothing without the network's.
 
-        Those that are ``stated`` are not computed. Of the places where units were read, it is those that the
-        rules look at.
+        Digests in ``stated`` are not computed. The digest of sources covers only the places that the rules
+        look at.
         """
         network, rates, prices = self.network, self.rates, self.prices
-        places = [found for rule in rules if (found := looked_at(rule, network)) is not None]
+        places = [looked for rule in rules if (looked := looked_at(rule, network)) is not None]
         values: dict[str, Callable[[], object]] = {
             "network": lambda: _described(network),
             "kitchen": lambda: sorted(self.kitchen),
@@ -124,10 +125,10 @@ class LimitError(RefusedError):
 
 
 class Trusted(NamedTuple):
-    """What is not proved but taken on trust: what units cost by a measure of the user's own.
+    """A statement taken on trust: the costs of units by a user measure.
 
-    ``rules`` are said to give these ``costs`` of units, by id, and none below 0 of any unit; ``sha256`` is
-    the digest of the rules.
+    The ``rules`` are stated to give these ``costs`` of units, by id, and no negative cost of any unit;
+    ``sha256`` is the digest of the rules.
     """
 
     name: str
@@ -137,10 +138,10 @@ class Trusted(NamedTuple):
 
 
 class UsedUp(NamedTuple):
-    """What a claim about plans says of items that are used up.
+    """The statements about consumable items in a claim about plans.
 
-    ``stock`` counts the copies of kitchen items, by id, of those that may run out. ``stays`` says of labels
-    and of object nodes, by id, whether they stay, whatever the rule makes of them.
+    ``stock`` maps consumable kitchen items, by id, to their copies. ``stays`` maps labels, and object nodes
+    by id, to whether they stay when used, which overrides the rule.
     """
 
     stock: Mapping[int, int]
@@ -173,7 +174,7 @@ class Verified(NamedTuple):
 
 
 def load_certificate(file: Path) -> Any:
-    """Read a certificate from a file, of which never more is read than a certificate may have.
+    """Return the content of a certificate file, reading no more than a certificate may have.
 
     Raises ``OSError`` and ``UnicodeDecodeError`` where it cannot be read, and else as
     :func:`read_certificate`.
@@ -186,12 +187,12 @@ def load_certificate(file: Path) -> Any:
 
 
 def read_certificate(text: str) -> Any:
-    """Parse the JSON of a certificate; raises :class:`RefusedError` where a key comes twice or it is none."""
+    """Return the parsed JSON of a certificate; raises :class:`RefusedError` if invalid or a key is double."""
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        found = dict(pairs)
-        require(len(found) == len(pairs), "a key stands twice in one object")
-        return found
+        content = dict(pairs)
+        require(len(content) == len(pairs), "a key stands twice in one object")
+        return content
 
     def no_float(number: str) -> None:
         raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
@@ -210,13 +211,13 @@ def seal(certificate: Mapping[str, Any]) -> str:
 
 
 def trusted(certificate: Mapping[str, Any]) -> Rule | None:
-    """Return what a certificate takes on trust of rules of the user's own, if anything."""
+    """Return the statements about user rules that a certificate takes on trust, ``None`` without any."""
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
 
 
 @contextmanager
 def refusing_depth() -> Iterator[None]:
-    """Refuse what is nested too deeply to be written down again, or to be looked at."""
+    """Refuse a certificate that is nested too deeply."""
     try:
         yield
     except RecursionError:
@@ -247,9 +248,9 @@ def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ..
     level, network = certificate["level"], subject.network
     require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
     rules = read_rules(certificate["rules"], len(network))
-    found = subject.digests(rules)
-    named = read_object(certificate["digests"], tuple(found))
-    for name, digest in found.items():
+    digests = subject.digests(rules)
+    named = read_object(certificate["digests"], tuple(digests))
+    for name, digest in digests.items():
         require(named[name] == digest, f"{name}: not the one that the certificate is about")
     return rules
 
@@ -290,7 +291,7 @@ class Check:
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
         self.rules, self.claimed = rules, 0
         each_price = cache(lambda: self._each_price(prices))
-        asked = Question(
+        question = Question(
             network,
             kitchen,
             self.goals,
@@ -301,7 +302,7 @@ class Check:
             self.gives,
         )
         self.ruled = Ruled(
-            [self._meaning(rule, asked) for rule in rules],
+            [self._meaning(rule, question) for rule in rules],
             len(network.objects),
             len(network) + len(network.objects),
         )
@@ -314,7 +315,7 @@ class Check:
         self.met: set[int] = set()  # the cuts that the proof uses
 
     def _measure(self, name: str, stated: Any) -> Trusted:
-        """Read what units are said to cost by a measure; nothing is trusted yet."""
+        """Read the stated costs of units by a measure."""
         require(bool(_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own")
         measure = read_object(stated, ("rules", "sha256", "costs"))
         rules = measure["rules"]
@@ -332,21 +333,25 @@ class Check:
         return Trusted(name, rules, digest, costs)
 
     def _measured(self, name: str, unit: int) -> Fraction:
-        """Return what a unit is said to cost by a measure, which is taken on trust from now on."""
+        """Return the stated cost of a unit by a measure, and note that it is taken on trust."""
         costs = self.measures[name].costs
         require(unit in costs, "the cost of a unit by a measure is not stated")
         self.looked_at[name][unit] = costs[unit]
         return costs[unit]
 
-    def _rates(self, given: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
+    def _rates(self, given_rates: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
         """Return the success rate of each motion."""
         motions = self.network.different_motions
-        rates = {motion: given[motion] for motion in motions if given is not None and motion in given}
-        values = None if given is None else [*rates.values()]
-        found = self._known(values, len(motions), "success rates")
-        require(all(rate <= 1 for rate in found), "a rate is above 1")
+        rates = {
+            motion: given_rates[motion]
+            for motion in motions
+            if given_rates is not None and motion in given_rates
+        }
+        values = None if given_rates is None else [*rates.values()]
+        values_found = self._complete(values, len(motions), "success rates")
+        require(all(rate <= 1 for rate in values_found), "a rate is above 1")
         require(
-            "attempts" not in self.objectives or 0 not in found,
+            "attempts" not in self.objectives or 0 not in values_found,
             "a unit that never succeeds is repeated forever",
         )
         return rates
@@ -355,32 +360,37 @@ class Check:
         """Return the success rate of a unit."""
         return self.rates[self.network.motions[unit]]
 
-    def _prices(self, given: UnitPrices | None) -> list[Fraction]:
+    def _prices(self, unit_prices: UnitPrices | None) -> list[Fraction]:
         """Return the price of each unit."""
-        prices = None if given is None else self._each_price(given)
-        return self._known(prices, len(self.network), "prices")
+        prices = None if unit_prices is None else self._each_price(unit_prices)
+        return self._complete(prices, len(self.network), "prices")
 
-    def _each_price(self, given: UnitPrices | None) -> Sequence[Fraction | None]:
-        """Return the prices of units, their own or those of their motions; below level 3 it is the least."""
+    def _each_price(self, unit_prices: UnitPrices | None) -> Sequence[Fraction | None]:
+        """Return the prices of units, their own or those of their motions; below level 3 the least."""
         network = self.network
-        if given is None:
+        if unit_prices is None:
             return [None] * len(network)
         whole = network.detailed or network
-        own = {whole.unit_id(unit): price for unit, price in given.units.items()}
-        prices = [own.get(unit, given.motions.get(motion)) for unit, motion in enumerate(whole.motions)]
+        own = {whole.unit_id(unit): price for unit, price in unit_prices.units.items()}
+        prices = [own.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(whole.motions)]
         if network.detailed is not None:
-            each = [[prices[detail] for detail in details] for details in network.stands_for]
-            known = [[price for price in found if price is not None] for found in each]
-            prices = [min(k) if len(k) == len(e) else None for k, e in zip(known, each, strict=True)]
+            details_prices = [[prices[detail] for detail in details] for details in network.stands_for]
+            known_prices = [
+                [price for price in detail_prices if price is not None] for detail_prices in details_prices
+            ]
+            prices = [
+                min(k) if len(k) == len(e) else None
+                for k, e in zip(known_prices, details_prices, strict=True)
+            ]
         return prices
 
-    def _known(self, values: Sequence[Fraction | None] | None, count: int, what: str) -> list[Fraction]:
-        """Return values of all units, by what they are and where all are there."""
+    def _complete(self, values: Sequence[Fraction | None] | None, count: int, what: str) -> list[Fraction]:
+        """Return the values, after checking that none is missing or below 0."""
         require(values is not None, f"a claim needs {what}, but none are given")
-        found = [value for value in values or () if value is not None]
-        require(len(found) == count, f"a unit has none of the {what} that a claim needs")
-        require(all(value >= 0 for value in found), f"one of the {what} is below 0")
-        return found
+        present = [value for value in values or () if value is not None]
+        require(len(present) == count, f"a unit has none of the {what} that a claim needs")
+        require(all(value >= 0 for value in present), f"one of the {what} is below 0")
+        return present
 
     def claim(self) -> Verified:
         """Check tree, costs and proof."""
@@ -431,7 +441,7 @@ class Check:
         )
 
     def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
-        """Execute the tree as listed; give what it costs as an amount and as figures."""
+        """Execute the tree as listed; return its cost as an amount and as figures."""
         made: set[int | None] = set()
         for unit in read_numbers(units, len(self.network), ascending=False):
             lacking = (o for o in self.needs(unit) if o not in made and o not in self.kitchen)
@@ -448,7 +458,7 @@ class Check:
         return total, self._figures(units, total)
 
     def _figures(self, units: list[int], total: Amount) -> list[int | Fraction]:
-        """Return what a tree of these units costs by each objective, as figures."""
+        """Return the costs of a tree of these units by each objective, as figures."""
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":
@@ -466,24 +476,23 @@ class Check:
         return costs
 
     def _keep(self, units: frozenset[int]) -> None:
-        """Hold a tree against what the rules say of all of it."""
+        """Check a tree against the rules."""
         self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
         self._spend(len(units) * len(self.ruled.limits))
         others = frozenset(range(len(self.network))) - units if self.rules else frozenset[int]()
         fault = self.ruled.fault(units, others)
         require(fault is None, f"the tree {fault}")
 
-    def _barred(self, place: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Return the units that a rule bars from trees that use some members and have none of others."""
+    def _barred(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
+        """Return the units that a rule excludes from trees with the used members and none of ``without``."""
         self._spend(len(self.network) + 5 * self.claimed)
         units = frozenset(member for member in used if member < len(self.network))
-        return self.ruled.barred[place](units, without)
+        return self.ruled.barred[number](units, without)
 
     def _prove(self, proof: Any, least: Amount | None) -> None:
-        """Walk through the branches of a proof that every tree costs at least so much, or that there is none.
+        """Check the branches of a proof that every tree costs at least ``least``; ``None``: that none exists.
 
-        A tree that is not there may be taken to cost nothing. So where weights show that it costs more, there
-        is none.
+        For the latter all costs are 0, so weights that add up to more than 0 are a contradiction.
         """
         nobody: frozenset[int] = frozenset()
         waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, nobody, self.ruled.removed)]
@@ -498,41 +507,43 @@ class Check:
                 waiting.append((node["using"], used | {member}, without))
                 continue
             if keys == {"broken"}:
-                place = read_number(node["broken"], range(len(self.rules)), "the number of a rule")
-                never, barring = place in self.ruled.never, place in self.ruled.barred
-                broken = never or (barring and not used.isdisjoint(self._barred(place, used, without)))
+                number = read_number(node["broken"], range(len(self.rules)), "the number of a rule")
+                never, barring = number in self.ruled.never, number in self.ruled.barred
+                broken = never or (barring and not used.isdisjoint(self._barred(number, used, without)))
                 require(broken, "a rule called broken is kept")
                 continue
-            barred = without.union(*(self._barred(place, used, without) for place in self.ruled.barred))
+            barred = without.union(*(self._barred(number, used, without) for number in self.ruled.barred))
             if keys == {"hopeless"}:
                 crossing = self._crossing(node["hopeless"], used, barred)
                 require(not crossing, "a cut called hopeless is crossed")
                 continue
-            dear: list[int] | None = None
+            above_cutoff: list[int] | None = None
             if "dear" in keys:
-                dear = self._dear(node["dear"], used | without)
+                above_cutoff = self._above_cutoff(node["dear"], used | without)
                 require("others" in keys, "expected a proof for what is without the dear")
-                waiting.append((node["others"], used, without.union(dear)))
+                waiting.append((node["others"], used, without.union(above_cutoff)))
                 keys -= {"dear", "others"}
             require(
                 {"weights"} <= keys <= {"weights", "limits", "multiples"},
                 "expected weights, a hopeless cut, a broken rule or a branch",
             )
-            packed, left = self._packed(node["weights"], node.get("limits", []), used, barred)
+            packed, reduced_cost = self._packed(node["weights"], node.get("limits", []), used, barred)
             paid = self.sum(map(self._cost, used))
-            for rest in [{}] if dear is None else map(left, dear):
-                total = self._rounded(self.sum([packed, rest]), node.get("multiples", {}))
+            for addition in [{}] if above_cutoff is None else map(reduced_cost, above_cutoff):
+                total = self._rounded(self.sum([packed, addition]), node.get("multiples", {}))
                 require(self._enough([total, paid], least), "the weights do not add up to enough")
 
-    def _dear(self, choices: Any, decided: frozenset[int]) -> list[int]:
-        """Read members that are said to be too dear for any tree that counts."""
-        dear = [self._branch(choice) for choice in read_list(choices)]
-        require(len(dear) > 0, "nothing is too dear")
-        require(decided.isdisjoint(dear) and len(set(dear)) == len(dear), "what is dear is decided twice")
-        return dear
+    def _above_cutoff(self, choices: Any, decided: frozenset[int]) -> list[int]:
+        """Read the members of a reduced-cost fixing, which are claimed to be above the cutoff."""
+        actions = [self._branch(choice) for choice in read_list(choices)]
+        require(len(actions) > 0, "nothing is too dear")
+        require(
+            decided.isdisjoint(actions) and len(set(actions)) == len(actions), "what is dear is decided twice"
+        )
+        return actions
 
     def _enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
-        """Whether a bound is one on all trees that are left."""
+        """Return whether a bound is at least ``least``; ``None`` asks for a bound above 0."""
         if least is None:
             return self.sign(self.sum(bound)) > 0
         return self.sign(self.sum([*bound, negative(least)])) >= 0
@@ -540,19 +551,19 @@ class Check:
     def _packed(
         self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]
     ) -> tuple[Amount, Callable[[int], Amount]]:
-        """Add up the weights of cuts after checking that no member is overloaded; give also what is left.
+        """Return the sum of a cost partition, after checking it, and the reduced cost of each member.
 
-        Where something is limited, what takes of it may carry more: so much for all of it that it takes. What
-        all that is left of the limit carries is then not part of the bound. What is left of what a member can
-        carry is what trees with it cost more than the sum at least.
+        A member that consumes from a limit may carry the weight of the limit for each unit it consumes; the
+        weight of the whole limit, less the amounts of used members, is then taken from the bound. Trees with
+        a member cost at least the sum and the reduced cost of the member.
         """
         total: Amount = {}
         loads: dict[int, Amount] = {}
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
-        for (place,), weight in self.read_weights("limits", limits, self._read):
-            limit = self.limit_at(place)
+        for (limit_number,), weight in self.read_weights("limits", limits, self._read):
+            limit = self.limit_at(limit_number)
             self._spend(len(used))
-            self._add(total, self.times(weight, -limit.left(used)))
+            self._add(total, self.times(weight, -limit.remaining(used)))
             carried.append((weight, limit.amounts))
         for (number,), weight in self.read_weights("weights", weights, self._read):
             self._add(total, weight)
@@ -561,25 +572,27 @@ class Check:
 
         def allowed(member: int) -> Amount:
             # a member that is used anyway was paid for, and can carry nothing more
-            most = {} if member in used else self._cost(member)
+            capacity = {} if member in used else self._cost(member)
             if carried and member not in used:
-                more = (self.times(w, amounts[member]) for w, amounts in carried if member in amounts)
-                most = self.sum([most, *more])
-            return most
+                extra = (self.times(w, amounts[member]) for w, amounts in carried if member in amounts)
+                capacity = self.sum([capacity, *extra])
+            return capacity
 
-        def left(member: int) -> Amount:
+        def reduced_cost(member: int) -> Amount:
             return self.sum([allowed(member), negative(loads.get(member, {}))])
 
         for member, load in loads.items():
             if allowed(member) != load:
-                require(self.sign(left(member)) >= 0, f"unit or item {member} carries more than it costs")
-        return total, left
+                require(
+                    self.sign(reduced_cost(member)) >= 0, f"unit or item {member} carries more than it costs"
+                )
+        return total, reduced_cost
 
     def _rounded(self, amount: Amount, stated: Any) -> Amount:
-        """Round up a bound on what units cost together, if what each costs is a multiple of what is stated.
+        """Round up a bound to a stated common divisor of all costs.
 
-        Of the objectives that multiples are stated for, it is the first by which the bound is none. A tree
-        that costs as much as the bound by the objectives before it costs at least 0 by those after it.
+        It is rounded at the first objective with a stated multiple that the bound is not a multiple of. A
+        tree that costs as much as the bound by the objectives before it costs at least 0 by those after it.
         """
         multiples = {name: _rational(multiple) for name, multiple in read_object(stated).items()}
         require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
@@ -595,7 +608,7 @@ class Check:
         return amount
 
     def _all_multiples(self, level: int, multiple: Fraction) -> bool:
-        """Whether each unit and each item costs a multiple of a number by an objective."""
+        """Return whether the costs of all units and items by an objective are multiples of a number."""
         if self.objectives[level] == "success":
             return False
         for member in (*range(len(self.network)), *(len(self.network) + o for o in self.kitchen)):
@@ -606,21 +619,21 @@ class Check:
         return True
 
     def _crossing(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Return the members of a cut that are left; the cut has to stand before a goal or a used unit."""
-        place = read_number(number, range(len(self.cuts)), "the number of a cut")
-        self._spend(1 + len(self.goals) + len(used) + len(self.members[place]))
-        self.met.add(place)
-        cut = self.cuts[place]
+        """Return the members of a cut that are not excluded, after checking that the cut is a landmark."""
+        index = read_number(number, range(len(self.cuts)), "the number of a cut")
+        self._spend(1 + len(self.goals) + len(used) + len(self.members[index]))
+        self.met.add(index)
+        cut = self.cuts[index]
         before = (
             any(goal in cut and goal not in self.kitchen for goal in self.goals)
             or not cut.isdisjoint(self.ruled.goals)
-            or any(not cut.isdisjoint(self._asked(member)) for member in used)
+            or any(not cut.isdisjoint(self._preconditions(member)) for member in used)
         )
         require(before, f"cut {number} holds neither a goal nor what a used unit needs")
-        return self.members[place] - without
+        return self.members[index] - without
 
     def _members(self, cut: frozenset[int]) -> Iterator[int]:
-        """Yield the units that make a node of the cut and need none, and the kitchen items in it."""
+        """Yield the landmark of a cut: the units that make one of its nodes and need none, and its items."""
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         for o in cut:
@@ -628,14 +641,14 @@ class Check:
                 require("kitchen" in self.objectives, "a cut holds a kitchen item")
                 yield len(network) + o
             elif o in own:
-                yield from (member for member in own[o] if cut.isdisjoint(self._asked(member)))
+                yield from (member for member in own[o] if cut.isdisjoint(self._preconditions(member)))
             else:
                 for unit in network.producers[o]:
-                    if o in self.gives(unit) and cut.isdisjoint(self._asked(unit)):
+                    if o in self.gives(unit) and cut.isdisjoint(self._preconditions(unit)):
                         yield unit
 
-    def _asked(self, member: int) -> frozenset[int | None]:
-        """Return the nodes that a unit or a step needs, those of the rules with them; an item needs none."""
+    def _preconditions(self, member: int) -> frozenset[int | None]:
+        """Return the preconditions of a unit or a step, with those by rules; an item has none."""
         if member in self.ruled.steps:
             return frozenset(self.ruled.steps[member][0])
         if member >= len(self.network):
@@ -644,17 +657,17 @@ class Check:
         return self.needs(member).union(own) if own else self.needs(member)
 
     def _needs(self, unit: int) -> frozenset[int | None]:
-        """Return the inputs that a unit needs; below level 3 what all need that it stands for."""
+        """Return the preconditions of a unit; below level 3 those common to all units that it stands for."""
         return frozenset.intersection(*(needed for needed, _ in self._details(unit)))
 
     def _gives(self, unit: int) -> frozenset[int | None]:
-        """Return the outputs that a unit makes; below level 3 what any makes that it stands for."""
+        """Return the add effects of a unit; below level 3 those of any unit that it stands for."""
         return frozenset.union(*(made for _, made in self._details(unit)))
 
     def _details(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
-        """Yield what each unit needs and makes that a unit stands for, which at level 3 is itself.
+        """Yield preconditions and add effects of each unit that a unit stands for, at level 3 of itself.
 
-        What a unit is let skip it neither needs nor makes.
+        Containers that a unit may skip are neither.
         """
         network = self.network
         whole = network.detailed or network
@@ -685,28 +698,28 @@ class Check:
         network = self.network
         if network.detailed is None:
             return frozenset(nodes)
-        found = (node_at_level(network.detailed.objects[o], network.level) for o in nodes)
-        return frozenset(map(network.object_id, found))
+        nodes_at_level = (node_at_level(network.detailed.objects[o], network.level) for o in nodes)
+        return frozenset(map(network.object_id, nodes_at_level))
 
     def _meaning(self, rule: Rule, question: Question) -> Meaning:
-        """Return what a rule says of the network."""
+        """Return the meaning of a rule for the network."""
         self._spend(_STEPS_RULE * (len(self.network) + len(self.network.objects)))
         self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
         return meaning(rule, question)
 
     def _cost(self, member: int) -> Amount:
-        """Return what a unit or an item costs by each objective."""
+        """Return the cost of a unit or an item by each objective."""
         cost: Amount = {}
         if member in self.ruled.steps:
             return cost
         for level, objective in enumerate(self.objectives):
-            found = self._cost_by(level, member)
-            if found is not None:
-                cost[level, self.rate(member) if objective == "success" else None] = found
+            figure = self._cost_by(level, member)
+            if figure is not None:
+                cost[level, self.rate(member) if objective == "success" else None] = figure
         return cost
 
     def _cost_by(self, level: int, member: int) -> Fraction | None:
-        """Return what a unit or an item costs by an objective, ``None`` where that counts others.
+        """Return the cost of a unit or an item by an objective, ``None`` where it does not count.
 
         By ``success`` it is the exponent of a unit's rate.
         """
@@ -759,23 +772,23 @@ class Check:
     ) -> Iterator[tuple[list[int], Amount]]:
         """Read the weights under a key of a proof; in each list, numbers name what has the weight."""
         rows = [read_list(row) for row in read_list(stated)]
-        places = [row[:numbers] for row in rows]
+        names = [row[:numbers] for row in rows]
         require(
             all(len(row) == numbers + 1 for row in rows)
-            and all(type(number) is int for place in places for number in place),
+            and all(type(number) is int for name in names for number in name),
             f"{key}: expected what has a weight by its number, and the weight",
         )
-        in_order = places == sorted(map(list, {*map(tuple, places)}))
+        in_order = names == sorted(map(list, {*map(tuple, names)}))
         require(in_order, f"{key}: expected weights in order, each once")
-        for place, row in zip(places, rows, strict=True):
+        for name, row in zip(names, rows, strict=True):
             weight = read(row[numbers])
             require(self.sign(weight) > 0, f"{key}: a weight is not above zero")
-            yield place, weight
+            yield name, weight
 
-    def limit_at(self, place: int) -> Limit:
+    def limit_at(self, number: int) -> Limit:
         """Return the limit of a number that has a weight."""
-        require(place in self.ruled.limits, "a rule that limits nothing is given a weight")
-        return self.ruled.limits[place]
+        require(number in self.ruled.limits, "a rule that limits nothing is given a weight")
+        return self.ruled.limits[number]
 
     def _read(self, stated: Any) -> Amount:
         """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
@@ -846,7 +859,7 @@ class Check:
             self._spend_on(_bits(total[key]))
 
     def times(self, amount: Amount, factor: Fraction) -> Amount:
-        """Return an amount so many times."""
+        """Return an amount times a factor."""
         return self.sum([{key: value * factor for key, value in amount.items()}])
 
     def sum(self, amounts: Iterable[Amount]) -> Amount:
@@ -878,7 +891,7 @@ def negative(amount: Amount) -> Amount:
 
 
 def _described(network: Network) -> list[Any]:
-    """List all that a claim about a network can depend on; below level 3 also what it was made from."""
+    """Return all that a claim about a network can depend on; below level 3 with the network of level 3."""
     nodes = [
         (label, sorted(states), sorted(relations), contents)
         for label, states, relations, contents in network.objects
@@ -888,7 +901,7 @@ def _described(network: Network) -> list[Any]:
 
 
 def _stated(prices: UnitPrices, network: Network) -> list[list[Any]]:
-    """List the prices by motion, and of the single units that there are by their id at level 3."""
+    """Return the prices by motion, and those of single units by their id at level 3."""
     ids = ((network.unit_id(unit), price) for unit, price in prices.units.items())
     single = sorted([unit, str(price)] for unit, price in ids if unit is not None)
     return [sorted([motion, str(price)] for motion, price in prices.motions.items()), single]
@@ -899,7 +912,7 @@ def _digest(value: object) -> str:
 
 
 def canonical(value: object) -> str:
-    """Write plain values as JSON in the one way that digests are of."""
+    """Return plain values as canonical JSON, for digests."""
     return json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
 
 
@@ -912,16 +925,16 @@ def require(holds: bool, otherwise: str) -> None:
 def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
     """Read an object, with just these keys if they are given."""
     require(isinstance(value, dict), "expected an object")
-    found: dict[str, Any] = value
-    require(keys is None or set(found) == set(keys), f"expected the keys {', '.join(keys or ())}")
-    return found
+    content: dict[str, Any] = value
+    require(keys is None or set(content) == set(keys), f"expected the keys {', '.join(keys or ())}")
+    return content
 
 
 def read_list(value: Any) -> list[Any]:
     """Read a list."""
     require(isinstance(value, list), "expected a list")
-    found: list[Any] = value
-    return found
+    items: list[Any] = value
+    return items
 
 
 def read_pair(value: Any, what: str) -> tuple[Any, Any]:
@@ -956,13 +969,13 @@ def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
 
 def _goal(value: Any, network: Network) -> int:
     goal = read_object(value, ("id", "node"))
-    (found,) = read_numbers([goal["id"]], len(network.objects))
-    require(str(network.objects[found]) == goal["node"], "a goal is not the node of its id")
-    return found
+    (node,) = read_numbers([goal["id"]], len(network.objects))
+    require(str(network.objects[node]) == goal["node"], "a goal is not the node of its id")
+    return node
 
 
 def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
-    """Read the constraints that a claim is about, and what it takes on trust of rules of the user's own."""
+    """Read the constraints of a claim, and its statements about user rules that are taken on trust."""
     rules = [read_object(rule) for rule in read_list(value)]
     if len(rules) > _RULES:
         raise LimitError(f"it has more than {_RULES} rules")
@@ -984,7 +997,7 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
 
 
 def _own(rule: Rule, units: int) -> None:
-    """Check the form of what is taken on trust: texts of rules, their digests, and claims of units."""
+    """Check the form of statements taken on trust: texts of rules, their digests, and claims of units."""
     read_object(rule, ("rule", "claims", "constants", "files", "library", "limits"))
     for key in ("constants", "library"):
         _names(rule[key])
@@ -996,17 +1009,17 @@ def _own(rule: Rule, units: int) -> None:
         sha = hashlib.sha256(file["text"].encode()).hexdigest()
         require(file["sha256"] == sha, "a text of rules does not have its digest")
     for claim in read_list(rule["claims"]):
-        for side in read_pair(claim, "two sets of units in a claim"):
-            read_numbers(side, units, ascending=side != [])
+        for unit_set in read_pair(claim, "two sets of units in a claim"):
+            read_numbers(unit_set, units, ascending=unit_set != [])
     for limit in read_list(rule["limits"]):
-        amounts, most = read_pair(limit, "amounts and their limit")
-        require(type(most) is int, "a limit is no whole number")
+        amounts, max_sum = read_pair(limit, "amounts and their limit")
+        require(type(max_sum) is int, "a limit is no whole number")
         counted: list[int] = []
-        for amount, some in read_object(amounts).items():
+        for amount, counted_units in read_object(amounts).items():
             number = _rational(amount)
             whole = number > 0 and number.denominator == 1
             require(whole, "a limit counts what is no whole number above zero")
-            counted += read_numbers(some, units)
+            counted += read_numbers(counted_units, units)
         require(len(set(counted)) == len(counted), "a limit counts a unit twice")
 
 
@@ -1014,6 +1027,6 @@ def _rational(value: Any) -> Fraction:
     require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
     if len(value) > _DIGITS_READ:
         raise LimitError(f"a fraction has more than {_DIGITS_READ:,} digits")
-    found = Fraction(value)
-    require(str(found) == value, "expected a fraction in lowest terms")
-    return found
+    number = Fraction(value)
+    require(str(number) == value, "expected a fraction in lowest terms")
+    return number

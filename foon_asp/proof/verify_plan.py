@@ -3,9 +3,8 @@
 docs/dev/certificates.md describes these certificates and proves that what passes here is true. In short: how
 often a plan executes each unit satisfies conditions that can be read from the network. Of every node no more
 copies are used up than come (its *balance*), and each cut before a goal, or before a unit that is executed,
-is crossed. Take conditions with weights from 0: whatever they say in all, each unit by itself can make it up
-no more cheaply than at the least of what it costs less what it brings, over all the counts that it may have.
-These add up to a bound on every plan, since a plan fulfils all of the conditions.
+is crossed. A Farkas combination of these conditions, with weights from 0, bounds the cost of every plan: the
+right-hand sides, plus for each unit the least of its reduced cost over all the counts that it may have.
 
 What becomes of the inputs of a unit, and whether a plan runs, is worked out here anew from the plain network.
 """
@@ -41,35 +40,35 @@ from foon_asp.proof.verify import (
 
 PLAN = Form("foon-asp certificate of a plan", 1, KEYS | {"items", "unreached"})
 
-# The rules that plans can be held against: those that remove units or ask for one, and those whose limit
-# counts each execution.
+# The rules that plans can be checked against: those that remove units, at-least-one constraints, and those
+# whose limit counts each execution.
 COUNTING = ("at_most_units", "at_most_motion", "at_most_utensil_uses", "at_most_price")
 WANTING = ("forbid_ingredient", "require_motion", "require_object", "require_ingredient")
 RULES = frozenset({*COUNTING, *WANTING, *(name for name, rule in LIBRARY.items() if rule.removes)})
 
-FINE = 10**9  # parts of a logarithm, where plans are to be as good by success as the one in hand
-_MOST = 10**9  # copies in stock, and executions that a branch is about
+FINE = 10**9  # scale of logarithms, where plans have to be as good by success as the incumbent
+_MAX_COUNT = 10**9  # of copies in stock, and of executions in a branch
 _LEAF = {"weights", "before", "balance", "limits", "levels"}
 
 
 class Flow(NamedTuple):
-    """What a unit asks for, uses up and adds, one copy of each."""
+    """The preconditions of a unit, the nodes that it consumes and those that it adds, one copy of each."""
 
     asks: frozenset[int]
     uses: frozenset[int]
     adds: frozenset[int]
 
 
-class Part(NamedTuple):
-    """A part of all plans: how often they execute units, and take items, at least and at most."""
+class Node(NamedTuple):
+    """A node of the branching, with its proof: bounds on the counts of units, and of items taken."""
 
     proof: Any
-    least: Mapping[int, int]
-    most: Mapping[int, int]
+    min_counts: Mapping[int, int]
+    max_counts: Mapping[int, int]
 
 
 def is_of_plan(certificate: Any) -> bool:
-    """Whether a certificate is of a plan, for which everything is looked at."""
+    """Return whether a certificate claims to be one of a plan."""
     return isinstance(certificate, dict) and certificate.get("format") == PLAN.name
 
 
@@ -89,20 +88,20 @@ def verify_plan(certificate: Any, subject: Subject) -> Verified:
     require(subject.network.level == 3, "below level 3 nothing says what is used up: contents decide")
     require(RULES.issuperset(rule["rule"] for rule in rules), "a rule that plans are not held against")
     check = PlanCheck(certificate, rules, subject)
-    return check.claim()._replace(used_up=UsedUp(check.stock, check.told))
+    return check.claim()._replace(used_up=UsedUp(check.stock, check.stays_stated))
 
 
 class PlanCheck(Check):
     """One certificate of a plan, checked against its network.
 
-    Where the objective ``kitchen`` counts items, a *member* is also an item: what never runs out is taken or
-    not, and of what is in stock so many copies.
+    Where the objective ``kitchen`` counts items, a *member* is also an item: its count is 0 or 1 for an item
+    that is not consumable, else the number of copies taken from the stock.
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
         items = read_object(certificate["items"], ("stock", "stays"))
         self.stock = _stock(items["stock"], subject.kitchen)
-        self.told = _told(items["stays"], len(subject.network.objects))
+        self.stays_stated = _stays_stated(items["stays"], len(subject.network.objects))
         self.endless = frozenset(subject.kitchen) - self.stock.keys()
         self.flow, self.cap, self.whole = cache(self._flow), cache(self._cap), cache(self._whole)
         super().__init__(certificate, rules, subject)
@@ -110,7 +109,7 @@ class PlanCheck(Check):
     # --- what units do
 
     def _flow(self, unit: int) -> Flow:
-        """Return what a unit asks for, uses up and adds: none of its inputs is added."""
+        """Return preconditions, consumption and add effects of a unit; inputs are never add effects."""
         network = self.network
         asks = frozenset(o for o in self.needs(unit) if o is not None)
         gives = frozenset(o for o in self.gives(unit) if o is not None)
@@ -119,12 +118,12 @@ class PlanCheck(Check):
         return Flow(asks, gone, gives.difference(network.inputs[unit]))
 
     def _stays(self, unit: int, o: int) -> bool:
-        """Whether an input is still there when a unit has run: as somebody says, or by the rule."""
+        """Return whether an input stays when a unit has run: as the certificate states, or by the rule."""
         objects, network = self.network.objects, self.network
         node = objects[o]
-        for said in (o, node.label):
-            if said in self.told:
-                return self.told[said]
+        for name in (o, node.label):
+            if name in self.stays_stated:
+                return self.stays_stated[name]
         outputs = [objects[made] for made in network.outputs[unit]]
         if any(output.label == node.label for output in outputs):
             return o in network.outputs[unit]
@@ -132,15 +131,15 @@ class PlanCheck(Check):
             holds = any(contents.ingredients for contents in node.contents)
             if not holds or any(output.is_in(node.label) for output in outputs):
                 return True
-        inputs = {objects[taken].label for taken in network.inputs[unit]}
+        inputs = {objects[taken_input].label for taken_input in network.inputs[unit]}
         around = {relation.object for relation in node.relations} & inputs
         return any(output.label in around and node.label in output.ingredients for output in outputs)
 
     @cached_property
     def idle(self) -> frozenset[int]:
-        """The units that no plan executes: removed by a rule, or asking for what nothing reaches.
+        """The units that no plan executes: removed by a rule, or with an unreachable precondition.
 
-        No node of ``unreached`` is there at first, and whatever adds one asks for another.
+        No node of ``unreached`` is initial, and every achiever of one has another as a precondition.
         """
         network = self.network
         stated = self.certificate["unreached"]
@@ -148,48 +147,48 @@ class PlanCheck(Check):
         removed = self.ruled.removed
         for o in unreached:
             self._spend(1 + len(network.producers[o]))
-            require(not self._there(o), "what is there at first is called unreached")
+            require(not self._is_initial(o), "what is there at first is called unreached")
             for unit in network.producers[o]:
                 reaches = o in self.flow(unit).adds and self.flow(unit).asks.isdisjoint(unreached)
                 require(unit in removed or not reaches, "what a unit can add is called unreached")
         asking = {unit for o in unreached for unit in network.consumers[o] if o in self.flow(unit).asks}
         return removed | asking
 
-    def _there(self, o: int) -> bool:
+    def _is_initial(self, o: int) -> bool:
         return o in self.endless or self.stock.get(o, 0) > 0
 
     def _members(self, cut: frozenset[int]) -> Iterator[int]:
-        """Yield the units that add a node of the cut and ask for none, and the kitchen items in it."""
+        """Yield the landmark of a cut: units that add one of its nodes and need none, and its items."""
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
-        found: list[int] = []
+        units: list[int] = []
         for o in cut:
             if o in own:
-                found += own[o]
+                units += own[o]
                 continue
-            if self._there(o):
+            if self._is_initial(o):
                 require("kitchen" in self.objectives, "a cut holds a kitchen item")
                 yield len(network) + o
             if o not in self.endless:
-                found += (unit for unit in network.producers[o] if o in self.flow(unit).adds)
-        yield from (u for u in found if u not in self.idle and cut.isdisjoint(self.flow(u).asks))
+                units += (unit for unit in network.producers[o] if o in self.flow(unit).adds)
+        yield from (u for u in units if u not in self.idle and cut.isdisjoint(self.flow(u).asks))
 
     # --- the plan
 
     def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
-        """Run the plan copy by copy; give what it costs as an amount and as figures."""
+        """Execute the plan copy by copy; return its cost as an amount and as figures."""
         network = self.network
-        copies, taken = Counter(self.stock), set[int]()
+        copies, items_taken = Counter(self.stock), set[int]()
         least: Counter[int] = Counter()  # copies of the stock that the plan cannot do without
-        for place, stated in enumerate(units):
+        for step, stated in enumerate(units):
             unit = read_number(stated, range(len(network)), "ids of units in a plan")
             asks, uses, adds = self.flow(unit)
             self._spend(1 + len(asks) + len(adds))
             require(
                 all(o in self.endless or copies[o] > 0 for o in asks),
-                f"unit {unit} of the plan lacks a copy of an input at step {place + 1}",
+                f"unit {unit} of the plan lacks a copy of an input at step {step + 1}",
             )
-            taken |= asks & self.endless
+            items_taken |= asks & self.endless
             for o in asks & self.stock.keys():
                 least[o] = max(least[o], 1 + self.stock[o] - copies[o])
             copies.subtract(uses - self.endless)
@@ -202,28 +201,28 @@ class PlanCheck(Check):
         first = len(network)
         members = [
             *units,
-            *(first + o for o in sorted(taken)),
+            *(first + o for o in sorted(items_taken)),
             *(first + o for o in sorted(least.elements())),
         ]
         total = self.sum(map(self._cost, members))
         return total, self._figures(units, total)
 
     def _keep_counts(self, counts: Counter[int]) -> None:
-        """Hold the counts of a plan against the rules; limits count each execution."""
+        """Check the counts of a plan against the rules; limits count each execution."""
         ruled, units = self.ruled, frozenset(counts)
         require(not units & ruled.removed, "the plan has a unit that a rule removes")
         wanted = all(not units.isdisjoint(ruled.makers[goal]) for goal in ruled.goals)
         require(wanted and not ruled.never, "the plan lacks what a rule asks for")
         for limit in ruled.limits.values():
             total = sum((limit.amounts.get(unit, 0) * n for unit, n in counts.items()), Fraction(0))
-            require(total <= limit.most, "the plan exceeds what a rule limits")
+            require(total <= limit.max_sum, "the plan exceeds what a rule limits")
 
     # --- the proof
 
     def _prove(self, proof: Any, least: Amount | None) -> None:
-        """Check a proof for each objective: plans as good by those before it cost at least so much by it.
+        """Check a proof for each objective that plans as good by those before cost at least ``least``.
 
-        ``None`` as what they cost is that there is none: nothing costs anything then, and bounds are above 0.
+        ``None`` claims that there is no plan: all costs are 0 then, and bounds have to be above 0.
         """
         proofs = read_list(proof)
         levels = range(max(1, len(self.objectives)))
@@ -234,105 +233,108 @@ class PlanCheck(Check):
             return
         self.least = least
         for level in levels:
-            waiting = [Part(proofs[level], {}, {})]
+            waiting = [Node(proofs[level], {}, {})]
             while waiting:
-                part = waiting.pop()
-                self._spend(1 + len(part.least) + len(part.most))
-                if "branch" in read_object(part.proof):
-                    waiting += self._divided(part)
+                node = waiting.pop()
+                self._spend(1 + len(node.min_counts) + len(node.max_counts))
+                if "branch" in read_object(node.proof):
+                    waiting += self._divided(node)
                 else:
-                    self._prove_part(part, level)
+                    self._prove_node(node, level)
 
-    def _divided(self, part: Part) -> Iterator[Part]:
-        """Divide a part by how often something is executed or taken."""
-        proof = read_object(part.proof, ("branch", "most", "up_to", "above"))
+    def _divided(self, node: Node) -> Iterator[Node]:
+        """Yield the children of a node: counts of a member up to a number, and above it."""
+        proof = read_object(node.proof, ("branch", "most", "up_to", "above"))
         member = self._branch(proof["branch"])
-        most = read_number(proof["most"], range(_MOST), "the most executions of a branch")
-        up_to = min(most, part.most.get(member, most))
-        yield Part(proof["up_to"], part.least, {**part.most, member: up_to})
-        above = max(most + 1, part.least.get(member, 0))
-        yield Part(proof["above"], {**part.least, member: above}, part.most)
+        max_count = read_number(proof["most"], range(_MAX_COUNT), "the most executions of a branch")
+        up_to = min(max_count, node.max_counts.get(member, max_count))
+        yield Node(proof["up_to"], node.min_counts, {**node.max_counts, member: up_to})
+        above = max(max_count + 1, node.min_counts.get(member, 0))
+        yield Node(proof["above"], {**node.min_counts, member: above}, node.max_counts)
 
-    def _prove_part(self, part: Part, level: int) -> None:
-        """Add up what the weights of conditions say of the plans of a part."""
-        require(set(part.proof) <= _LEAF, "expected weights of conditions or a branch")
-        conditions = _Conditions(self, level, part.proof)
+    def _prove_node(self, node: Node, level: int) -> None:
+        """Check that the Farkas combination of a leaf proves the bound for its plans."""
+        require(set(node.proof) <= _LEAF, "expected weights of conditions or a branch")
+        conditions = _Conditions(self, level, node.proof)
         bound = conditions.constant
-        for member in sorted({*conditions.executed, *conditions.used, *part.least, *part.most}):
-            cheapest = self._cheapest(member, level, part, conditions)
+        for member in sorted({*conditions.executed, *conditions.used, *node.min_counts, *node.max_counts}):
+            cheapest = self._cheapest(member, level, node, conditions)
             if cheapest is None:
                 return  # there are no such counts
             self._add(bound, cheapest)
         self._require_enough(bound, level)
 
-    def _cheapest(self, member: int, level: int, part: Part, conditions: "_Conditions") -> Amount | None:
-        """Return the least of what a member costs less what it brings, over the counts that it may have.
+    def _cheapest(self, member: int, level: int, node: Node, conditions: "_Conditions") -> Amount | None:
+        """Return the least of the reduced cost of a member over the counts that it may have.
 
-        ``None`` where it may have none. It is linear in the count from 1 on, so only the ends matter.
+        ``None`` where it may have no count. The cost is linear in the count from 1 on, so only the ends
+        matter.
         """
-        low, most = part.least.get(member, 0), self._most(member, level, part)
-        if most is not None and most < low:
+        low, high = node.min_counts.get(member, 0), self._max_count(member, level, node)
+        if high is not None and high < low:
             return None
-        each = self.sum([self.part(member, level), conditions.executed.get(member, {})])
-        each = self.sum([each, *(self.times(w, self.kept(member, at)) for at, w in conditions.levels)])
+        per_execution = self.sum([self.cost_by(member, level), conditions.executed.get(member, {})])
+        per_execution = self.sum(
+            [per_execution, *(self.times(w, self.kept(member, at)) for at, w in conditions.levels)]
+        )
         once = conditions.used.get(member, {})
-        found: list[Amount] = [{}] if low == 0 else []
-        if most is None or most >= 1:
-            found.append(self.sum([self.times(each, Fraction(max(low, 1))), once]))
-            if self.sign(each) < 0:
-                require(most is not None, f"member {member} brings more than it costs, without end")
-                found.append(self.sum([self.times(each, Fraction(most or 0)), once]))
-        cheapest = found[0]
-        for other in found[1:]:
+        ends: list[Amount] = [{}] if low == 0 else []
+        if high is None or high >= 1:
+            ends.append(self.sum([self.times(per_execution, Fraction(max(low, 1))), once]))
+            if self.sign(per_execution) < 0:
+                require(high is not None, f"member {member} brings more than it costs, without end")
+                ends.append(self.sum([self.times(per_execution, Fraction(high or 0)), once]))
+        cheapest = ends[0]
+        for other in ends[1:]:
             if self.sign(self.sum([other, negative(cheapest)])) < 0:
                 cheapest = other
         return cheapest
 
-    def _most(self, member: int, level: int, part: Part) -> int | None:
-        """Return how often a member can be executed or taken; ``None`` where nothing says so."""
-        known = [part.most[member]] if member in part.most else []
+    def _max_count(self, member: int, level: int, node: Node) -> int | None:
+        """Return an upper bound on the count of a member; ``None`` where there is no bound."""
+        bounds = [node.max_counts[member]] if member in node.max_counts else []
         if member >= len(self.network):
             o = member - len(self.network)
-            return min([*known, self.stock.get(o, 1)])
+            return min([*bounds, self.stock.get(o, 1)])
         if member in self.idle:
             return 0
-        known += self._allowed(member)
+        bounds += self._allowed(member)
         if self.least is not None:
-            known += (
+            bounds += (
                 cap for at in range(level + 1) if (cap := self.cap(member, at, at == level)) is not None
             )
-        return min(known, default=None)
+        return min(bounds, default=None)
 
     def _allowed(self, unit: int) -> Iterator[int]:
-        """Yield how often limits allow a unit to be executed, those that nothing gives back to."""
+        """Yield the bounds on the count of a unit by limits without negative amounts."""
         for limit in self.ruled.limits.values():
             amount = limit.amounts.get(unit, 0)
             if amount > 0 and min(limit.amounts.values()) >= 0:
-                yield max(0, math.floor(limit.most / amount))
+                yield max(0, math.floor(limit.max_sum / amount))
 
     def _cap(self, unit: int, level: int, less: bool) -> int | None:
-        """Return how often a plan can execute a unit that costs no more by an objective, or less."""
-        each, most = self.kept(unit, level), self.limit(level)
-        if each == 0:
+        """Return a bound on the count of a unit in plans that cost no more by an objective, or ``less``."""
+        per_execution, max_cost = self.kept(unit, level), self.limit(level)
+        if per_execution == 0:
             return None
         exact = less and self.objectives[level] != "success"
-        return math.ceil(most / each) - 1 if exact else math.floor(most / each)
+        return math.ceil(max_cost / per_execution) - 1 if exact else math.floor(max_cost / per_execution)
 
-    def part(self, member: int, level: int) -> Amount:
-        """Return what a member costs by one objective."""
+    def cost_by(self, member: int, level: int) -> Amount:
+        """Return the cost of a member by one objective."""
         return {key: value for key, value in self._cost(member).items() if key[0] == level}
 
     def kept(self, member: int, level: int) -> Fraction:
-        """Return what a member costs by an objective as one number; by success a little less."""
+        """Return the cost of a member by an objective as one number; by success rounded down."""
         if self.objectives[level] != "success":
-            return self.part(member, level).get((level, None), Fraction(0))
+            return self.cost_by(member, level).get((level, None), Fraction(0))
         if member >= len(self.network):
             return Fraction(0)
         require(self.rate(member) > 0, "a unit that never succeeds is not compared")
         return Fraction(math.floor(FINE * self.minus_log(self.rate(member))[0]), FINE)
 
     def limit(self, level: int) -> Fraction:
-        """Return what plans may cost by an objective as one number; by success a little more."""
+        """Return the greatest cost of plans by an objective as one number; by success rounded up."""
         assert self.least is not None
         stated = {rate: value for (at, rate), value in self.least.items() if at == level}
         if self.objectives[level] != "success":
@@ -345,7 +347,7 @@ class PlanCheck(Check):
         return self.cuts[read_number(number, range(len(self.cuts)), "the number of a cut")]
 
     def holds_goal(self, nodes: frozenset[int]) -> bool:
-        """Whether a cut holds a goal that is not there without end, or what a rule asks for."""
+        """Return whether a cut holds a goal that is consumable or made, or a goal of a rule."""
         wanted = any(goal in nodes and goal not in self.endless for goal in self.goals)
         return wanted or not nodes.isdisjoint(self.ruled.goals)
 
@@ -356,7 +358,7 @@ class PlanCheck(Check):
         return {key: value for key, value in self._read(parts).items() if key[0] == level}
 
     def _require_enough(self, bound: Amount, level: int) -> None:
-        """Require that a bound, rounded up to the next cost that there is, is what is claimed."""
+        """Require that a bound, rounded up to the next possible cost, is at least the claimed one."""
         if self.least is None:
             enough = self.sign(bound) > 0
         else:
@@ -369,7 +371,7 @@ class PlanCheck(Check):
         require(enough, "the weights do not add up to enough")
 
     def _whole(self, level: int) -> int | None:
-        """Return the common denominator of what units cost by an objective; ``None`` if not known."""
+        """Return the common denominator of the costs of units by an objective; ``None`` if not known."""
         objective = self.objectives[level]
         if objective == "success" or objective in self.measures:
             return None
@@ -381,10 +383,11 @@ class PlanCheck(Check):
 
 
 class _Conditions:
-    """Conditions with weights from 0, all in one: what each execution brings, each use, and what is left.
+    """A Farkas combination: conditions with weights from 0, added up.
 
-    ``executed`` and ``used`` have what comes to a member for each execution (or copy that is taken) and for
-    being used at all; it is below 0 where it brings something. ``levels`` are weights of earlier objectives.
+    ``executed`` and ``used`` have the coefficients of each member per execution (or copy taken) and for being
+    used at all, with the sign reversed. ``constant`` is the right-hand side, and ``levels`` are the weights
+    of earlier objectives.
     """
 
     def __init__(self, check: PlanCheck, level: int, proof: Mapping[str, Any]) -> None:
@@ -403,23 +406,23 @@ class _Conditions:
             self._demand(weight, -1)
         for (o,), weight in self._read("balance"):
             self._balance(o, weight)
-        for (place,), weight in self._read("limits"):
-            limit = check.limit_at(place)
-            self._demand(weight, -limit.most)
+        for (number,), weight in self._read("limits"):
+            limit = check.limit_at(number)
+            self._demand(weight, -limit.max_sum)
             for member, amount in limit.amounts.items():
                 self._bring(self.executed, member, weight, amount)
-        for (place,), weight in self._read("levels"):
-            require(0 <= place < level, "an objective that is not before this one is given a weight")
-            self._demand(weight, -check.limit(place))
-            self.levels.append((place, weight))
+        for (number,), weight in self._read("levels"):
+            require(0 <= number < level, "an objective that is not before this one is given a weight")
+            self._demand(weight, -check.limit(number))
+            self.levels.append((number, weight))
 
     def _read(self, key: str, numbers: int = 1) -> Iterator[tuple[list[int], Amount]]:
-        """Read the weights of conditions under a key, each named by so many numbers."""
+        """Yield the weights of conditions under a key, each named by ``numbers`` numbers."""
         read = partial(self.check.weight, level=self.level)
         return self.check.read_weights(key, self.proof.get(key, []), read, numbers)
 
     def _cross(self, cut: int, weight: Amount, holds: bool) -> None:
-        """A cut is crossed at least once: a member is used, or a copy of an item in it is taken."""
+        """Add the condition of a cut: a member is used, or a copy of an item in it is taken."""
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")
         check.met.add(cut)
@@ -428,22 +431,22 @@ class _Conditions:
             self._bring(self.used if member < len(check.network) else self.executed, member, weight, -1)
 
     def _balance(self, o: int, weight: Amount) -> None:
-        """Of a node no more copies are used up than come, and one of a goal is left."""
+        """Add the balance of a node: no more copies are consumed than there are, and a goal keeps one."""
         check, network = self.check, self.check.network
         read_number(o, range(len(network.objects)), "the id of a node in a balance")
         require(o not in check.endless, "what never runs out has no balance")
-        there = check.stock.get(o, 0)
-        if "kitchen" in check.objectives and there:
+        initial = check.stock.get(o, 0)
+        if "kitchen" in check.objectives and initial:
             self._bring(self.executed, len(network) + o, weight, -1)
-            there = 0
-        self._demand(weight, (o in check.goals) - there)
+            initial = 0
+        self._demand(weight, (o in check.goals) - initial)
         for unit in {*network.producers[o], *network.consumers[o]}:
             flow = check.flow(unit)
             if change := (o in flow.adds) - (o in flow.uses):
                 self._bring(self.executed, unit, weight, -change)
 
     def _demand(self, weight: Amount, factor: int | Fraction) -> None:
-        """Add to what all plans have to bring, and members bring some of."""
+        """Add to the right-hand side."""
         self.constant = self._added(self.constant, weight, factor)
 
     def _bring(self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction) -> None:
@@ -454,23 +457,23 @@ class _Conditions:
 
 
 def _stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
-    """Read how many copies there are of kitchen items, by id."""
+    """Read the copies in stock of kitchen items, by id."""
     what = "items and their copies in stock"
     pairs = [read_pair(pair, what) for pair in read_list(value)]
     for number in chain.from_iterable(pairs):
-        read_number(number, range(_MOST), what)
+        read_number(number, range(_MAX_COUNT), what)
     ids = [o for o, _ in pairs]
     require(ids == sorted(set(ids)), "expected items of the stock in order, each of them once")
     require(all(o in kitchen for o in ids), "expected kitchen items in stock")
     return dict(pairs)
 
 
-def _told(value: Any, nodes: int) -> dict[str | int, bool]:
-    """Read what is said of labels and of nodes: whether they stay."""
+def _stays_stated(value: Any, nodes: int) -> dict[str | int, bool]:
+    """Read which labels and nodes stay when they are used."""
     what = "labels and nodes, and whether they stay"
     pairs = [read_pair(pair, what) for pair in read_list(value)]
-    known = all(type(name) in (int, str) and type(stays) is bool for name, stays in pairs)
-    require(known, f"expected {what}")
+    well_formed = all(type(name) in (int, str) and type(stays) is bool for name, stays in pairs)
+    require(well_formed, f"expected {what}")
     labels = [name for name, _ in pairs if type(name) is str]
     ids = [name for name, _ in pairs if type(name) is int]
     require([*labels, *ids] == [name for name, _ in pairs], "expected labels, and then nodes")

@@ -17,7 +17,7 @@ def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
     if problem.items is not None:
         return []
     run = used_up_run(problem, units)
-    if run.shortage is None or not run.shortage.taken:
+    if run.shortage is None or not run.shortage.consumers:
         return []
     text = _lack_text(problem, units, run.shortage)
     text += "" if run.proved else ", and no other order was found"
@@ -25,7 +25,7 @@ def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
 
 
 def _lack_text(problem: Problem, units: Sequence[FunctionalUnit], lack: Shortage) -> str:
-    node, before = lack.node, [position + 1 for position in lack.taken]
+    node, before = lack.node, [position + 1 for position in lack.consumers]
     used = f"{_steps_text(before)} use{'s' if len(before) == 1 else ''} up"
     if lack.step is None:
         return f"{used} the goal {node}"

@@ -1,6 +1,6 @@
-"""A question made small before it is searched, with a tree in hand and a bound on all others.
+"""Presolve of a question before the search: reductions, an incumbent, and a lower bound.
 
-A name is imported when it is first asked for: who only names reductions needs no search.
+Names are imported lazily: listing the reductions needs no search.
 """
 
 import importlib

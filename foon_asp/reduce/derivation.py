@@ -1,4 +1,4 @@
-"""Cheapest ways to make things when sharing is ignored: estimates, and trees that follow them."""
+"""The heuristics h_add and h_max (Bonet and Geffner 2001), and trees that follow their best achievers."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from heapq import heapify, heappop, heappush
@@ -9,34 +9,34 @@ from foon_asp.reduce.graph import Graph
 
 
 class Derivations(NamedTuple):
-    """What some actions can make, cheapest first.
+    """The h-values and best achievers of the objects that some actions reach, cheapest first.
 
-    ``cost[o]`` estimates what object ``o`` costs and ``maker[o]`` is the action that gives it for that;
-    following the makers back never runs in a circle. ``before[a]`` is the estimate for action ``a`` with all
-    that it needs; actions that cannot run are not there. What is there from the start is in none of them.
+    ``cost[o]`` is the h-value of object ``o`` and ``maker[o]`` its best achiever; following best achievers is
+    acyclic. ``h_actions[a]`` is the h-value of action ``a``: of its preconditions, plus its own cost. Actions
+    that cannot run, objects that are not reached, and initial objects are missing.
     """
 
     cost: dict[int, int]
     maker: dict[int, int]
-    before: dict[int, int]
+    h_actions: dict[int, int]
 
     def tree(self, graph: Graph, objects: Iterable[int]) -> set[int] | None:
-        """Return the actions that make the objects by following the makers; ``None`` if one is not made."""
+        """Return the actions that derive objects by best achievers; ``None`` if an object is not reached."""
         return follow(objects, self.maker, graph.needs, graph.start)
 
 
 def derive(
-    graph: Graph, actions: Collection[int], cost: Mapping[int, int] | Callable[[int], int], added: bool
+    graph: Graph, actions: Collection[int], cost: Mapping[int, int] | Callable[[int], int], h_add: bool
 ) -> Derivations:
-    """Find cheapest derivations from the start by the given actions, with costs of zero or more.
+    """Return the h-values of the objects that actions reach, for costs of zero or more.
 
-    With ``added``, an action costs as much as all that it needs together and itself (h_add), which counts
-    twice what is used twice; else as the dearest of its needs and itself (h_max), which no derivation goes
-    below (Bonet and Geffner 2001). Dijkstra's algorithm, with a bucket for each figure.
+    With ``h_add``, the h-values of an action's preconditions are added, which counts shared actions more than
+    once; else the greatest counts (h_max), which is a lower bound on every derivation (Bonet and Geffner
+    2001). The generalized Dijkstra algorithm, with a bucket for each h-value.
     """
     price = cost.__getitem__ if isinstance(cost, Mapping) else cost
     needs, gives, start = graph.needs, graph.gives, graph.start
-    takers: dict[int, list[int]] = {}
+    consumers: dict[int, list[int]] = {}
     missing: dict[int, int] = {}
     buckets: dict[int, list[int]] = {}
     for action in actions:
@@ -44,42 +44,42 @@ def derive(
         for o in needs[action]:
             if o not in start:
                 count += 1
-                if o in takers:
-                    takers[o].append(action)
+                if o in consumers:
+                    consumers[o].append(action)
                 else:
-                    takers[o] = [action]
+                    consumers[o] = [action]
         if count:
             missing[action] = count
         else:
             buckets.setdefault(price(action), []).append(action)
-    figures = list(buckets)
-    heapify(figures)
+    h_values = list(buckets)
+    heapify(h_values)
     costs: dict[int, int] = {}
     maker: dict[int, int] = {}
-    before: dict[int, int] = {}
+    h_actions: dict[int, int] = {}
     nobody: list[int] = []
-    while figures:
-        figure = heappop(figures)
-        for action in buckets[figure]:  # grows while it is walked through, where actions cost nothing
-            before[action] = figure
+    while h_values:
+        h_value = heappop(h_values)
+        for action in buckets[h_value]:  # grows while it is walked through, where actions cost nothing
+            h_actions[action] = h_value
             for o in gives[action]:
                 if o in costs or o in start:
                     continue
-                costs[o] = figure
+                costs[o] = h_value
                 maker[o] = action
-                for taker in takers.get(o, nobody):
-                    count = missing[taker] - 1
-                    missing[taker] = count
+                for consumer in consumers.get(o, nobody):
+                    count = missing[consumer] - 1
+                    missing[consumer] = count
                     if not count:
-                        own = price(taker)
-                        if added:
-                            total = own + sum([costs[n] for n in needs[taker] if n in costs])
+                        own = price(consumer)
+                        if h_add:
+                            total = own + sum([costs[n] for n in needs[consumer] if n in costs])
                         else:
-                            total = own + figure
-                        waiting = buckets.get(total)
-                        if waiting is None:
-                            buckets[total] = [taker]
-                            heappush(figures, total)
+                            total = own + h_value
+                        bucket = buckets.get(total)
+                        if bucket is None:
+                            buckets[total] = [consumer]
+                            heappush(h_values, total)
                         else:
-                            waiting.append(taker)
-    return Derivations(costs, maker, before)
+                            bucket.append(consumer)
+    return Derivations(costs, maker, h_actions)

@@ -1,78 +1,78 @@
-"""Actions that another one can always stand in for."""
+"""Dominance pruning: actions that another action dominates."""
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from foon_asp.reduce.graph import Graph
 
-_FEW = 20  # actions that are looked at one by one
+_INDEXED = 20  # actions of a node: more are indexed by effect
 
 
 def undominated(graph: Graph, actions: Collection[int], cost: Callable[[int], int]) -> set[int]:
-    """Leave out every action of which another one left needs no more, gives all, and costs no more.
+    """Return the actions that stay: no other has a subset of their preconditions, all effects, and less cost.
 
-    In any tree the other can stand in for it, and the tree gets no dearer under the whole list of objectives,
-    since ``cost`` compares by all of them. What nobody needs counts for nothing. Of actions that can stand in
-    for each other, one is left.
+    In any tree, the dominating action can replace the dominated one, and the tree costs no more under the
+    whole list of objectives, since ``cost`` compares by all of them. Effects that no action needs do not
+    count. Of actions that dominate each other, one stays.
     """
     start = graph.start
     needed = {a: frozenset(o for o in graph.needs[a] if o not in start) for a in actions}
     wanted = set(graph.goals).union(*needed.values())
-    given = {a: frozenset(o for o in graph.gives[a] if o in wanted) for a in actions}
-    left = set(actions)
-    takers = Counter(o for needs in needed.values() for o in needs)
-    made = Counter(o for gives in given.values() for o in gives)
-    rare = {o: place for place, o in enumerate(sorted(takers, key=lambda o: (takers[o], o)))}
+    effects = {a: frozenset(o for o in graph.gives[a] if o in wanted) for a in actions}
+    remaining = set(actions)
+    consumers = Counter(o for needs in needed.values() for o in needs)
+    made = Counter(o for gives in effects.values() for o in gives)
+    rare = {o: i for i, o in enumerate(sorted(consumers, key=lambda o: (consumers[o], o)))}
     ordered = {a: sorted(needed[a], key=rare.__getitem__) for a in actions}
-    alike = _Needs(ordered, given)
+    by_preconditions = _PreconditionTrie(ordered, effects)
     made_by = {o: (made[o], o) for o in made}.__getitem__
     prices = {a: cost(a) for a in actions}
     for action in sorted(actions, key=lambda a: (prices[a], -a), reverse=True):
-        gives, price = given[action], prices[action]
+        gives, price = effects[action], prices[action]
         if not gives:
-            left.discard(action)
+            remaining.discard(action)
             continue
         rarest = min(gives, key=made_by)
-        for other in alike.within(ordered[action], rarest):
-            if other != action and prices[other] <= price and other in left and gives <= given[other]:
-                left.discard(action)
+        for other in by_preconditions.with_subset(ordered[action], rarest):
+            if other != action and prices[other] <= price and other in remaining and gives <= effects[other]:
+                remaining.discard(action)
                 break
-    return left
+    return remaining
 
 
-class _Needs:
-    """Actions by their needs, in a tree of sets (a set-trie, Savnik 2013): rare needs branch first."""
+class _PreconditionTrie:
+    """A set-trie (Savnik 2013) of actions by their preconditions, rare preconditions first."""
 
-    def __init__(self, ordered: Mapping[int, Sequence[int]], given: Mapping[int, frozenset[int]]) -> None:
-        self._given = given
-        self._below: dict[tuple[int, int], int] = {}  # by place and need, the place below it
-        self._at: list[list[int]] = [[]]
-        self._by_given: dict[int, dict[int, list[int]]] = {}
+    def __init__(self, ordered: Mapping[int, Sequence[int]], effects: Mapping[int, frozenset[int]]) -> None:
+        self._effects = effects
+        self._children: dict[tuple[int, int], int] = {}  # by node and precondition
+        self._actions_at: list[list[int]] = [[]]
+        self._by_effect: dict[int, dict[int, list[int]]] = {}
         for action, needs in ordered.items():
-            place = 0
+            node = 0
             for need in needs:
-                below = self._below.setdefault((place, need), len(self._at))
-                if below == len(self._at):
-                    self._at.append([])
-                place = below
-            self._at[place].append(action)
+                child = self._children.setdefault((node, need), len(self._actions_at))
+                if child == len(self._actions_at):
+                    self._actions_at.append([])
+                node = child
+            self._actions_at[node].append(action)
 
-    def within(self, needs: Sequence[int], gives: int) -> Iterator[int]:
-        """Return the actions that need no more; of many, only those that give something."""
-        at, below = self._at, self._below
-        places = [0]  # those below which the needs so far lead
-        yield from at[0] if len(at[0]) <= _FEW else self._giving(0).get(gives, ())
+    def with_subset(self, needs: Sequence[int], effect: int) -> Iterator[int]:
+        """Yield actions with a subset of some preconditions; of many, only achievers of ``effect``."""
+        actions_at, children = self._actions_at, self._children
+        nodes = [0]  # reached by subsets of the preconditions so far
+        yield from (actions_at[0] if len(actions_at[0]) <= _INDEXED else self._achieving(0).get(effect, ()))
         for need in needs:
-            for place in [below[place, need] for place in places if (place, need) in below]:
-                places.append(place)
-                found = at[place]
-                yield from found if len(found) <= _FEW else self._giving(place).get(gives, ())
+            for node in [children[node, need] for node in nodes if (node, need) in children]:
+                nodes.append(node)
+                actions = actions_at[node]
+                yield from (actions if len(actions) <= _INDEXED else self._achieving(node).get(effect, ()))
 
-    def _giving(self, place: int) -> dict[int, list[int]]:
-        if place not in self._by_given:
-            givers: dict[int, list[int]] = {}
-            for action in self._at[place]:
-                for o in self._given[action]:
-                    givers.setdefault(o, []).append(action)
-            self._by_given[place] = givers
-        return self._by_given[place]
+    def _achieving(self, node: int) -> dict[int, list[int]]:
+        if node not in self._by_effect:
+            achievers: dict[int, list[int]] = {}
+            for action in self._actions_at[node]:
+                for o in self._effects[action]:
+                    achievers.setdefault(o, []).append(action)
+            self._by_effect[node] = achievers
+        return self._by_effect[node]

@@ -1,4 +1,4 @@
-"""What actions cost under a lexicographic list of objectives, as whole numbers."""
+"""Costs of actions under a lexicographic list of objectives, as whole numbers."""
 
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
@@ -12,13 +12,13 @@ from foon_asp.bounds.landmark_cuts import Cuts
 from foon_asp.bounds.lexicographic import Lexicographic
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 
-_COARSE = 1000  # steps to 1 of -ln(rate) and of fractions, where a cost need not be exact
-_SCALE = 10**40  # steps of logarithms where rounding must not decide
-_ROUNDED = 10**20  # of these, more than rounding can add up to
-_FINEST = 10**9  # the largest number in a rate that is told apart from others without asking how far
+_COARSE = 1000  # scale of -ln(rate) and of fractions in estimates
+_SCALE = 10**40  # scale of logarithms where rounding must not decide
+_ROUNDED = 10**20  # more than the sum of all rounding errors at that scale
+_FINEST = 10**9  # the largest denominator of a rate that the logarithms distinguish for sure
 _FINE = Context(prec=60, rounding=ROUND_CEILING)
 _SHOWN = Context(prec=18, rounding=ROUND_CEILING)  # of bounds on success
-_LONGEST = 50_000  # factors of the products of rates that are compared
+_LONGEST = 50_000  # sum of exponents up to which products of rates are compared
 
 
 class TooFineError(Exception):
@@ -26,13 +26,12 @@ class TooFineError(Exception):
 
 
 class ExactCosts:
-    """Costs of actions as one whole number each.
+    """The cost of each action as one whole number, by which sums compare lexicographically.
 
-    An objective that adds up is counted in steps, of which 1 has as many as make all costs whole numbers, and
-    multiplied by more than the sum of everything after it, so that sums are compared as the lexicographic
-    list compares. Where rates multiply, each of a set of coprime factors has a rounded logarithm of forty
-    digits: equal products are then equal sums, and ``doubt`` is by how much two sums have to differ for
-    rounding not to matter. It is 0 where nothing is rounded.
+    An additive objective is scaled to whole numbers and multiplied by more than the greatest sum of the
+    objectives after it. Where rates multiply, each factor of a coprime base has a rounded logarithm of forty
+    digits: equal products are then equal sums, and sums that differ by more than ``doubt`` compare exactly
+    in spite of rounding. It is 0 where nothing is rounded.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
@@ -45,9 +44,9 @@ class ExactCosts:
         last_first = self._objectives[::-1]
         self._factors = {last_first[0]: 1}
         for after, objective in pairwise(last_first):
-            self._factors[objective] = self._factors[after] * (1 + self._most(after, actions))
+            self._factors[objective] = self._factors[after] * (1 + self._upper_bound(after, actions))
         self.doubt = sum(_ROUNDED * self._factors[objective] for objective in self._multiplied)
-        self._known: dict[int, int] = {}
+        self._cache: dict[int, int] = {}
         self._actions = actions
         self._price: Callable[[int], int] | None = None
         self._times = 1
@@ -56,36 +55,36 @@ class ExactCosts:
     def priced(
         self, counts: Callable[[int], int], price: int | Fraction, limit: int | None = None
     ) -> "ExactCosts":
-        """Return the same costs with a price on each unit, as many times as it counts.
+        """Return these costs with a price on each unit, times its count.
 
-        Where the price is a fraction, all are as many times as much as makes them whole. With a ``limit``,
-        they are met as soon as a bound reaches it, or a tree stays below it.
+        Where the price is a fraction, all costs are multiplied by its denominator. With a ``limit``, a search
+        ends as soon as a bound reaches the limit or a tree costs less.
         """
         units, costs = self._units, copy(self)
         whole, costs._times = Fraction(price).as_integer_ratio()
-        costs._known, costs._limit, costs.doubt = {}, limit, self.doubt * costs._times
+        costs._cache, costs._limit, costs.doubt = {}, limit, self.doubt * costs._times
         costs._price = lambda action: whole * counts(action) if action < units else 0
         return costs
 
     @property
     def limited(self) -> bool:
-        """Whether any tree below a limit will do."""
+        """Whether a search ends at any tree below the limit."""
         return self._limit is not None
 
     @property
     def beyond(self) -> int:
-        """More than any set of actions costs."""
+        """A number above the cost of every set of actions."""
         first = self._objectives[0]
-        return self._factors[first] * (1 + self._most(first, self._actions))
+        return self._factors[first] * (1 + self._upper_bound(first, self._actions))
 
     def _step(self, objective: Objective, actions: Collection[int]) -> int:
-        """Return into how many steps 1 is divided, so that no cost of an action is between two."""
+        """Return the common denominator of the costs of actions by an objective."""
         if objective.row.whole or objective in self._multiplied:
             return 1
         return math.lcm(*{cost.denominator for cost in self._costs(objective, actions)})
 
-    def _most(self, objective: Objective, actions: Collection[int]) -> int:
-        """Return what no set of actions costs more than by one objective."""
+    def _upper_bound(self, objective: Objective, actions: Collection[int]) -> int:
+        """Return an upper bound on the scaled cost of a set of actions by one objective."""
         if objective is Objective.UNITS:
             return len(actions)
         if objective in self._multiplied:
@@ -98,16 +97,16 @@ class ExactCosts:
         return self._problem.figures(objective, (a for a in actions if a < self._units))
 
     def __call__(self, action: int) -> int:
-        """Return what an action costs."""
-        cost = self._known.get(action)
+        """Return the cost of an action."""
+        cost = self._cache.get(action)
         if cost is None:
             cost = self._times * sum(self._figure(o, action) * factor for o, factor in self._factors.items())
             cost += self._price(action) if self._price else 0
-            self._known[action] = cost
+            self._cache[action] = cost
         return cost
 
     def first(self, total: int) -> int | Fraction:
-        """Turn a lower bound on sums into one on the first objective (on success: from above)."""
+        """Return the bound on the first objective by a lower bound on sums (on success: an upper bound)."""
         figure = total // self._factors[self._objectives[0]]
         if self._objectives[0] not in self._multiplied:
             return self.total(self._objectives[0], figure)
@@ -115,11 +114,10 @@ class ExactCosts:
         return min(Fraction(1), Fraction(_SHOWN.plus(value)))
 
     def met(self, cuts: Cuts, tree: Collection[int]) -> bool:
-        """Whether cuts prove that no tree is better than this one, without any rounding.
+        """Return whether a cost partition proves this tree optimal, exactly.
 
-        Weights are sums and differences of costs: each is what its cheapest member had left. Where rates
-        multiply they are computed again as exponents of rates, which are exact, and so is what is left of
-        the costs.
+        Each weight is the reduced cost of its cheapest action. Where rates multiply, weights and reduced
+        costs are recomputed as vectors of exponents of rates, which are exact.
         """
         total = sum(map(self, tree))
         if self._limit is not None:
@@ -130,28 +128,30 @@ class ExactCosts:
             return False
         rates = [rate for rate, weight in self._weights.items() if weight]
         order = Lexicographic([rates if o in self._multiplied else None for o in self._objectives])
-        places = {rate: place for place, rate in enumerate(rates)}
-        vectors = _Vectors(self, places)
-        rests = {action: vectors.of(action) for action in cuts.left}
+        coordinates = {rate: i for i, rate in enumerate(rates)}
+        vectors = _Vectors(self, coordinates)
+        reduced_costs = {action: vectors.of(action) for action in cuts.reduced_costs}
         proved = [0] * order.width
         for cut in cuts.cuts:
-            weight = tuple(rests[cut.cheapest])
+            weight = tuple(reduced_costs[cut.cheapest])
             if _large(weight) or order.sign(weight) < 0:
                 return False
-            for place, part in enumerate(weight):
-                if part:
-                    proved[place] += part
+            for i, coordinate in enumerate(weight):
+                if coordinate:
+                    proved[i] += coordinate
                     for action in cut.members:
-                        rests[action][place] -= part
-        if any(_large(rest) or order.sign(rest) < 0 for rest in rests.values()):
+                        reduced_costs[action][i] -= coordinate
+        if any(
+            _large(reduced_cost) or order.sign(reduced_cost) < 0 for reduced_cost in reduced_costs.values()
+        ):
             return False
         for action in tree:
-            for place, part in enumerate(vectors.of(action)):
-                proved[place] -= part
+            for i, coordinate in enumerate(vectors.of(action)):
+                proved[i] -= coordinate
         return not _large(proved) and order.sign(proved) >= 0
 
     def of(self, costs: Costs) -> int:
-        """Return what a tree costs, or more by the rounding."""
+        """Return the cost of a tree, or more by the rounding error."""
         total = 0
         for objective, factor in self._factors.items():
             measure = Fraction(costs.measure(objective))
@@ -163,15 +163,15 @@ class ExactCosts:
         return total * self._times
 
     def figures(self, action: int) -> list[tuple[Objective, int]]:
-        """Return what an action costs by each objective, in steps; for ``success`` in rounded logarithms."""
+        """Return the scaled cost of an action by each objective; for ``success`` a rounded logarithm."""
         return [(objective, self._figure(objective, action)) for objective in self._objectives]
 
     def total(self, objective: Objective, figure: int) -> int | Fraction:
-        """Turn steps into a cost by an objective that adds up."""
+        """Return the cost by an additive objective of a scaled sum."""
         return figure if objective.row.whole else Fraction(figure, self._steps[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
-        """Whether rounded logarithms add up to that of a product of rates."""
+        """Return whether a sum of rounded logarithms is that of a product of rates."""
         return abs(figure - _logarithm(product.denominator) + _logarithm(product.numerator)) < _ROUNDED
 
     def rate(self, action: int) -> Fraction:
@@ -193,18 +193,18 @@ def _large(vector: Sequence[int]) -> bool:
 
 
 class _Vectors:
-    """Costs as vectors of whole numbers: one for an objective that counts, one for each rate else."""
+    """Costs as vectors: one coordinate for an additive objective, one for each rate where rates multiply."""
 
-    def __init__(self, costs: ExactCosts, places: dict[Fraction, int]) -> None:
-        self._costs, self._places = costs, places
+    def __init__(self, costs: ExactCosts, coordinates: dict[Fraction, int]) -> None:
+        self._costs, self._coordinates = costs, coordinates
 
     def of(self, action: int) -> list[int]:
         vector: list[int] = []
         for objective, figure in self._costs.figures(action):
             if multiplies(objective):
-                parts = [0] * len(self._places)
+                parts = [0] * len(self._coordinates)
                 if figure:
-                    parts[self._places[self._costs.rate(action)]] = 1
+                    parts[self._coordinates[self._costs.rate(action)]] = 1
                 vector += parts
             else:
                 vector.append(figure)
@@ -212,7 +212,7 @@ class _Vectors:
 
 
 class CoarseCosts:
-    """The first objective alone, in small whole numbers and never above what it is: a guide for estimates."""
+    """Costs by the first objective only, rounded down to small whole numbers, for estimates."""
 
     def __init__(self, problem: Problem, objective: Objective) -> None:
         self._problem, self._objective = problem, objective
@@ -222,7 +222,7 @@ class CoarseCosts:
         self._by_unit = {unit: _coarse(rate) for unit, rate in own.items()}
 
     def __call__(self, action: int) -> int:
-        """Return about what an action costs."""
+        """Return the approximate cost of an action."""
         if action >= len(self._problem.network):
             return self._objective.row.item
         if self._multiplied:
@@ -239,7 +239,7 @@ def _coarse(rate: Fraction) -> int:
 
 
 def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
-    """Return for each rate the sum of the scaled logarithms of its coprime factors, rounded each."""
+    """Return for each rate the sum of the rounded scaled logarithms of its coprime factors."""
     if not all(0 < rate <= 1 and rate.denominator <= _FINEST for rate in rates):
         raise TooFineError
     base = coprime_base(n for rate in rates for n in rate.as_integer_ratio())

@@ -1,50 +1,62 @@
-"""What trees have beyond a tree for the goals, to have a unit of each required set as well."""
+"""Extensions of a tree for the goals alone by a unit of each required set."""
 
 from collections.abc import Callable, Collection
 from dataclasses import replace
 
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
-from foon_asp.reduce.narrow import narrow
-from foon_asp.reduce.near import near
+from foon_asp.reduce.reduced_cost_neighbourhood import neighbourhood
+from foon_asp.reduce.restricted_subproblem import restricted_subproblem
 from foon_asp.reduce.within_reach import within_reach
 
 _FIRST = 500  # actions nearest to the required sets, among which an extension is looked for
 
 
-def extended(graph: Graph, tree: Collection[int], cost: Callable[[int], int], most: int) -> set[int] | None:
-    """Return a tree with what else it takes to have a unit of each required set, as cheaply as estimates say.
+def extended(
+    graph: Graph, tree: Collection[int], cost: Callable[[int], int], max_actions: int
+) -> set[int] | None:
+    """Return a tree extended by a unit of each required set and its derivation, following h_add.
 
-    ``None`` where none is found among ``most`` actions.
+    ``None`` where no extension is found among ``max_actions`` actions.
     """
     towards = _towards_required(graph)
     price = _free(tree, cost)
-    few = {*tree, *near(towards, range(len(graph.needs)), price, sum(map(cost, tree)), most=_FIRST)}
-    found = derive(towards, few, price, added=True).tree(towards, towards.goals)
-    if found is None:
-        narrowed = narrow(towards, few, price, most)
-        found = None if narrowed is None else narrowed[1]
-    return None if found is None else {*tree, *found}
+    candidates = {
+        *tree,
+        *neighbourhood(towards, range(len(graph.needs)), price, sum(map(cost, tree)), enough=_FIRST),
+    }
+    extension = derive(towards, candidates, price, h_add=True).tree(towards, towards.goals)
+    if extension is None:
+        narrowed = restricted_subproblem(towards, candidates, price, max_actions)
+        extension = None if narrowed is None else narrowed[1]
+    return None if extension is None else {*tree, *extension}
 
 
 def extensions(
     graph: Graph, free: Collection[int], cost: Callable[[int], int], limit: int, expired: Callable[[], bool]
 ) -> set[int]:
-    """Return the actions that an extension of costs up to a limit can have, as if ``free`` ones cost nothing.
+    """Return the actions of extensions that cost up to ``limit`` where ``free`` actions cost nothing.
 
-    All on a way from an action of it to a required set is of the extension, too, so that counts in full, and
-    what the action builds upon does besides, but for free ones.
+    The path from an action of an extension to a required set is in the extension, so it counts in full, and
+    so does the derivation of the action, without free actions.
     """
     towards, price = _towards_required(graph), _free(free, cost)
-    every = range(len(graph.needs))
-    left = near(towards, every, cost, limit, least=1, within=within_reach(graph, every, price))
+    all_actions = range(len(graph.needs))
+    remaining = neighbourhood(
+        towards,
+        all_actions,
+        cost,
+        limit,
+        min_reduced_cost=1,
+        reachable=within_reach(graph, all_actions, price),
+    )
     while not expired():
-        made = derive(graph, left.union(free), price, added=False)
-        nearer = near(towards, left, cost, limit, made.before, least=1)
-        if len(nearer) == len(left):
+        derivations = derive(graph, remaining.union(free), price, h_add=False)
+        nearer = neighbourhood(towards, remaining, cost, limit, derivations.h_actions, min_reduced_cost=1)
+        if len(nearer) == len(remaining):
             break
-        left = nearer
-    return left
+        remaining = nearer
+    return remaining
 
 
 def _towards_required(graph: Graph) -> Graph:

@@ -1,4 +1,4 @@
-"""A question as plain arrays: actions that need and give objects, towards some goals."""
+"""A question as a hypergraph of actions with preconditions and add effects, and goals."""
 
 from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -13,10 +13,10 @@ class Graph(Hypergraph):
     """A hypergraph with goals; nothing is copied where the network has it already.
 
     Action ``a`` below ``units`` is the unit of that id. Where the items taken from the kitchen are counted,
-    taking item ``o`` is the action ``units + o``, which needs nothing and gives ``o``, and ``start`` is
-    empty; elsewhere ``start`` is the kitchen. Actions may give what is there from the start, to no effect.
-    ``goals`` are those not there from the start. A set of units of which a restriction requires one is one
-    more object, which each of its units gives, and a goal; ``required`` are these objects.
+    taking item ``o`` is the action ``units + o``, without preconditions and with the effect ``o``, and
+    ``start`` is empty; elsewhere ``start`` is the kitchen. Add effects may be initial objects. ``goals`` are
+    without initial objects. A required set of a restriction is an additional object, which is an add effect
+    of each of its units, and a goal; ``required`` are these objects.
     """
 
     units: int
@@ -25,27 +25,27 @@ class Graph(Hypergraph):
     required: range
 
     def cone(self, allowed: Container[int] | None = None) -> tuple[set[int], set[int]]:
-        """Go backwards from the goals through all (allowed) actions, and stop at the start.
+        """Return the relevant actions and objects, by going backwards from the goals through allowed actions.
 
-        Gives the actions that something wanted can come from, in no order, and the objects that are wanted.
+        Stops at initial objects; ``None`` allows all actions.
         """
         return backwards(self.goals, self.makers, self.needs, self.start, allowed)
 
-    def thin(self, most: int, cost: Callable[[int], int]) -> "Graph":
-        """Return a graph in which required sets have few units each, for estimates.
+    def thin(self, max_achievers: int, cost: Callable[[int], int]) -> "Graph":
+        """Return a graph in which each required set has at most ``max_achievers`` units, for estimates.
 
-        Most units of a large set are far from the goals, and one at random is enough to see that it costs no
-        more. Those stay that lack least, the cheapest first; what the others give is not told.
+        The units with the fewest preconditions that are not initial stay, the cheapest first; the achievers
+        of other objects do not change.
         """
 
         def lacking(action: int) -> tuple[int, int, int]:
             return sum(o not in self.start for o in self.needs[action]), cost(action), action
 
-        few = {o: tuple(nsmallest(most, self.makers[o], lacking)) for o in self.required}
-        if not few:
+        kept = {o: tuple(nsmallest(max_achievers, self.makers[o], lacking)) for o in self.required}
+        if not kept:
             return self
         assert isinstance(self.makers, Left)
-        return replace(self, known_makers=self.makers.instead(few))
+        return replace(self, known_makers=self.makers.instead(kept))
 
 
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
@@ -56,10 +56,10 @@ def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
     required = range(size, size + (len(restriction.required) if restriction else 0))
     gives: Sequence[Sequence[int]] = problem.gives
     if restriction and restriction.required:
-        gives = more = list(problem.gives)
-        for o, able in enumerate(restriction.required, start=size):
-            for unit in able:
-                more[unit] = (*more[unit], o)
+        gives = extended = list(problem.gives)
+        for o, units_of_set in enumerate(restriction.required, start=size):
+            for unit in units_of_set:
+                extended[unit] = (*extended[unit], o)
     graph = Graph(
         size + len(required),
         problem.needs,
@@ -72,14 +72,17 @@ def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
     )
     if not any(objective.row.item for objective in objectives):
         return graph
-    taken = {o: (units + o,) for o in kitchen}
-    made = problem.makers
+    taking = {o: (units + o,) for o in kitchen}
+    achievers = problem.makers
     return replace(
         graph,
         needs=[*problem.needs, *([()] * size)],
-        gives=[*([o for o in given if o not in kitchen] for given in gives), *((o,) for o in range(size))],
+        gives=[
+            *([o for o in effects if o not in kitchen] for effects in gives),
+            *((o,) for o in range(size)),
+        ],
         start=frozenset(),
-        known_makers=made.instead(taken)
-        if isinstance(made, Left)
-        else [taken.get(o, able) for o, able in enumerate(made)],
+        known_makers=achievers.instead(taking)
+        if isinstance(achievers, Left)
+        else [taking.get(o, units_of_set) for o, units_of_set in enumerate(achievers)],
     )

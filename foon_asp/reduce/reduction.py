@@ -1,4 +1,4 @@
-"""A question made small before it is searched: a good tree, a lower bound, and what is left between them."""
+"""Presolve of a question: an incumbent, a lower bound, and the units that a better tree can have."""
 
 import math
 import random
@@ -10,54 +10,54 @@ from typing import TYPE_CHECKING, NamedTuple
 from foon_asp.bounds.landmark_cuts import Cuts, landmark_cuts
 from foon_asp.garbage import uncollected
 from foon_asp.problem import Objective, Problem
+from foon_asp.reduce.action_landmarks import relevant_beside_landmarks
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.dominance import undominated
 from foon_asp.reduce.exact_costs import CoarseCosts, ExactCosts, TooFineError
 from foon_asp.reduce.extension import extended, extensions
-from foon_asp.reduce.forced import beside_forced
 from foon_asp.reduce.graph import Graph, graph_of
-from foon_asp.reduce.narrow import narrow
-from foon_asp.reduce.near import near
+from foon_asp.reduce.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.reduce.reductions import ALL, Reduction
-from foon_asp.reduce.upper_bound import following, guessed, improved, varied, without_spare
-from foon_asp.reduce.wide import Wide, dear_left_out, rests
+from foon_asp.reduce.restricted_subproblem import restricted_subproblem
+from foon_asp.reduce.upper_bound import following, guessed, improved, irredundant, perturbation_search
+from foon_asp.reduce.wide import Wide, reduced_cost_fixing, reduced_costs_of
 
 if TYPE_CHECKING:  # few questions need it
     from foon_asp.bounds.lower_bound import Cases
     from foon_asp.bounds.shared_costs import SharedCosts
 
-_LARGE = 40_000  # actions from which on it pays not to look at all of them
-_FIRST = 4000  # actions nearest to the goals, among which a tree is looked for before all others count
-_ABLE = 50  # units of a required set that count while trees are looked for
+_LARGE = 40_000  # with more actions, it pays not to look at all of them
+_FIRST = 4000  # actions nearest to the goals, among which a first tree is looked for
+_ABLE = 50  # units kept of a required set while trees are looked for
 _MANY = 2000  # actions among which better trees are looked for
-_EASY = 600  # actions that clingo chooses from faster than better trees are looked for here
-_SMALL = 200  # actions that clingo chooses from faster than costs are shared out among all cuts
-_ROUNDS = 24  # of cuts, trees and what they leave
-_FEW = 6  # of these, where other costs are tried
-_EFFORT = 3_000_000  # actions looked at while branching, before clingo is asked: some 20 s of a processor
-_NEAR = 4, 3  # of so many parts of what the tree costs, those that a bound has to reach for branching to pay
-_TRIES, _THOROUGH = 10, 40  # times all actions, looked at for better trees: by chance, or twice among few
-_DENSE = 20  # members of landmarks for each action, after which relaxations tell more than greedy cuts
-_SPARSE = 50, 0.01  # members, or of the actions: landmarks of more make relaxations slow, and say little
-_TWOFOLD = 2  # members of landmarks for each action: with more, sparse ones are begun with
-_CLOSE = 0.98  # of what the tree costs: from such a bound on, branching tells sooner than more cuts
-_AMONG = 0.2  # of the actions are few enough to be searched among; of more, chance finds better trees
-_TAKEN = 1e-4  # of an action, from which share on a relaxed solution takes some of it
-_WORTH = 0.9  # of the actions may be left for another time to be worth it
+_EASY = 600  # with fewer actions, clingo is faster than looking for better trees here
+_SMALL = 200  # with fewer actions, clingo is faster than optimal cost partitioning
+_ROUNDS = 24  # of cuts, better trees and reductions
+_ROUNDS_AT_COSTS = 6  # of cuts, better trees and reductions where other costs are tried
+_EFFORT = 3_000_000  # actions looked at while branching, before clingo is called: some 20 s of processor time
+_BRANCHING_GAP = 4, 3  # branching pays where 4 times the bound is at least 3 times the cost of the incumbent
+_TRIES, _THOROUGH = 10, 40  # times all actions: the effort of perturbation search, or half that of branching
+_DENSE = 20  # landmark actions per action, after which the LP is better than greedy cuts
+_SPARSE = 50, 0.01  # landmark actions, or share of all: larger landmarks make the LP slow and are weak
+_TWOFOLD = 2  # landmark actions per action: with more, the LP begins with sparse landmarks only
+_CLOSE = 0.98  # of the incumbent's cost: from such a bound on, branching is faster than more cuts
+_AMONG = 0.2  # of the actions: fewer are searched by branching, more by perturbation search
+_USED = 1e-4  # an action of a greater LP value counts as used by an LP solution
+_WORTH = 0.9  # of the actions: another round pays if no more remain
 
 
 class Reduced(NamedTuple):
-    """What is left of a question.
+    """A presolved question.
 
-    ``tree`` are the units of a tree, or ``None`` where there is none. ``units`` are those that a better tree
-    can have and those of the tree, ascending. ``settled`` says that the tree is proved optimal. ``costs``
-    compares trees exactly and ``bound`` is a lower bound by it on every tree; ``None`` and 0 where there is
-    none. ``cuts`` are the weighted cuts of the greatest sum, over the units left at the time. ``interrupted``
-    says that ctrl-C ended it, or that time was up before anything was left out: ``units`` says nothing then.
-    ``wide`` tells which units trees up to a cost can have, whatever rules leave of these trees. ``shared``
-    are the cuts among which costs were shared out as well as can be, where the others left too much.
-    ``cases`` are those that a proof by branching tells apart. ``tight`` are cuts of all relaxed solutions by
-    which something was left out, over the units left at the time.
+    ``tree`` are the units of the incumbent, or ``None`` where there is no tree. ``units`` are those of the
+    incumbent and those that a better tree can have, ascending. ``settled`` is true where the incumbent is
+    proved optimal. ``costs`` compares trees exactly, and ``bound`` is a lower bound by it on every tree;
+    ``None`` and 0 where rates are too fine. ``cuts`` is the greedy cost partition of the greatest sum, over
+    the units remaining at the time. ``interrupted`` is true where ctrl-C ended it, or time was up before any
+    reduction: ``units`` means nothing then. ``wide`` is the gap-bounded subproblem, which holds whatever
+    rules trees have to keep to. ``shared`` is the optimal cost partition, if one was computed. ``cases`` are
+    the actions branched on. ``tight`` are the tight cuts of the LP solutions by which units were left out,
+    over the units remaining at the time.
     """
 
     tree: frozenset[int] | None
@@ -74,7 +74,7 @@ class Reduced(NamedTuple):
 
 
 class Listener:
-    """Hears of trees and bounds as they are found; override what you want to know."""
+    """Observer of incumbents and bounds; its methods do nothing unless overridden."""
 
     def tree(self, units: frozenset[int]) -> None:
         """Receive a tree that is better than the one before."""
@@ -84,7 +84,7 @@ class Listener:
 
 
 class Bounds(Listener):
-    """Passes on bounds alone: trees found on the way may not keep to all rules."""
+    """Observer that passes on bounds only: trees found on the way may not keep to all rules."""
 
     def __init__(self, listener: Listener) -> None:
         self._listener = listener
@@ -101,17 +101,17 @@ def reduce(
     expired: Callable[[], bool] = lambda: False,
     listener: Listener | None = None,
     guard: Callable[[], AbstractContextManager[object]] = nullcontext,
-    spare: bool = False,
-    rest: bool = False,
+    redundant: bool = False,
+    other_rules: bool = False,
     brief: bool = False,
 ) -> Reduced:
-    """Leave of a problem what a search for the best tree still has to look at.
+    """Reduce a problem to the units that a search for the best tree still has to look at.
 
-    ``objectives`` is the list as it is optimized, ``units`` being in it, so that every unit costs
-    something. Without reductions that is what can be made from the kitchen and the goals can need.
-    ``expired`` is asked now and then; what takes longer is interrupted, as by ctrl-C, by the ``guard``.
-    ``rest`` says that trees have to keep to more than is known here, which ``wide`` is needed for; ``spare``
-    that those may have units that lead to no goal. ``brief`` asks for any tree, and for ``wide`` alone.
+    ``objectives`` is the list as it is optimized, with ``units`` in it, so that every unit costs something.
+    Without reductions, the relevant units that can be executed remain. ``expired`` returns whether time is
+    up; longer computations are interrupted, as by ctrl-C, by the ``guard``. With ``other_rules``, trees have
+    to keep to rules unknown here, for which ``wide`` is computed; with ``redundant``, they may have units
+    that lead to no goal. ``brief`` computes any tree and ``wide`` only.
     """
     with uncollected():
         with guard():
@@ -121,8 +121,8 @@ def reduce(
                 frozenset(reductions),
                 expired,
                 listener or Listener(),
-                spare,
-                rest,
+                redundant,
+                other_rules,
             )
             reducer.brief = brief
         return reducer.reduce(guard)
@@ -133,26 +133,33 @@ def at_costs(
     objectives: Sequence[Objective],
     costs: ExactCosts,
     expired: Callable[[], bool],
-    in_hand: Collection[int] = (),
+    known_tree: Collection[int] = (),
     below: int = 0,
-    many: float = math.inf,
+    max_actions: float = math.inf,
 ) -> Reduced:
-    """Ask the same for other costs; ``in_hand`` is a tree.
+    """Reduce a gap-bounded subproblem under other costs, with ``known_tree`` as a first incumbent, if any.
 
-    With ``below``, only units are left out that only trees have that cost as much, and no less than the tree
-    found. That is given up where the first cuts leave out hardly any, and more than ``many``.
+    With ``below``, only units are left out whose trees all cost at least ``below`` and at least as much as
+    the incumbent; that is given up where more than ``max_actions`` remain and the first cuts exclude hardly
+    any.
     """
     with uncollected():
         reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
         reducer = _Reducer(
-            wide.problem, tuple(objectives), frozenset(reductions), expired, Listener(), wide.spare, rest=True
+            wide.problem,
+            tuple(objectives),
+            frozenset(reductions),
+            expired,
+            Listener(),
+            wide.redundant,
+            other_rules=True,
         )
         reducer.costs = reducer.coarse = costs
-        if not isinstance(wide.left, range):  # other objectives may count no items
-            reducer.known = {action for action in wide.left if action < len(reducer.graph.needs)}
-        reducer.in_hand, reducer.below = wide.actions(in_hand), below
-        reducer.rounds, reducer.many = _FEW, many
-        if below:  # what is left goes to clingo with a tree in hand
+        if not isinstance(wide.remaining, range):  # other objectives may count no items
+            reducer.relevant = {action for action in wide.remaining if action < len(reducer.graph.needs)}
+        reducer.known_tree, reducer.below = wide.actions(known_tree), below
+        reducer.rounds, reducer.many = _ROUNDS_AT_COSTS, max_actions
+        if below:  # clingo gets the remaining actions with an incumbent
             reducer.small = _EASY
         return reducer.reduce(nullcontext)
 
@@ -165,53 +172,58 @@ class _Reducer:
         reductions: frozenset[Reduction],
         expired: Callable[[], bool],
         listener: Listener,
-        spare: bool,
-        rest: bool,
+        redundant: bool,
+        other_rules: bool,
         extended: bool = False,
     ) -> None:
         self.problem, self.objectives, self.reductions = problem, objectives, reductions
-        self.expired, self.listener, self.spare, self.rest = expired, listener, spare, rest
-        self.extended = extended  # so costs of all actions are asked for later
+        self.expired, self.listener, self.redundant, self.other_rules = (
+            expired,
+            listener,
+            redundant,
+            other_rules,
+        )
+        self.extended = extended  # costs of all actions are needed later
         self.rounds, self.effort, self.small = _ROUNDS, _EFFORT, _SMALL
-        self.many = math.inf  # are too many where hardly any are left out
-        self.extending = False  # some trees were left out before there were cuts
+        self.many = math.inf  # actions with which to give up if hardly any are left out
+        self.extending = False  # whether trees were left out before there were cuts
         self.graph: Graph = graph_of(problem, objectives)
         self.coarse: Callable[[int], int] = CoarseCosts(problem, objectives[0])
         self.thin = self.graph.thin(_ABLE, self.coarse)
-        self.known: Collection[int] | None = None  # what can run and leads to a goal
-        self.left: Collection[int]  # there before a tree is
+        self.relevant: Collection[int] | None = None  # actions that can run and lead to a goal
+        self.remaining: Collection[int]  # assigned before ``tree``
         self.tree: set[int] = set()
-        self.in_hand: set[int] = set()  # a tree, where one is known
-        self.below = 0  # what is cheaper counts, though it is no cheaper than the tree in hand
+        self.known_tree: set[int] = set()  # a tree known from the start, if any
+        self.below = 0  # trees that cost less count, even if they are no better than the incumbent
         self.costs: ExactCosts | None = None
         self.bound = 0
         self.cuts: Cuts | None = None
         self.wide: Wide | None = None
         self.shared: SharedCosts | None = None
-        self.tight: Sequence[frozenset[int]] = ()  # cuts to share costs out among
-        self.once: dict[frozenset[int], None] = {}  # cuts that were, at any time
+        self.tight: Sequence[frozenset[int]] = ()  # cuts to begin optimal cost partitioning with
+        self.once: dict[frozenset[int], None] = {}  # cuts tight at any time, in order
         self.chance = random.Random(0)
         self.cases: Cases = None
-        self.brief = False  # whether cuts alone are wanted
-        self.proved = False  # whether the tree is the best, as there is none better for the goals alone
+        self.brief = False  # whether only cuts are wanted
+        self.proved = False  # whether the tree is optimal because its cost is optimal for the goals alone
 
     def reduce(self, guard: Callable[[], AbstractContextManager[object]]) -> Reduced:
         ended = settled = hopeless = False
         try:
-            guide = self._by_extending(guard)
+            h_values = self._by_extending(guard)
             if self.proved:
                 return self._result(settled=True)
             with guard():
-                guide = guide or self._near_goals() or self._whole()
-                hopeless = guide is None
-                if guide is not None and self.reductions:
-                    if not self.extending:  # else it was heard of
-                        if self.in_hand:
+                h_values = h_values or self._near_goals() or self._whole()
+                hopeless = h_values is None
+                if h_values is not None and self.reductions:
+                    if not self.extending:  # else the listener has it already
+                        if self.known_tree:
                             self.tree = min(
-                                self.tree, self.in_hand, key=lambda tree: sum(map(self.coarse, tree))
+                                self.tree, self.known_tree, key=lambda tree: sum(map(self.coarse, tree))
                             )
-                        self._take(without_spare(self.graph, self.tree, self.coarse))
-                    settled = self._narrow(guide)
+                        self._take(irredundant(self.graph, self.tree, self.coarse))
+                    settled = self._reduce(h_values)
                 ended = True
         except KeyboardInterrupt:
             if not (self.tree or hopeless):
@@ -222,207 +234,218 @@ class _Reducer:
         return result if ended else result._replace(interrupted=True)
 
     def _by_extending(self, guard: Callable[[], AbstractContextManager[object]]) -> dict[int, int] | None:
-        """Leave what cheap trees for the goals alone can have, and what else leads to required sets.
+        """Keep the units of cheap trees for the goals alone, and of cheap extensions to the required sets.
 
-        Of a tree, some units are one for the goals alone. These cost no more than it does, and the others no
-        more than what is then left of its cost. A tree as cheap as the best one for the goals alone is the
-        best. Gives how dear objects are, or ``None`` where nothing is required, or that does not help.
+        Every tree contains one for the goals alone, which costs no more; the other units cost at most the
+        difference. A tree as cheap as the best one for the goals alone is optimal. Returns h-values of
+        objects, or ``None`` where nothing is required or this relaxation does not help.
         """
         graph, restriction, limits = self.graph, self.problem.restriction, Reduction.DEAR in self.reductions
-        if self.rest or restriction is None or not restriction.required or not limits:
+        if self.other_rules or restriction is None or not restriction.required or not limits:
             return None
-        alone = _Reducer(
+        goals_only = _Reducer(
             replace(self.problem, restriction=replace(restriction, required=())),
             self.objectives,
             self.reductions,
             self.expired,
             Bounds(self.listener),
-            self.spare,
-            self.rest,
+            self.redundant,
+            self.other_rules,
             extended=True,
         )
-        found = alone.reduce(guard)
-        costs, wide = alone.costs, alone.wide
+        reduced = goals_only.reduce(guard)
+        costs, wide = goals_only.costs, goals_only.wide
         if costs is None or wide is None:
             return None
         with guard():
-            tree = extended(self.thin, alone.tree, costs, len(graph.needs) // 4)
+            tree = extended(self.thin, goals_only.tree, costs, len(graph.needs) // 4)
             if tree is None:
                 return None
-            self.left = range(len(graph.needs))
-            self._take(without_spare(graph, tree, costs))
-            if found.interrupted:
+            self.remaining = range(len(graph.needs))
+            self._take(irredundant(graph, tree, costs))
+            if reduced.interrupted:
                 raise KeyboardInterrupt
             only_better, total = Reduction.BOUNDS in self.reductions, self._total(costs)
-            as_good = found.settled and self.tree == alone.tree if costs.doubt else total == found.bound
-            if only_better and as_good:
-                self.costs, self.bound, self.cuts = costs, found.bound, found.cuts
-                self.shared, self.cases, self.proved = found.shared, found.cases, True
+            optimal = (
+                reduced.settled and self.tree == goals_only.tree if costs.doubt else total == reduced.bound
+            )
+            if only_better and optimal:
+                self.costs, self.bound, self.cuts = costs, reduced.bound, reduced.cuts
+                self.shared, self.cases, self.proved = reduced.shared, reduced.cases, True
                 return None
             limit = total - only_better
-            among = {*wide.actions_within(limit, self.expired), *self.tree}
-            among |= extensions(graph, among, costs, limit - found.bound + costs.doubt, self.expired)
+            candidates = {*wide.actions_within(limit, self.expired), *self.tree}
+            candidates |= extensions(
+                graph, candidates, costs, limit - reduced.bound + costs.doubt, self.expired
+            )
             if self.expired():
                 raise KeyboardInterrupt
-            made = derive(graph, among, self.coarse, added=False)
-            self.left, self.extending = graph.cone(made.before)[0], True
-        return made.cost
+            derivations = derive(graph, candidates, self.coarse, h_add=False)
+            self.remaining, self.extending = graph.cone(derivations.h_actions)[0], True
+        return derivations.cost
 
     def _near_goals(self) -> dict[int, int] | None:
-        """Find a tree among the actions nearest to the goals, with all others still to be counted in.
+        """Find a first tree among the actions nearest to the goals, so that large networks are read lazily.
 
-        Most of a large network is too far from the goals for a good tree, and never looked at then. Gives how
-        dear objects are, or ``None`` where that does not help.
+        Most of a large network is too far from the goals for a good tree, and is never looked at. Returns
+        h-values of objects, or ``None`` where the network is small or no tree is found.
         """
         graph = self.graph
         size = len(graph.needs)
         if not self.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= _LARGE:
             return None
-        everything = range(size)
-        few = near(self.thin, everything, self.coarse, math.inf, most=_FIRST)
-        found = narrow(self.thin, few, self.coarse, size // 4) if len(few) >= _FIRST else None
-        if found is None:
+        all_actions = range(size)
+        candidates = neighbourhood(self.thin, all_actions, self.coarse, math.inf, enough=_FIRST)
+        subproblem = (
+            restricted_subproblem(self.thin, candidates, self.coarse, size // 4)
+            if len(candidates) >= _FIRST
+            else None
+        )
+        if subproblem is None:
             return None
-        self.left = everything
-        made, self.tree = found
-        return made.cost
+        self.remaining = all_actions
+        derivations, self.tree = subproblem
+        return derivations.cost
 
     def _whole(self) -> dict[int, int] | None:
-        """Leave all that can be made and that the goals can need; gives how dear objects are.
-
-        ``None`` where there is no tree.
-        """
+        """Keep the relevant actions that can run; return h-values of objects, ``None`` without a tree."""
         graph = self.graph
-        cone = graph.cone()[0] if self.known is None else self.known
-        made = derive(graph, cone, self.coarse, added=False)
-        tree = made.tree(graph, graph.goals)
+        cone = graph.cone()[0] if self.relevant is None else self.relevant
+        derivations = derive(graph, cone, self.coarse, h_add=False)
+        tree = derivations.tree(graph, graph.goals)
         if tree is None:
             return None
-        self.left = made.before
-        if len(made.before) < len(cone):  # what cannot run may have been all that some others are for
-            self.left, _ = graph.cone(made.before)
+        self.remaining = derivations.h_actions
+        if len(derivations.h_actions) < len(cone):  # others may lead only to actions that cannot run
+            self.remaining, _ = graph.cone(derivations.h_actions)
         self.tree = self.tree or tree
-        return made.cost
+        return derivations.cost
 
-    def _narrow(self, guide: dict[int, int]) -> bool:
-        """Go around until nothing changes; whether the tree is proved optimal."""
+    def _reduce(self, h_values: dict[int, int]) -> bool:
+        """Repeat bounds, heuristics and reductions up to a fixpoint; return whether optimality is proved."""
         with suppress(TooFineError):
-            all_costs = range(len(self.graph.needs)) if self.spare or self.extended else self.left
+            all_costs = range(len(self.graph.needs)) if self.redundant or self.extended else self.remaining
             self.costs = self.costs or ExactCosts(self.problem, self.objectives, all_costs)
         costs = self.costs
         if costs is not None and self.brief:
-            self._bound(costs, guide)
+            self._bound(costs, h_values)
             return False
-        if costs is not None and not isinstance(self.left, range) and len(self.left) > _EASY:
+        if costs is not None and not isinstance(self.remaining, range) and len(self.remaining) > _EASY:
             self._follow_added(costs)
-        if costs is not None and costs.limited:  # a cheap tree is all that is asked for
+        if costs is not None and costs.limited:  # any tree below the limit will do
             self._improve(costs, Cuts(0, {}, []), thorough=False)
             if self._met(costs, Cuts(0, {}, [])):
                 return True
         thorough = False  # as a last resort
         for turn in range(self.rounds):
-            before = len(self.left), self.tree
+            previous = len(self.remaining), self.tree
             if costs is not None and self.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
-                cuts = self._bound(costs, guide)
-                lazy = isinstance(self.left, range)  # so most of it leads to no goal, and is left out anyway
-                if not turn and self.below and not lazy and len(self.left) > self.many:
-                    self._drop_dear(costs, cuts)  # what is dear does not depend on the trees found
-                    if len(self.left) > max(self.many, _WORTH * before[0]):
+                cuts = self._bound(costs, h_values)
+                lazy = isinstance(self.remaining, range)  # most of it is not relevant, and goes anyway
+                if not turn and self.below and not lazy and len(self.remaining) > self.many:
+                    self._fix_by_reduced_cost(costs, cuts)  # the cutoff does not depend on the incumbent
+                    if len(self.remaining) > max(self.many, _WORTH * previous[0]):
                         return False
-                met = self._met(costs, cuts)
-                if not met and not self.expired():
+                optimal = self._met(costs, cuts)
+                if not optimal and not self.expired():
                     self._improve(costs, cuts, thorough)
-                    met = self._met(costs, cuts)
-                if met:
+                    optimal = self._met(costs, cuts)
+                if optimal:
                     return True
                 if Reduction.DEAR in self.reductions and not self.expired():
-                    self._drop_dear(costs, cuts)
+                    self._fix_by_reduced_cost(costs, cuts)
             if self.expired():
                 break
-            if isinstance(self.left, range):
+            if isinstance(self.remaining, range):
                 self._whole()
             if costs is not None and Reduction.DOMINATED in self.reductions:
-                self.left = undominated(self.graph, self.left, costs)
-            changed = (len(self.left), self.tree) != before
-            if not changed and Reduction.FORCED in self.reductions and len(self.left) <= _MANY:
-                self.left = beside_forced(self.graph, self.left)
-                changed = len(self.left) < before[0]
-            slow = len(self.left) > max(_MANY, _WORTH * before[0])  # another turn would bring little
+                self.remaining = undominated(self.graph, self.remaining, costs)
+            changed = (len(self.remaining), self.tree) != previous
+            if not changed and Reduction.FORCED in self.reductions and len(self.remaining) <= _MANY:
+                self.remaining = relevant_beside_landmarks(self.graph, self.remaining)
+                changed = len(self.remaining) < previous[0]
+            slow = len(self.remaining) > max(_MANY, _WORTH * previous[0])  # another turn would bring little
             if (slow or not changed) and costs is not None and not thorough:
                 if self._share_costs(costs) or self._branch(costs):
                     return True
-                changed = (len(self.left), self.tree) != before
-            if not changed and (thorough or len(self.left) <= _EASY):
+                changed = (len(self.remaining), self.tree) != previous
+            if not changed and (thorough or len(self.remaining) <= _EASY):
                 break
             thorough = not changed
-            guide = derive(self.graph, self.left, costs or self.coarse, added=False).cost
+            h_values = derive(self.graph, self.remaining, costs or self.coarse, h_add=False).cost
         return False
 
     def _branch(self, costs: ExactCosts) -> bool:
-        """Branch over what cuts leave, up to an effort; whether the tree is proved optimal.
+        """Branch and cut over the remaining actions, up to an effort; return whether optimality is proved.
 
-        Where rounding may decide, and where rules decide what counts as a tree, that is left to clingo.
+        Where rounding may decide, and where rules restrict trees, branching is left to clingo.
         """
         if not self._branches(costs):
             return False
-        total, (parts, enough) = self._total(costs), _NEAR
-        if len(self.left) <= _SMALL or self.bound * parts < total * enough:
+        total, (parts, enough) = self._total(costs), _BRANCHING_GAP
+        if len(self.remaining) <= _SMALL or self.bound * parts < total * enough:
             return False
         self._improve_on(costs)
         total = self._total(costs)
         from foon_asp.bounds.branching import Branching  # noqa: PLC0415 (few questions need it)
 
-        graph, left = self.graph, self.left
+        graph, remaining = self.graph, self.remaining
 
-        def bounded(bound: int) -> None:
+        def on_bound(bound: int) -> None:
             if bound > self.bound:
                 self.bound = bound
                 self.listener.bound(costs, bound)
 
-        known = [cut.objects for cut in self.cuts.cuts] if self.cuts else []
-        known += [objects for objects, _ in self.shared.cuts] if self.shared else []
+        cuts = [cut.objects for cut in self.cuts.cuts] if self.cuts else []
+        cuts += [objects for objects, _ in self.shared.cuts] if self.shared else []
         branching = Branching(
-            *(graph, graph.goals, left, costs, known, total),
-            lambda shares, without: guessed(graph, left, costs, shares, without),
-            *(self._take, bounded),
+            *(graph, graph.goals, remaining, costs, cuts, total),
+            lambda shares, without: guessed(graph, remaining, costs, shares, without),
+            *(self._take, on_bound),
         )
         settled = branching.search(self.effort, self.expired)
         self.effort = branching.effort
         if settled:
             self.cases = branching.cases()
-            bounded(self._total(costs))
+            on_bound(self._total(costs))
             return True
         if self.shared is not None and self._total(costs) < total:
-            self._shared(costs, self.shared)
+            self._apply(costs, self.shared)
         return False
 
     def _branches(self, costs: ExactCosts) -> bool:
-        """Whether branching may tell which tree is the best."""
+        """Return whether branching may prove a tree optimal."""
         only_better = Reduction.BOUNDS in self.reductions and self._total(costs) >= self.below
-        return only_better and not (costs.doubt or costs.limited or self.rest) and self.effort > 0
+        return only_better and not (costs.doubt or costs.limited or self.other_rules) and self.effort > 0
 
     def _share_costs(self, costs: ExactCosts) -> bool:
-        """Share costs out among all cuts at once, and leave out more; whether the tree is proved optimal."""
+        """Reduce by optimal cost partitioning; return whether optimality is proved."""
         from foon_asp.bounds.shared_costs import share_costs  # noqa: PLC0415 (few questions need it)
 
         if not self.tight and self.cuts:
-            few, part = _SPARSE
-            dense = sum(len(cut.members) for cut in self.cuts.cuts) > _TWOFOLD * len(self.left)
-            most = max(few, part * len(self.left)) if dense else math.inf
-            self.tight = [cut.objects for cut in self.cuts.cuts if len(cut.members) <= most]
-        before, settled, near = math.inf, False, False
+            min_members, ratio = _SPARSE
+            dense = sum(len(cut.members) for cut in self.cuts.cuts) > _TWOFOLD * len(self.remaining)
+            max_members = max(min_members, ratio * len(self.remaining)) if dense else math.inf
+            self.tight = [cut.objects for cut in self.cuts.cuts if len(cut.members) <= max_members]
+        before, settled, almost_closed = math.inf, False, False
 
-        def heard(shared: "SharedCosts") -> int:
-            nonlocal settled, near
+        def on_solution(shared: "SharedCosts") -> int:
+            nonlocal settled, almost_closed
             settled = self._followed(costs, shared, _TRIES)
             total = self._total(costs)
-            near = self._branches(costs) and self.bound > total * _CLOSE
-            return 0 if settled or near or len(self.left) < _WORTH * before else total
+            almost_closed = self._branches(costs) and self.bound > total * _CLOSE
+            return 0 if settled or almost_closed or len(self.remaining) < _WORTH * before else total
 
-        while not (settled or near) and self.small < len(self.left) < _WORTH * before and not self.expired():
-            before = len(self.left)
+        while (
+            not (settled or almost_closed)
+            and self.small < len(self.remaining) < _WORTH * before
+            and not self.expired()
+        ):
+            before = len(self.remaining)
             goals, total = self.graph.goals, self._total(costs)
-            shared = share_costs(self.graph, goals, self.left, costs, self.tight, total, self.expired, heard)
+            shared = share_costs(
+                self.graph, goals, self.remaining, costs, self.tight, total, self.expired, on_solution
+            )
             if shared is None:
                 break
             self.tight = shared.tight
@@ -430,46 +453,46 @@ class _Reducer:
         return settled
 
     def _followed(self, costs: ExactCosts, shared: "SharedCosts", tries: int) -> bool:
-        """Look for a better tree by a relaxed solution, and leave out more; whether it is proved optimal."""
+        """Look for a better tree by an LP solution, and reduce by it; return whether optimality is proved."""
         from foon_asp.bounds.shared_costs import PARTS  # noqa: PLC0415 (few questions need it)
 
-        among = {action for action, share in shared.shares.items() if share > _TAKEN} | self.tree
-        for tree in following(self.graph, self.left, costs, shared):
-            among |= tree
+        candidates = {action for action, share in shared.shares.items() if share > _USED} | self.tree
+        for tree in following(self.graph, self.remaining, costs, shared):
+            candidates |= tree
             self._take_better(tree, costs)
         least = -(-shared.bound // PARTS)
         if least < self._total(costs):
-            if len(among) <= _AMONG * len(self.left):
-                known, effort = [cut for cut, _ in shared.cuts], 2 * tries * len(self.left)
-                self._search_among(among, costs, known, effort)
+            if len(candidates) <= _AMONG * len(self.remaining):
+                cuts, effort = [cut for cut, _ in shared.cuts], 2 * tries * len(self.remaining)
+                self._search_among(candidates, costs, cuts, effort)
             else:
-                tree = varied(
-                    *(self.graph, self.left, self.tree, costs, least, self.expired),
+                tree = perturbation_search(
+                    *(self.graph, self.remaining, self.tree, costs, least, self.expired),
                     *(shared.shares, self.chance.random, tries),
                 )
                 self._take_better(tree, costs)
-        return self._shared(costs, shared)
+        return self._apply(costs, shared)
 
     def _search_among(
-        self, actions: Collection[int], costs: ExactCosts, known: Sequence[frozenset[int]], effort: int
+        self, actions: Collection[int], costs: ExactCosts, cuts: Sequence[frozenset[int]], effort: int
     ) -> None:
-        """Look for a better tree among a few actions, by branching up to an effort."""
+        """Look for a better tree among a few actions, by branching up to an effort (sub-MIP heuristic)."""
         from foon_asp.bounds.branching import Branching  # noqa: PLC0415 (few questions need it)
 
         graph = self.graph
-        able = derive(graph, actions, costs, added=False).before
+        runnable = derive(graph, actions, costs, h_add=False).h_actions
         search = Branching(
-            *(graph, graph.goals, able, costs, known, self._total(costs)),
-            lambda shares, without: guessed(graph, able, costs, shares, without),
-            lambda found: self._take_better(without_spare(graph, found, costs), costs),
+            *(graph, graph.goals, runnable, costs, cuts, self._total(costs)),
+            lambda shares, without: guessed(graph, runnable, costs, shares, without),
+            lambda tree: self._take_better(irredundant(graph, tree, costs), costs),
             lambda _: None,
         )
         search.search(effort, self.expired)
 
-    def _shared(self, costs: ExactCosts, shared: "SharedCosts") -> bool:
-        """Record a bound, and leave out what is dear by it; whether the tree is proved optimal.
+    def _apply(self, costs: ExactCosts, shared: "SharedCosts") -> bool:
+        """Apply the bound and the reduced costs of a cost partition; return whether optimality is proved.
 
-        What trees cost is whole, so a part of 1 more than the next smaller cost is enough.
+        Costs of trees are whole, so bounds are rounded up.
         """
         from foon_asp.bounds.shared_costs import PARTS  # noqa: PLC0415 (few questions need it)
 
@@ -482,31 +505,35 @@ class _Reducer:
         only_better = Reduction.BOUNDS in self.reductions
         if Reduction.DEAR in self.reductions:
             limit = (max(total, self.below) + costs.doubt - only_better) * PARTS - shared.bound
-            self.left = dear_left_out(self.graph, self.left, shared.left.__getitem__, limit, self.expired)
+            self.remaining = reduced_cost_fixing(
+                self.graph, self.remaining, shared.reduced_costs.__getitem__, limit, self.expired
+            )
         if Reduction.DOMINATED in self.reductions:
-            self.left = undominated(self.graph, self.left, costs)
+            self.remaining = undominated(self.graph, self.remaining, costs)
         return only_better and not costs.doubt and bound == total >= self.below
 
     def _follow_added(self, costs: ExactCosts) -> None:
-        """Take the tree to which estimates lead that add needs up, if it is better than the one in hand."""
-        found = derive(self.graph, self.left, costs, added=True).tree(self.graph, self.graph.goals)
-        self._take_better(without_spare(self.graph, found or self.tree, costs), costs)
+        """Make the tree that follows h_add the incumbent, if it is better."""
+        tree = derive(self.graph, self.remaining, costs, h_add=True).tree(self.graph, self.graph.goals)
+        self._take_better(irredundant(self.graph, tree or self.tree, costs), costs)
 
-    def _bound(self, costs: ExactCosts, guide: dict[int, int]) -> Cuts:
-        """Find cuts, and with them a bound: what is left always has a tree."""
-        lazy = isinstance(self.left, range)  # a guide to all of them would have to look at all of them
+    def _bound(self, costs: ExactCosts, h_values: dict[int, int]) -> Cuts:
+        """Compute landmark cuts and raise the bound; the remaining actions always contain a tree."""
+        lazy = isinstance(self.remaining, range)  # h-values would have to look at all actions
         cuts = landmark_cuts(
             self.graph,
             self.graph.goals,
-            self.left,
+            self.remaining,
             costs,
-            guide,
+            h_values,
             self.expired,
-            None if lazy else lambda rest: derive(self.graph, self.left, rest, added=False).cost,
-            math.inf if self.rest or self.brief else _DENSE * max(_EASY, len(self.left)),
+            None
+            if lazy
+            else lambda reduced_cost: derive(self.graph, self.remaining, reduced_cost, h_add=False).cost,
+            math.inf if self.other_rules or self.brief else _DENSE * max(_EASY, len(self.remaining)),
         )
-        if self.wide is None and not cuts.interrupted and not self.extending:  # nothing was left out so far
-            self.wide = Wide(self.problem, self.graph, self.left, costs, cuts, self.spare)
+        if self.wide is None and not cuts.interrupted and not self.extending:  # no reduction so far
+            self.wide = Wide(self.problem, self.graph, self.remaining, costs, cuts, self.redundant)
         if self.cuts is None or cuts.bound > self.cuts.bound:
             self.cuts = cuts
         bound = min(cuts.bound, self._total(costs))
@@ -518,34 +545,40 @@ class _Reducer:
         return cuts
 
     def _met(self, costs: ExactCosts, cuts: Cuts) -> bool:
-        """Whether cuts prove that nothing is better than the tree in hand, and nothing else is wanted."""
+        """Return whether cuts prove the incumbent optimal, and no tree below ``below`` is wanted."""
         enough = Reduction.BOUNDS in self.reductions and self._total(costs) >= self.below
         return enough and costs.met(cuts, self.tree)
 
     def _improve(self, costs: ExactCosts, cuts: Cuts, thorough: bool) -> None:
-        """Look for better trees near what cuts leave."""
-        rest = rests(costs, cuts)
-        few = near(self.thin, self.left, rest, self._total(costs) - cuts.bound, most=_MANY)
-        better = improved(self.graph, few | self.tree, self.tree, costs, rest, self.expired, thorough)
+        """Look for better trees in the reduced-cost neighbourhood."""
+        reduced_cost = reduced_costs_of(costs, cuts)
+        candidates = neighbourhood(
+            self.thin, self.remaining, reduced_cost, self._total(costs) - cuts.bound, enough=_MANY
+        )
+        better = improved(
+            self.graph, candidates | self.tree, self.tree, costs, reduced_cost, self.expired, thorough
+        )
         if better is not self.tree:
             self._take(better)
 
     def _improve_on(self, costs: ExactCosts) -> None:
-        """Look thoroughly for better trees, again from each that is found, up to an effort."""
-        effort, before = _EFFORT, set[int]()
-        while self.tree != before and not self.expired():
-            before = self.tree
-            effort -= len(before) * len(self.left)
+        """Look thoroughly for better trees, again from each new incumbent, up to an effort."""
+        effort, previous = _EFFORT, set[int]()
+        while self.tree != previous and not self.expired():
+            previous = self.tree
+            effort -= len(previous) * len(self.remaining)
             if effort < 0:
                 break
             self._improve(costs, self.cuts or Cuts(0, {}, []), thorough=True)
 
-    def _drop_dear(self, costs: ExactCosts, cuts: Cuts) -> None:
-        """Leave out what only trees have that are no better than the one in hand."""
+    def _fix_by_reduced_cost(self, costs: ExactCosts, cuts: Cuts) -> None:
+        """Remove the actions above the cutoff by reduced-cost fixing."""
         limit = max(self._total(costs), self.below) - cuts.bound + costs.doubt
         if Reduction.BOUNDS in self.reductions:
-            limit -= 1  # what is as good is not looked for
-        self.left = dear_left_out(self.graph, self.left, rests(costs, cuts), limit, self.expired)
+            limit -= 1  # trees as good as the incumbent are not needed
+        self.remaining = reduced_cost_fixing(
+            self.graph, self.remaining, reduced_costs_of(costs, cuts), limit, self.expired
+        )
 
     def _take(self, tree: set[int]) -> None:
         self.tree = tree
@@ -563,11 +596,11 @@ class _Reducer:
 
     def _result(self, settled: bool) -> Reduced:
         tree = self._units(self.tree)
-        early = isinstance(self.left, range)  # nothing was left out, and there is no time to begin with it
-        left = tree if settled or early else tree | self._units(self.left)
+        early = isinstance(self.remaining, range)  # time was up before any reduction
+        units = tree if settled or early else tree | self._units(self.remaining)
         return Reduced(
             tree,
-            tuple(sorted(left)),
+            tuple(sorted(units)),
             settled,
             self.costs,
             self.bound,

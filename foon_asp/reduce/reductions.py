@@ -1,4 +1,4 @@
-"""The reductions by name, and which of them keep what."""
+"""The reductions by name, and which optimal trees they keep."""
 
 from enum import StrEnum
 
@@ -6,12 +6,12 @@ from foon_asp.errors import UserError
 
 
 class Reduction(StrEnum):
-    """One way to leave less to search, beyond what can be made and what the goals can need.
+    """A reduction of the search, beyond relevance and reachability.
 
-    ``forced``: units beside those that every tree has. ``dear``: units of which every tree costs more than
-    one in hand. Both keep every optimal tree. ``dominated``: units that another one can always stand in for.
-    ``bounds``: only what is better than the tree in hand is searched for, and nothing where bounds meet.
-    These two keep one optimal tree at least.
+    ``forced``: units made irrelevant by action landmarks. ``dear``: units above the cutoff, all of whose
+    trees cost more than the incumbent. Both keep every optimal tree. ``dominated``: units that another unit
+    dominates. ``bounds``: only trees better than the incumbent are searched for, and none where the bounds
+    meet. These two keep at least one optimal tree.
     """
 
     FORCED = "forced"
@@ -26,7 +26,10 @@ NONE: frozenset[Reduction] = frozenset()
 
 
 def parse_reductions(text: str) -> frozenset[Reduction]:
-    """Read ``all``, ``safe``, ``none`` or names separated by commas; raises :class:`UserError` for others."""
+    """Return the reductions named by ``all``, ``safe``, ``none`` or names separated by commas.
+
+    Raises :class:`UserError` for other names.
+    """
     named = {"all": ALL, "safe": SAFE, "none": NONE}
     if text in named:
         return named[text]

@@ -1,4 +1,4 @@
-"""The best tree under a limit on how many of some units it has, or what these come to, by a price on each."""
+"""Lagrangian relaxation of a limit on a sum over the units of a tree: the limit becomes a price per unit."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -11,20 +11,20 @@ from foon_asp.reduce.exact_costs import ExactCosts
 from foon_asp.reduce.reduction import Reduced, at_costs
 from foon_asp.reduce.wide import Wide
 
-_PRICES = 2  # that are tried
-_FEW = 1000  # units that clingo chooses from faster than another price is tried
-_MANY = 2000  # units that are too many for it, so that prices rise
-_RISING = 8  # prices at most while they do
-_LOW = Fraction(3, 2)  # times what a unit costs is the lowest of these
+_PRICES = 2  # prices that are tried
+_EASY = 1000  # with fewer units, clingo is faster than trying another price
+_MANY = 2000  # with more units, rising prices are tried
+_RISING = 8  # rising prices, at most
+_LOW = Fraction(3, 2)  # the lowest of the rising prices, times the mean cost of a unit
 
 Units = frozenset[int]
 
 
 class Limited(NamedTuple):
-    """What prices tell of the trees within a limit.
+    """The result of a search for trees within a limit.
 
-    ``tree`` is one of them, and ``None`` where there is none. Better ones have no units but these; ``units``
-    are ``None`` where no price tells.
+    ``tree`` is within the limit; ``None`` where no tree is. Better trees within the limit have only units of
+    ``units``, which are ``None`` where no price excludes any.
     """
 
     tree: Units | None
@@ -36,135 +36,140 @@ def limited(
     objectives: Sequence[Objective],
     tree: Units,
     counts: Callable[[int], int],
-    most: int,
+    max_count: int,
     expired: Callable[[], bool],
 ) -> Limited | None:
-    """Look for the best tree of units that count at most so much together; those of ``tree`` count more.
+    """Search for the best tree whose units count at most ``max_count`` together; ``tree`` exceeds the limit.
 
-    First any tree within the limit is looked for, by a price so high that nothing else matters on what each
-    unit counts; or a bound says that there is none. Then the price is the ratio at which that tree and the
-    one beyond the limit cost the same. With a price, a tree within the limit costs at most ``most`` times the
-    price more, and all bounds hold for that. Where that price leaves many units, others rise up to it.
-    ``None`` where nothing is known at the end.
+    A first tree within the limit is found by :func:`any_within_limit`. Then the price is the Lagrange
+    multiplier at which that tree and the one beyond the limit cost the same. With a price, a tree within the
+    limit costs at most ``max_count`` times the price more, so lower bounds carry over. Where that price
+    leaves many units, lower prices that rise up to it are tried. ``None`` where nothing is found out.
     """
 
-    def taken(units: Units) -> int:
+    def count_of(units: Units) -> int:
         return sum(map(counts, units))
 
-    first = least(wide, counts, most, expired)
+    first = any_within_limit(wide, counts, max_count, expired)
     if first is None or first.tree is None:
         return first
-    best, over = first.tree, tree
-    left: Units | None = None
+    incumbent, over = first.tree, tree
+    remaining: Units | None = None
     for _ in range(_PRICES):
-        ratio = -(-(wide.total(best) - wide.total(over)) // (taken(over) - taken(best)))
+        ratio = -(-(wide.total(incumbent) - wide.total(over)) // (count_of(over) - count_of(incumbent)))
         if ratio <= 0:
             break
-        allowed = wide.total(best) + ratio * most
-        found = _asked(wide, wide.costs.priced(counts, ratio), objectives, expired, best, allowed, _MANY)
-        if found.tree is None:
+        allowed = wide.total(incumbent) + ratio * max_count
+        reduced = _reduced_at(
+            wide, wide.costs.priced(counts, ratio), objectives, expired, incumbent, allowed, _MANY
+        )
+        if reduced.tree is None:
             break
-        better = taken(found.tree) <= most and wide.total(found.tree) < wide.total(best)
-        best = found.tree if better else best
-        if left is None or len(found.units) < len(left):
-            left = frozenset(found.units)
-        if len(left) > _MANY:
-            return _by_rising_prices(wide, objectives, best, over, counts, most, expired)
-        if taken(found.tree) > most and wide.total(found.tree) > wide.total(over):
-            over = found.tree
+        better = count_of(reduced.tree) <= max_count and wide.total(reduced.tree) < wide.total(incumbent)
+        incumbent = reduced.tree if better else incumbent
+        if remaining is None or len(reduced.units) < len(remaining):
+            remaining = frozenset(reduced.units)
+        if len(remaining) > _MANY:
+            return _by_rising_prices(wide, objectives, incumbent, over, counts, max_count, expired)
+        if count_of(reduced.tree) > max_count and wide.total(reduced.tree) > wide.total(over):
+            over = reduced.tree
         elif not better:
             break
-        if len(left) <= _FEW:
+        if len(remaining) <= _EASY:
             break
-    return Limited(best, left)
+    return Limited(incumbent, remaining)
 
 
 def _by_rising_prices(
     wide: Wide,
     objectives: Sequence[Objective],
-    best: Units,
+    incumbent: Units,
     over: Units,
     counts: Callable[[int], int],
-    most: int,
+    max_count: int,
     expired: Callable[[], bool],
 ) -> Limited:
-    """Look for better trees than one within the limit, ``best``, from another beyond it.
+    """Search for trees better than ``incumbent``, which is within the limit, from ``over`` beyond it.
 
-    A question at a low price is about as quick as one without a price. They rise, from about what a unit
-    costs, to the one at which ``best`` and ``over`` cost the same; the best tree there comes instead of one
-    of these two. The price of the greatest bound tells what better trees than ``best`` can have.
+    A question at a low price is about as quick as one without a price. Prices rise, from about the cost of a
+    unit, to the one at which ``incumbent`` and ``over`` cost the same; the optimal tree at a price replaces
+    one of the two. The price of the greatest bound determines the units of trees better than ``incumbent``.
     """
 
-    def taken(units: Units) -> int:
+    def count_of(units: Units) -> int:
         return sum(map(counts, units))
 
-    rising = _LOW * wide.total(over) / len(over)
+    next_price = _LOW * wide.total(over) / len(over)
     greatest: tuple[Fraction, Fraction] | None = None  # bound, and its price
-    wide = _up_to(wide, best, expired)
+    wide = _restricted_to_cost(wide, incumbent, expired)
     for _ in range(_RISING):
-        tie = Fraction(wide.total(best) - wide.total(over), taken(over) - taken(best))
+        tie = Fraction(wide.total(incumbent) - wide.total(over), count_of(over) - count_of(incumbent))
         if tie <= 0:
             break
-        price, rising = min(tie, rising), 2 * rising
-        found = _asked(wide, wide.costs.priced(counts, price), objectives, expired)
-        if found.tree is None:
+        price, next_price = min(tie, next_price), 2 * next_price
+        reduced = _reduced_at(wide, wide.costs.priced(counts, price), objectives, expired)
+        if reduced.tree is None:
             break
-        bound = Fraction(found.bound, price.denominator) - price * most
+        bound = Fraction(reduced.bound, price.denominator) - price * max_count
         greatest = max(greatest or (bound, price), (bound, price))
-        count, total = taken(found.tree), wide.total(found.tree)
-        tied = price == tie and total + price * count >= wide.total(best) + price * taken(best)
-        if count > most:
-            over = found.tree
-        elif total < wide.total(best):
-            best = found.tree
-            wide = _up_to(wide, best, expired)
+        count, total = count_of(reduced.tree), wide.total(reduced.tree)
+        tied = price == tie and total + price * count >= wide.total(incumbent) + price * count_of(incumbent)
+        if count > max_count:
+            over = reduced.tree
+        elif total < wide.total(incumbent):
+            incumbent = reduced.tree
+            wide = _restricted_to_cost(wide, incumbent, expired)
         else:
             break
-        if tied or count == most:
+        if tied or count == max_count:
             break
     if greatest is None:
-        return Limited(best)
+        return Limited(incumbent)
     _, price = greatest
-    allowed = wide.total(best) * price.denominator + price.numerator * most
-    found = _asked(wide, wide.costs.priced(counts, price), objectives, expired, best, allowed)
-    if found.tree is None:
-        return Limited(best)
-    if taken(found.tree) <= most and wide.total(found.tree) < wide.total(best):
-        best = found.tree
-    return Limited(best, frozenset(found.units))
+    allowed = wide.total(incumbent) * price.denominator + price.numerator * max_count
+    reduced = _reduced_at(wide, wide.costs.priced(counts, price), objectives, expired, incumbent, allowed)
+    if reduced.tree is None:
+        return Limited(incumbent)
+    if count_of(reduced.tree) <= max_count and wide.total(reduced.tree) < wide.total(incumbent):
+        incumbent = reduced.tree
+    return Limited(incumbent, frozenset(reduced.units))
 
 
-def _up_to(wide: Wide, tree: Units, expired: Callable[[], bool]) -> Wide:
-    """Leave what trees have that cost no more than one."""
-    left = wide.actions_within(wide.total(tree), expired)
-    return replace(wide, left={*left, *wide.actions(tree)})
+def _restricted_to_cost(wide: Wide, tree: Units, expired: Callable[[], bool]) -> Wide:
+    """Return the subproblem of the trees that cost no more than ``tree``."""
+    remaining = wide.actions_within(wide.total(tree), expired)
+    return replace(wide, remaining={*remaining, *wide.actions(tree)})
 
 
-def least(wide: Wide, counts: Callable[[int], int], most: int, expired: Callable[[], bool]) -> Limited | None:
-    """Look for any tree of units that count at most so much together, among those that count least.
+def any_within_limit(
+    wide: Wide, counts: Callable[[int], int], max_count: int, expired: Callable[[], bool]
+) -> Limited | None:
+    """Search for any tree whose units count at most ``max_count`` together, by minimizing the count.
 
-    Or a bound says that there is none. ``None`` where nothing is known at the end.
+    Returns ``Limited(None)`` where a bound proves that there is none, ``None`` where nothing is found out.
     """
-    few = ExactCosts(wide.problem, (Objective.UNITS,), wide.left)
-    most_of_all = few.beyond * (most + 1)
-    found = _asked(wide, few.priced(counts, few.beyond, most_of_all), (Objective.UNITS,), expired)
-    if found.bound >= most_of_all:
+    units_cost = ExactCosts(wide.problem, (Objective.UNITS,), wide.remaining)
+    limit = units_cost.beyond * (max_count + 1)
+    reduced = _reduced_at(
+        wide, units_cost.priced(counts, units_cost.beyond, limit), (Objective.UNITS,), expired
+    )
+    if reduced.bound >= limit:
         return Limited(None)
-    if found.tree is None or sum(map(counts, found.tree)) > most:
+    if reduced.tree is None or sum(map(counts, reduced.tree)) > max_count:
         return None
-    return Limited(found.tree)
+    return Limited(reduced.tree)
 
 
-def _asked(
+def _reduced_at(
     wide: Wide,
     costs: ExactCosts,
     objectives: Sequence[Objective],
     expired: Callable[[], bool],
-    known: Units = frozenset(),
+    known_tree: Units = frozenset(),
     below: int = 0,
-    many: float = math.inf,
+    max_actions: float = math.inf,
 ) -> Reduced:
-    found = at_costs(wide, objectives, costs, expired, known, below, many)
-    if found.interrupted:
+    reduced = at_costs(wide, objectives, costs, expired, known_tree, below, max_actions)
+    if reduced.interrupted:
         raise KeyboardInterrupt
-    return found
+    return reduced

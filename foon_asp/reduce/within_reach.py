@@ -1,53 +1,54 @@
-"""Whether objects can be made at rests up to a limit, found only as far as somebody asks."""
+"""Lazy h_max: whether objects can be made at a reduced cost up to a limit, computed on demand."""
 
 import math
 from collections.abc import Callable, Container
 
 from foon_asp.reduce.graph import Graph
 
-_DEEP = 100  # actions that build upon each other, beyond which nothing is looked at
-_LOOKS = 200_000  # at actions, in all: in circles each object can be asked about at very many limits
+_DEEP = 100  # depth of the recursion
+_LOOKS = 200_000  # actions looked at in all: in cycles, an object can be asked about at very many limits
 
 
 def within_reach(
-    graph: Graph, allowed: Container[int], rest: Callable[[int], int]
+    graph: Graph, allowed: Container[int], reduced_cost: Callable[[int], int]
 ) -> Callable[[int, float], bool]:
-    """Report an object and a limit whether allowed actions can make it at rests up to that.
+    """Return a test whether allowed actions can make an object at a reduced cost (h_max) up to a limit.
 
-    It takes as much as the dearest that its maker needs, and the maker (h_max): what ``derive`` finds of all
-    objects at once. Here it is found from the object that is asked about downwards, and what a limit rules
-    out is not looked at, which is most of a large network where the limit is low. ``True`` where it would be
-    too deep, or take too long, to tell. ``rest(a)`` is what the cuts leave of the cost of action ``a``.
+    ``derive`` computes h_max of all objects at once. The test computes it backwards from the object asked
+    about, and prunes by the limit, which excludes most of a large network where the limit is low. The test
+    returns ``True`` where it would go too deep or take too long.
     """
-    needs, makers, start = graph.needs, graph.makers, graph.start
-    least: dict[int, float] = {}  # what objects take at least, as far as known
-    enough: dict[int, float] = {}  # limits that were enough
-    looks = _LOOKS
+    needs, achievers, start = graph.needs, graph.makers, graph.start
+    lower_bounds: dict[int, float] = {}  # on the h_max of objects
+    sufficient_limits: dict[int, float] = {}  # limits for which the answer was ``True``
+    budget = _LOOKS
 
     def reached(o: int, limit: float, deep: int = _DEEP) -> bool:
-        nonlocal looks
-        if least.get(o, 0) > limit:
+        nonlocal budget
+        if lower_bounds.get(o, 0) > limit:
             return False
-        if o in start or enough.get(o, math.inf) <= limit or looks < 0:
+        if o in start or sufficient_limits.get(o, math.inf) <= limit or budget < 0:
             return True
         lowest = math.inf
-        for action in makers[o]:
+        for action in achievers[o]:
             if action not in allowed:
                 continue
-            looks -= 1
-            own: float = rest(action)
-            if own <= limit:
-                left = limit - own
+            budget -= 1
+            h_action: float = reduced_cost(action)
+            if h_action <= limit:
+                remaining = limit - h_action
                 for needed in needs[action]:
-                    if needed not in start and deep and not reached(needed, left, deep - 1):
-                        missing = least[needed]
-                        own = missing if missing == math.inf else own + missing  # whole numbers may be huge
+                    if needed not in start and deep and not reached(needed, remaining, deep - 1):
+                        missing = lower_bounds[needed]
+                        h_action = (
+                            missing if missing == math.inf else h_action + missing
+                        )  # whole numbers may be huge
                         break
                 else:
-                    enough[o] = limit
+                    sufficient_limits[o] = limit
                     return True
-            lowest = min(lowest, own)
-        least[o] = lowest
+            lowest = min(lowest, h_action)
+        lower_bounds[o] = lowest
         return False
 
     return reached

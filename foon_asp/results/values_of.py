@@ -195,7 +195,7 @@ def used_up_of(problem: Problem, tree: Iterable[FunctionalUnit] | None) -> UsedU
 def lack_of(network: Network, shortage: Shortage) -> Lack:
     """Return the copy that is missing."""
     position = None if shortage.step is None else shortage.step + 1
-    return Lack(position, named_node(network, shortage.node), tuple(step + 1 for step in shortage.taken))
+    return Lack(position, named_node(network, shortage.node), tuple(step + 1 for step in shortage.consumers))
 
 
 def copy_of(network: Network, copy: Replayed) -> Copy:

@@ -95,9 +95,9 @@ class ReadyMade:
     def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
         """Return linear bounds: of each, the whole weight of a unit, and the greatest sum over a tree."""
         for rule_meaning in self._meanings(problem)[0]:
-            if rule_meaning.most is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
+            if rule_meaning.max_sum is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
                 amounts = {unit: int(amount) for units, amount in rule_meaning.things for unit in units}
-                yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(rule_meaning.most)  # type: ignore[misc]
+                yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(rule_meaning.max_sum)  # type: ignore[misc]
 
     def conflict(self, problem: Problem, units: Units) -> Sequence[Units] | None:
         """Return sets that a tree hits, but no tree hits all of that keeps to unsettled constraints.
@@ -105,12 +105,12 @@ class ReadyMade:
         ``None`` where the tree keeps to these; it keeps to all others.
         """
         for rule, rule_meaning in zip(self.rules, self._meanings(problem)[0], strict=True):
-            if rule_meaning.most is not None:
+            if rule_meaning.max_sum is not None:
                 used = [thing for thing in rule_meaning.things if not units.isdisjoint(thing[0])]
                 used.sort(key=lambda thing: -thing[1])
                 sums = accumulate((amount for _, amount in used), initial=Fraction())
                 over = next(
-                    (position for position, total in enumerate(sums) if total > rule_meaning.most), None
+                    (position for position, total in enumerate(sums) if total > rule_meaning.max_sum), None
                 )
                 if over is not None:
                     return [members for members, _ in used[:over]]

@@ -9,7 +9,7 @@ from typing import Protocol
 
 from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.lower_bound import Branch, Broken, Dear, Hopeless, Packing, Proof
+from foon_asp.bounds.lower_bound import Branch, Broken, CostFixing, Hopeless, Packing, Proof
 
 NOBODY: frozenset[int] = frozenset()
 
@@ -73,7 +73,7 @@ def crossing(graph: Hypergraph, objects: Iterable[int]) -> set[int]:
 def parts(proof: Proof) -> Iterator[Proof]:
     """Return a proof and all that are parts of it."""
     yield proof
-    below = {Branch: ("without", "using"), Dear: ("packing", "others")}.get(type(proof), ())
+    below = {Branch: ("without", "using"), CostFixing: ("packing", "others")}.get(type(proof), ())
     for name in below:
         yield from parts(getattr(proof, name))
 
@@ -119,7 +119,7 @@ def require_proves(
     if isinstance(proof, Hopeless):
         assert not landmark(proof.cut.objects)
         return
-    packing = proof.packing if isinstance(proof, Dear) else proof
+    packing = proof.packing if isinstance(proof, CostFixing) else proof
     price = [0 if least is None else cost for cost in costs]
     proved, load = sum((Fraction(price[a]) for a in used), Fraction(0)), [Fraction(0)] * len(costs)
     for row, (weight,) in packing.limits:
@@ -141,7 +141,7 @@ def require_proves(
     def enough(bound: Fraction) -> bool:
         return (math.ceil(bound) if whole or packing.rounded is not None else bound) >= least
 
-    if isinstance(proof, Dear):
+    if isinstance(proof, CostFixing):
         assert proof.actions
         assert used.isdisjoint(proof.actions)
         assert all(enough(proved + price[a] - load[a]) for a in proof.actions)

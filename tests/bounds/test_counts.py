@@ -274,7 +274,7 @@ def test_what_is_cheaper_and_too_much_as_it_is_hides_nothing() -> None:
         return Fraction(3, 2) * (counts.get(0, 0) + counts.get(1, 0))
 
     level, asked = Level(Measure([1, 1, 0], 0, total, [0, 0, -1]), Fraction(2), 2), list[Counts]()
-    CountBound(flows(">0", ">3", "3 3>0"), within=[level]).every([whole(Measure([3, 1, 0]), 3)], asked.append)
+    CountBound(flows(">0", ">3", "3 3>0"), levels=[level]).every([whole(Measure([3, 1, 0]), 3)], asked.append)
     assert asked == [{0: 1}]
 
 
@@ -344,7 +344,7 @@ def test_more_than_a_few_executions_are_found_as_well() -> None:
 def test_counts_that_are_found_are_not_those_of_a_known_plan() -> None:
     ways = flows(">0", ">1", "100>0", targets=(0, 1))
     # that each is executed a little would do if it were not asked whether it is executed at all
-    assert CountBound(ways, beside=[{0: 1, 1: 1}]).counts([UNITS]) == {1: 1, 2: 1}
+    assert CountBound(ways, excluded_counts=[{0: 1, 1: 1}]).counts([UNITS]) == {1: 1, 2: 1}
     assert CountBound(ways).counts([Measure([1, 1, 2])]) == {0: 1, 1: 1}
 
 
@@ -404,7 +404,7 @@ def hold(made: Flows, first: Level, second: Level | None = None, limits: Sequenc
         if as_good:
             found = bound.counts([first.measure])
             assert found is not None
-            assert sum(first.measure.costs[a] * n for a, n in found.items()) <= first.most
+            assert sum(first.measure.costs[a] * n for a, n in found.items()) <= first.max_cost
         asked = proves(bound, *levels)
         assert sorted(sorted(c.items()) for c in asked) == sorted(sorted(c.items()) for c in better)
 

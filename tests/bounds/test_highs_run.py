@@ -120,7 +120,7 @@ def test_large_programs_have_the_same_solutions(monkeypatch: pytest.MonkeyPatch)
     covering = Covering([1.0] * 3)
     for row in ([0, 1], [1, 2], [0, 2]):
         covering.add(row)
-    amid = covering.inside()
+    amid = covering.interior_point()
     assert amid is not None
     assert amid.value == pytest.approx(1.5)
     assert covering.solve().value == pytest.approx(1.5)

@@ -74,17 +74,17 @@ def test_cuts_are_weighed_until_the_targets_come_for_nothing(
     cuts: list[Plain],
 ) -> None:
     found = ask(costs, targets, dear)
-    assert (found.bound, found.left, plain(found.cuts)) == (bound, left, cuts)
+    assert (found.bound, found.reduced_costs, plain(found.cuts)) == (bound, left, cuts)
     assert not found.hopeless
 
 
 def test_only_what_is_allowed_counts() -> None:
     price = [2, 3, 1, 5, 4, 1].__getitem__
     found = landmark_cuts(KITCHEN, [3], {1, 3}, price, {}, lambda: False)
-    assert (found.bound, found.left, found.hopeless) == (8, {1: 0, 3: 0}, False)
+    assert (found.bound, found.reduced_costs, found.hopeless) == (8, {1: 0, 3: 0}, False)
     assert plain(found.cuts) == [cut({3}, (1,), 1, 3), cut({2, 3}, (3,), 3, 5)]
     lost = landmark_cuts(KITCHEN, [3], {0, 1, 2}, price, {}, lambda: False)
-    assert (lost.bound, lost.left, lost.hopeless) == (2, {0: 0, 1: 1}, True)
+    assert (lost.bound, lost.reduced_costs, lost.hopeless) == (2, {0: 0, 1: 1}, True)
     assert plain(lost.cuts) == [cut({3}, (0, 1), 0, 2)]
     assert landmark_cuts(KITCHEN, [3], (), price, {}, lambda: False) == (0, {}, [], True, False)
 
@@ -101,7 +101,7 @@ def test_what_was_found_stands_when_time_is_up_or_ctrl_c_comes() -> None:
         return price[action]
 
     found = landmark_cuts(KITCHEN, [3], range(6), interrupted, {}, lambda: False)
-    assert found._replace(left={}) == (6, {}, ask(price, [3]).cuts[:2], False, True)
+    assert found._replace(reduced_costs={}) == (6, {}, ask(price, [3]).cuts[:2], False, True)
 
 
 def test_landmarks_of_many_members_end_the_search_for_more() -> None:
@@ -151,7 +151,7 @@ def test_random_cuts_hold_and_leave_the_targets_for_nothing(seed: int) -> None:
         for a in members:
             left[a] -= weight
     assert found.bound == sum(each.weight for each in found.cuts)
-    assert [found.left.get(a, costs[a]) for a in range(actions)] == left
+    assert [found.reduced_costs.get(a, costs[a]) for a in range(actions)] == left
     dear = frozenset(a for a in range(actions) if a not in allowed or left[a])
     assert found.hopeless != all(graph.reach(dear)[target] for target in targets)
     lost = not all(graph.reach(frozenset(range(actions)) - allowed)[target] for target in targets)

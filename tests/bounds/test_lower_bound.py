@@ -15,7 +15,7 @@ from foon_asp.bounds.branching import branched
 from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic
-from foon_asp.bounds.lower_bound import Branch, CheaperError, Dear, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds.lower_bound import Branch, CheaperError, CostFixing, Hopeless, Packing, Proof, Prover
 from foon_asp.bounds.relaxation import Covering, Relaxed
 from foon_asp.errors import BugError
 from tests.bounds.small_graphs import asked, best_tree, parts, reaches, require_proves
@@ -87,8 +87,8 @@ def weighed(proof: Any, *factors: Fraction) -> Any:
         return proof._replace(weights=tuple((cut, (total,)) for cut, total in sums))
     if isinstance(proof, Branch):
         return Branch(proof.action, weighed(proof.without, *factors), weighed(proof.using, *factors))
-    if isinstance(proof, Dear):
-        return Dear(proof.actions, weighed(proof.packing, *factors), weighed(proof.others, *factors))
+    if isinstance(proof, CostFixing):
+        return CostFixing(proof.actions, weighed(proof.packing, *factors), weighed(proof.others, *factors))
     return proof
 
 
@@ -227,7 +227,7 @@ THREE = Hypergraph(4, needs=[[], [0], [], []], gives=[[1], [1, 2], [2], [3]], st
 def test_known_cuts_are_given_what_their_members_have_left(
     price: list[int], known: list[list[int]], weights: list[tuple[tuple[int, ...], tuple[int, ...], int]]
 ) -> None:
-    prover = Prover(THREE, [1, 2, 3], costs(*price), COUNT, known=map(iter, known))
+    prover = Prover(THREE, [1, 2, 3], costs(*price), COUNT, known_cuts=map(iter, known))
     proof = prover.prove([1, 3])
     assert proof == Packing(tuple((Cut(o, m), (Fraction(w),)) for o, m, w in weights))
 
@@ -236,21 +236,21 @@ def test_known_cuts_are_weighed_by_the_first_level_that_differs() -> None:
     half = Fraction(1, 2)
     order = Lexicographic([[half, half**2], None])
     price = [tuple(map(Fraction, cost)) for cost in ((2, 0, 1), (0, 1, 0), (0, 1, 0), (1, 0, 9))]
-    proof = Prover(THREE, [1, 2, 3], price, order, known=[[1], [3]]).prove([1, 3])
+    proof = Prover(THREE, [1, 2, 3], price, order, known_cuts=[[1], [3]]).prove([1, 3])
     assert proof == Packing(((Cut((1,), (0, 1)), price[1]), (Cut((3,), (3,)), price[3])))
 
 
 def test_known_cuts_that_fall_short_or_are_of_no_use_are_no_proof() -> None:
-    prover = Prover(THREE, [1, 2, 3], costs(2, 2, 2, 1), COUNT, known=[[1]])
+    prover = Prover(THREE, [1, 2, 3], costs(2, 2, 2, 1), COUNT, known_cuts=[[1]])
     proof = prover.prove([1, 3])
     assert proof is not None
     require_proves(proof, THREE, [1, 2, 3], [2, 2, 2, 1], 3)
     assert require_cheaper(prover, [0, 2, 3], (THREE, [1, 2, 3], [2, 2, 2, 1])) == (1, 3)
     # one is before no target, and one is crossed by an action of no use
-    proof = Prover(THREE, [2], costs(5, 9, 1, 1), COUNT, known=[[1], [2]]).prove([2])
+    proof = Prover(THREE, [2], costs(5, 9, 1, 1), COUNT, known_cuts=[[1], [2]]).prove([2])
     assert proof == Packing(((Cut((2,), (1, 2)), (Fraction(1),)),))
     graph = Hypergraph(3, [[], []], [[1], [2]], [0])
-    proof = Prover(graph, [1], costs(2, 1), COUNT, known=[[1, 2]]).prove([0])
+    proof = Prover(graph, [1], costs(2, 1), COUNT, known_cuts=[[1, 2]]).prove([0])
     assert proof == Packing(((Cut((1,), (0,)), (Fraction(2),)),))
 
 
@@ -281,7 +281,7 @@ def test_rounding_up_closes_a_gap(step: int, many: int, monkeypatch: pytest.Monk
     # of three actions each pair is a landmark: half of each adds up to one and a half steps, rounded up
     graph, each = Hypergraph(4, [[], [], []], [[1, 2], [2, 3], [1, 3]], [0]), costs(step, step, step)
     for known in ([], [[2]]):
-        prover = Prover(graph, [1, 2, 3], each, COUNT, known=known, multiples=[Fraction(step)])
+        prover = Prover(graph, [1, 2, 3], each, COUNT, known_cuts=known, multiples=[Fraction(step)])
         proof = prover.prove([0, 1])
         assert isinstance(proof, Packing)
         assert proof.rounded == 0
@@ -316,7 +316,13 @@ def test_of_many_actions_rounded_weights_prove_each_of_the_cases_that_are_told_a
         each, steps = costs(*(step * cost for cost in price)), [Fraction(step)]
         for told, known in ((None, [[len(sets)], targets[:1]]), (None if searched else cases, [])):
             prover = Prover(
-                graph, targets, each, COUNT, known=known, multiples=steps, search=search if searched else None
+                graph,
+                targets,
+                each,
+                COUNT,
+                known_cuts=known,
+                multiples=steps,
+                search=search if searched else None,
             )
             proof = prover.prove(best, told)
             assert proof is not None
@@ -325,7 +331,7 @@ def test_of_many_actions_rounded_weights_prove_each_of_the_cases_that_are_told_a
     assert all(answers)  # it finds a proof each time
     assert met[Packing]
     assert met[Branch]
-    assert (met[Dear] > 0) == (worth == 0)
+    assert (met[CostFixing] > 0) == (worth == 0)
 
 
 def test_what_a_search_proves_is_stated_of_all_actions_and_in_what_they_cost(
@@ -333,7 +339,7 @@ def test_what_a_search_proves_is_stated_of_all_actions_and_in_what_they_cost(
 ) -> None:
     def proof(cut: Cut, step: int, rounded: int | None = None) -> Proof:
         once, twice = (Packing(((cut, (Fraction(n * step),)),)) for n in (1, 2))
-        return Branch(0, Hopeless(cut), Dear((1,), once._replace(rounded=rounded), twice))
+        return Branch(0, Hopeless(cut), CostFixing((1,), once._replace(rounded=rounded), twice))
 
     monkeypatch.setattr(lower_bound, "_MANY", 0)
     graph = Hypergraph(4, [[], [], []], [[1, 2], [2, 3], [1, 3]], [0])
@@ -370,7 +376,7 @@ def test_the_relaxation_gives_shares_and_its_basis() -> None:
     for row in ([0, 1, 3], [1, 2], [0, 2, 3], [0, 1, 2]):
         relaxation.add(row)
     assert relaxation.solve() == Relaxed(1.5, [0.5, 0.5, 0.5, 0.0], [0, 1, 2], [0, 1, 2])
-    amid = relaxation.inside()
+    amid = relaxation.interior_point()
     assert amid is not None
     assert amid.value == pytest.approx(1.5, abs=1e-5)
     assert [*amid.x, *amid.weights] == pytest.approx([0.5, 0.5, 0.5, 0.0] * 2, abs=1e-4)

@@ -48,8 +48,8 @@ def leaves(
         yield proof.weights, low, most, depth
         return
     column = proof.column
-    yield from leaves(proof.above, {**low, column: proof.most + 1}, most, depth + 1)
-    yield from leaves(proof.up_to, low, {**most, column: proof.most}, depth + 1)
+    yield from leaves(proof.above, {**low, column: proof.max_count + 1}, most, depth + 1)
+    yield from leaves(proof.up_to, low, {**most, column: proof.max_count}, depth + 1)
 
 
 def require_shows(
@@ -69,7 +69,7 @@ def require_shows(
     first = {column: made.start.get(o, 1) for column, o in columns.items()}
     for action in range(size):
         caps = [] if (cap := claim.caps[action]) is None else [cap]
-        caps += [level.most // price for level in kept if (price := level.measure.costs[action])]
+        caps += [level.max_cost // price for level in kept if (price := level.measure.costs[action])]
         for sizes, limit, *kind in limits:
             if kind == [False, False] and action in sizes:
                 caps.append(max(limit, 0) // sizes[action])
@@ -94,7 +94,7 @@ def require_shows(
         if isinstance(condition, Level):
             each.update({a: -cost for a, cost in enumerate(condition.measure.costs)})
             each.update(dict.fromkeys(columns, -condition.measure.item))
-            return -condition.most, each, once
+            return -condition.max_cost, each, once
         assert isinstance(condition, Landmark)
         zone = {*condition.objects}
         assert all(o in taken for o in zone if made.start.get(o))

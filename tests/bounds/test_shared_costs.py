@@ -35,10 +35,12 @@ def require_holds(graph: Hypergraph, targets: list[int], costs: list[int], found
         assert objects.isdisjoint(graph.start)
         for action in crossing(graph, objects):
             load[action] += weight
-        assert min(found.left[action] for action in crossing(graph, objects)) == 0  # it can have no more
+        assert (
+            min(found.reduced_costs[action] for action in crossing(graph, objects)) == 0
+        )  # it can have no more
     assert found.bound == sum(weight for _, weight in found.cuts)
-    assert found.left == {a: cost * PARTS - load[a] for a, cost in enumerate(costs)}
-    assert min(found.left.values()) >= 0
+    assert found.reduced_costs == {a: cost * PARTS - load[a] for a, cost in enumerate(costs)}
+    assert min(found.reduced_costs.values()) >= 0
     assert found.bound <= cheapest(graph, targets, costs) * PARTS
     assert found.shares.keys() == set(range(len(costs)))
     for objects in found.tight:
@@ -52,7 +54,7 @@ def test_no_derivation_costs_less_than_the_bound(
 ) -> None:
     graph, targets, costs = asked(seed)
     if wrong:  # nothing that HiGHS says of weights makes a bound too great
-        drawn, told, amid = random.Random(seed), Covering.weights, Covering.inside
+        drawn, told, amid = random.Random(seed), Covering.weights, Covering.interior_point
 
         def anything(weights: list[float]) -> list[float]:
             return [drawn.choice([w, drawn.uniform(-1, 3), math.inf, math.nan]) for w in weights]
@@ -61,7 +63,7 @@ def test_no_derivation_costs_less_than_the_bound(
             found = amid(relaxation, expired)
             return found and found._replace(weights=anything(found.weights))
 
-        monkeypatch.setattr(Covering, "inside", inside)
+        monkeypatch.setattr(Covering, "interior_point", inside)
         monkeypatch.setattr(Covering, "weights", lambda it: anything(told(it)))
     found = share_costs(graph, targets, range(len(costs)), costs.__getitem__, (), 10**15, never)
     assert (found is None) == (not targets)
@@ -87,7 +89,7 @@ def test_shares_are_halves_where_three_landmarks_overlap() -> None:
     graph = Hypergraph(4, [[], [], []], [[1, 2], [2, 3], [1, 3]], [0])
     found = share_costs(graph, [1, 2, 3], range(3), lambda _: 1, (), 2, never)
     assert found is not None
-    assert (found.bound, found.left) == (PARTS * 3 // 2, dict.fromkeys(range(3), 0))
+    assert (found.bound, found.reduced_costs) == (PARTS * 3 // 2, dict.fromkeys(range(3), 0))
     assert sorted(map(sorted, (objects for objects, _ in found.cuts))) == [[1], [2], [3]]
     assert found.shares == pytest.approx(dict.fromkeys(range(3), 0.5))
     assert {*found.tight} == {frozenset({o}) for o in (1, 2, 3)}
@@ -119,7 +121,7 @@ def test_what_is_known_is_heard_of_and_time_may_be_up_at_any_step() -> None:
         heard.append(shared)
         return enough
 
-    whole = share_costs(*question, never, hear, often=1)
+    whole = share_costs(*question, never, hear, every=1)
     assert whole is not None
     assert len(heard) > 1
     for shared in heard:
@@ -127,10 +129,10 @@ def test_what_is_known_is_heard_of_and_time_may_be_up_at_any_step() -> None:
         assert shared.bound <= whole.bound
     often = len(heard)
     heard.clear()
-    assert share_costs(*question, never, lambda shared: hear(shared, 0), often=1) is heard[0]  # that is all
+    assert share_costs(*question, never, lambda shared: hear(shared, 0), every=1) is heard[0]  # that is all
     assert len(heard) == 1
     heard.clear()
-    share_costs(*question, never, hear, often=2)
+    share_costs(*question, never, hear, every=2)
     assert len(heard) == often // 2
     for steps in range(30):
         looks = iter(range(steps))
@@ -151,7 +153,7 @@ def test_where_highs_finds_nothing_what_is_known_counts(most: int, monkeypatch: 
         solved.append(solve(covering, expired))
         return solved[-1]
 
-    monkeypatch.setattr(Covering, "inside", lambda *_: None)
+    monkeypatch.setattr(Covering, "interior_point", lambda *_: None)
     monkeypatch.setattr(Covering, "solve", lost)
     found = share_costs(graph, targets, range(len(costs)), costs.__getitem__, (), 10**6, never)
     assert (found is None) == (most == 0)

@@ -41,7 +41,7 @@ def test_a_relaxed_solution_and_the_bound_that_it_proves(capfd: pytest.CaptureFi
 
 def test_the_parts_of_an_open_row_are_told_later() -> None:
     later = program(2)
-    assert (later.open_row((1, 0), 2), later.said(0)) == (0, ({1: 0, 0: 0}, 2))
+    assert (later.open_row((1, 0), 2), later.row_of(0)) == (0, ({1: 0, 0: 0}, 2))
     assert later.row({0: 1}, 0) == 1
     later.change(0, {0: 4})
     assert later.solve({0: 1}) == Solved([0.5, 0.0], Fraction(1, 2))
@@ -51,7 +51,7 @@ def test_a_relaxation_in_floats_has_a_basis() -> None:
     small = program(2, ({0: 1, 1: 1}, 3), ({0: 1}, 1), upper={0: 2})
     assert small.relaxation({0: 2.5, 1: 3.0}) == Relaxation([2.0, 1.0], [3.0, 0.0], [1], [0])
     assert small.relaxation({0: 3.0, 1: 2.5}) == Relaxation([1.0, 2.0], [2.5, 0.5], [0, 1], [0, 1])
-    assert (small.said(0), small.said(1)) == (({0: 1, 1: 1}, 3), ({0: 1}, 1))
+    assert (small.row_of(0), small.row_of(1)) == (({0: 1, 1: 1}, 3), ({0: 1}, 1))
     none = program(2, ({0: 3, 1: -1}, 1), ({0: -3, 1: 1}, 1)).relaxation({0: 1.0})
     assert (none.x, none.columns, none.rows) == (None, [], [])
     assert none.weights[0] == none.weights[1] > 0
@@ -221,7 +221,7 @@ def test_where_floats_prove_nothing_there_is_a_solution_that_fails_rows_by_a_lit
         patched.setattr(
             whole_program, "silent_highs", lambda: Odd(getDualRay=lambda: (None, True, [0.0] * 2))
         )
-        narrow, wide = (program(1, *map(each.said, range(2))) for each in (narrow, wide))
+        narrow, wide = (program(1, *map(each.row_of, range(2))) for each in (narrow, wide))
         for _ in range(2):
             x, bound = narrow.solve({0: 1})
             assert (x, bound) == ([pytest.approx(1.0)], -math.inf)

@@ -208,12 +208,12 @@ FORGED: dict[str, Forged] = {
     "__init__: an objective stands twice": plain(
         objective=["units", "units"], costs=[1, 1], proof=weigh(["1", "1"])
     ),
-    "_known: a claim needs …, but none are given": plain(WORDS, UNRATED, **LIKELY, **UNPROVED),
-    "_known: a unit has none of the … that a claim needs": plain(
+    "_complete: a claim needs …, but none are given": plain(WORDS, UNRATED, **LIKELY, **UNPROVED),
+    "_complete: a unit has none of the … that a claim needs": plain(
         at=replace(PLAIN, unit_prices=POURED_PRICE), **bound("0", objective=["price"]), **UNPROVED
     ),
     "_rates: a rate is above 1": plain(at=rated(2), **SURE, costs=["2"]),
-    "_known: one of the … is below 0": plain(KIND, rated(-2), **SURE, costs=["-2"]),
+    "_complete: one of the … is below 0": plain(KIND, rated(-2), **SURE, costs=["-2"]),
     "_rates: a unit that never succeeds is repeated forever": plain(
         KIND, NEVER, **bound("0", objective=["attempts"])
     ),
@@ -261,8 +261,10 @@ FORGED: dict[str, Forged] = {
     "_prove: expected a proof for what is without the dear": plain(
         proof={"dear": [{"unit": 1}], **LEAF}, stays=KIND
     ),
-    "_dear: nothing is too dear": plain(proof={"dear": [], **LEAF, "others": LEAF}),
-    "_dear: what is dear is decided twice": plain(proof={"dear": [{"unit": 1}] * 2, **LEAF, "others": LEAF}),
+    "_above_cutoff: nothing is too dear": plain(proof={"dear": [], **LEAF, "others": LEAF}),
+    "_above_cutoff: what is dear is decided twice": plain(
+        proof={"dear": [{"unit": 1}] * 2, **LEAF, "others": LEAF}
+    ),
     "_rounded: a multiple is stated for another objective": plain(
         proof=weigh("1", multiples={"inputs": "1"})
     ),
@@ -395,8 +397,8 @@ TWO = bound("2")
 PARTS = {
     # the end costs 1; it seems to cost 2 where the unit that is used, and paid for, carries a weight as well
     "a unit that is used was paid for": Part(
-        "most = {} if member in used else self._cost(member)",
-        "most = self._cost(member)",
+        "capacity = {} if member in used else self._cost(member)",
+        "capacity = self._cost(member)",
         plain(**BAKED, cuts=CUTS, proof=POURED),
     ),
     "a goal at hand needs nothing": Part(
@@ -415,24 +417,24 @@ PARTS = {
         plain(**BAKED, cuts=CUTS, proof={**POURED, "using": weigh()}),
     ),
     "a unit that is left out is no member": Part(
-        "return self.members[place] - without",
-        "return self.members[place] - without - used",
+        "return self.members[index] - without",
+        "return self.members[index] - without - used",
         plain(**BAKED, cuts=CUTS, proof=POURED),
     ),
     "what is dear costs what its cuts do not carry": Part(
-        "for rest in [{}] if dear is None else map(left, dear)",
-        "for rest in [{}] if dear is None else map(self._cost, dear)",
+        "for addition in [{}] if above_cutoff is None else map(reduced_cost, above_cutoff)",
+        "for addition in [{}] if above_cutoff is None else map(self._cost, above_cutoff)",
         plain(**BAKED, cuts=CUTS, proof={**DEAR, "dear": [{"unit": 0}]}),
     ),
     "each of what is dear is": Part(
-        "map(left, dear)",
-        "map(left, dear[:1])",
+        "map(reduced_cost, above_cutoff)",
+        "map(reduced_cost, above_cutoff[:1])",
         plain(
             **TWO, cuts=CUTS, proof={**LEAF, "dear": [{"unit": 1}, {"unit": 0}], "others": {"hopeless": 1}}
         ),
     ),
     "the others are proved, too": Part(
-        'waiting.append((node["others"], used, without.union(dear)))',
+        'waiting.append((node["others"], used, without.union(above_cutoff)))',
         "pass",
         plain(**TWO, proof={**DEAR, "others": weigh()}),
     ),
@@ -459,8 +461,8 @@ PARTS = {
         ),
     ),
     "what is used takes of a limit": Part(
-        "-limit.left(used)",
-        "-limit.left(used) + 1",
+        "-limit.remaining(used)",
+        "-limit.remaining(used) + 1",
         plain(**TWO, rules=at_most(1), proof=weigh("2", limits=[[0, ["1"]]])),
     ),
     "what is used and paid for carries nothing, limited or not": Part(
@@ -485,7 +487,7 @@ PARTS = {
     ),
     # baking on what is mixed is right where something is mixed
     "what a rule bars is told from the branch": Part(
-        "barred = without.union(*(self._barred(place, used, without) for place in self.ruled.barred))",
+        "barred = without.union(*(self._barred(number, used, without) for number in self.ruled.barred))",
         "barred = without.union(*(self._barred(p, used, frozenset({1})) for p in self.ruled.barred))",
         plain(
             **NO_TREE,
@@ -534,8 +536,8 @@ PARTS = {
         ruled,
     ),
     "of each set a tree has a unit": Part(
-        "given.issuperset(needs)",
-        "not given.isdisjoint(needs)",
+        "made.issuperset(needs)",
+        "not made.isdisjoint(needs)",
         plain(rules=[INTERMEDIATE], **MIXED),
         ruled,
     ),

@@ -170,7 +170,7 @@ FORGED: dict[str, Forged] = {
         proof=[5],
     ),
     # --- the proof
-    "_prove_part: expected weights of conditions or a branch": plain(proof=[proving(more=[])]),
+    "_prove_node: expected weights of conditions or a branch": plain(proof=[proving(more=[])]),
     "_cheapest: member … brings more than it costs, without end": plain(**NO_TREE, **MEAL, proof=[fed(1)]),
     "kept: a unit that never succeeds is not compared": at_least(
         {"3/4": "1"}, {"balance": [[BREAD, {"3/4": "1"}]]}, objective=["success"], at=NEVER, stays=KIND
@@ -190,15 +190,15 @@ FORGED: dict[str, Forged] = {
         items=items([[SALT, 0], [SALT, 1]])
     ),
     "_stock: expected kitchen items in stock": plain(items=items([[SALT, 1], [DOUGH, 0]])),
-    "_told: expected …": plain(items=items([[SALT, 1]], [["salt", 0]])),
-    "_told: expected labels, and then nodes": plain(
+    "_stays_stated: expected …": plain(items=items([[SALT, 1]], [["salt", 0]])),
+    "_stays_stated: expected labels, and then nodes": plain(
         items=items([[SALT, 1]], [[SALT, False], ["salt", False]])
     ),
-    "_told: expected each of them once, in order": plain(
+    "_stays_stated: expected each of them once, in order": plain(
         items=items([[SALT, 1]], [["salt", True], ["salt", False]])
     ),
-    "_told: expected ids of nodes that stay or go": plain(items=items([[SALT, 1]], [[99, False]])),
-    "_told: a label has letters that cannot be printed": plain(
+    "_stays_stated: expected ids of nodes that stay or go": plain(items=items([[SALT, 1]], [[99, False]])),
+    "_stays_stated: a label has letters that cannot be printed": plain(
         items=items([[SALT, 1]], [["salt\nverified: all of it", False]])
     ),
 }
@@ -309,13 +309,13 @@ def test_what_is_nested_too_deeply_is_refused(tmp_path: Path) -> None:
 
 PARTS = {
     "copies in stock need not be made": Part(
-        "(o in check.goals) - there",
+        "(o in check.goals) - initial",
         "(o in check.goals)",
         at_least("1", {"balance": [[SALT, "1"]]}, **goals(PLAIN, SALT)),
     ),
     "what costs less than two is executed once, at most": Part(
-        "math.ceil(most / each) - 1 if exact",
-        "math.ceil(most / each) - 2 if exact",
+        "math.ceil(max_cost / per_execution) - 1 if exact",
+        "math.ceil(max_cost / per_execution) - 2 if exact",
         at_least("2", {"balance": [[DOUGH, "2"]]}, **goals(PLAIN, DOUGH)),
     ),
     "what never runs out can be taken": Part(
@@ -376,22 +376,22 @@ PARTS = {
         ),
     ),
     "a unit may bring the most": Part(
-        "found.append(self.sum([self.times(each, Fraction(most or 0)), once]))",
+        "ends.append(self.sum([self.times(per_execution, Fraction(high or 0)), once]))",
         "pass",
         at_least("6", fed(5), **MEAL),
     ),
     "a unit need not be executed": Part(
-        "found: list[Amount] = [{}] if low == 0 else []",
-        "found: list[Amount] = [{}] if most == 0 else []",
+        "ends: list[Amount] = [{}] if low == 0 else []",
+        "ends: list[Amount] = [{}] if high == 0 else []",
         at_least("3", {"balance": [[SALT, "1/2"], *PROOF["balance"]]}),
     ),
     "the part up to a count is proved, too": Part(
-        'yield Part(proof["up_to"], part.least, {**part.most, member: up_to})',
+        'yield Node(proof["up_to"], node.min_counts, {**node.max_counts, member: up_to})',
         "pass",
         at_least("3", {**branch(0, {}, PROOF), "branch": {"unit": 3}}),
     ),
     "the part above a count is proved, too": Part(
-        'yield Part(proof["above"], {**part.least, member: above}, part.most)',
+        'yield Node(proof["above"], {**node.min_counts, member: above}, node.max_counts)',
         "yield from ()",
         at_least("9", branch(0, BREAD_OFTEN, {})),
     ),
@@ -419,7 +419,7 @@ PARTS = {
         at_least("9", BREAD_OFTEN),
     ),
     "what is left of a limit is taken from the bound": Part(
-        "-limit.most",
+        "-limit.max_sum",
         "0",
         at_least(
             "3",

@@ -49,7 +49,7 @@ def test_an_order_is_found_where_there_is_one(part: int) -> None:
             assert run.order in orders if orders else run.order is None
             assert (run.order == tuple(range(len(units)))) is (orders[:1] == [tuple(range(len(units)))])
             if run.shortage is not None:
-                steps = [*run.shortage.taken, *([] if run.shortage.step is None else [run.shortage.step])]
+                steps = [*run.shortage.consumers, *([] if run.shortage.step is None else [run.shortage.step])]
                 assert all(run.shortage.node in units[step].inputs for step in steps)
             found[bool(orders)] += 1
     assert min(found.values()) > 15 // part

@@ -29,7 +29,7 @@ Tree = tuple[frozenset[int], tuple[Any, ...]]
 # How an answer is looked for: small problems are treated as large ones are.
 WAYS = {
     "case by case": {},
-    "by prices": {"cases._EFFORT": 0, "within_limit._FEW": 0},
+    "by prices": {"cases._EFFORT": 0, "within_limit._EASY": 0},
     "by rising prices": {"cases._EFFORT": 0, "within_limit._MANY": 0},
 }
 

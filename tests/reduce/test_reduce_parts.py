@@ -15,13 +15,13 @@ from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.reduce import ALL, NONE, SAFE, Reduction, dominance, parse_reductions
 from foon_asp.reduce import within_reach as within_reach_module
+from foon_asp.reduce.action_landmarks import relevant_beside_landmarks
 from foon_asp.reduce.derivation import Derivations, derive
 from foon_asp.reduce.dominance import undominated
 from foon_asp.reduce.exact_costs import CoarseCosts
-from foon_asp.reduce.forced import beside_forced
 from foon_asp.reduce.graph import Graph, graph_of
-from foon_asp.reduce.narrow import narrow
-from foon_asp.reduce.near import near
+from foon_asp.reduce.reduced_cost_neighbourhood import neighbourhood
+from foon_asp.reduce.restricted_subproblem import restricted_subproblem
 from foon_asp.reduce.within_reach import within_reach
 from tests.oracle.task_trees import trees
 from tests.support.plain_graphs import Action, executes, plain, plain_problem, random_graph
@@ -62,9 +62,9 @@ def solvable(seeds: int) -> Iterator[tuple[Graph, dict[int, int], list[int]]]:
             ]
             graph = plain(actions, rng.sample(range(1, 12), 6), [0])
         price = {a: rng.randint(0, 6) for a in range(len(graph.needs))}
-        made = derive(graph, price, price, added=False)
+        made = derive(graph, price, price, h_add=False)
         if made.tree(graph, graph.goals):
-            yield graph, price, list(made.before)
+            yield graph, price, list(made.h_actions)
 
 
 # --- What things cost at least.
@@ -97,9 +97,9 @@ def test_estimates_are_what_they_are_defined_to_be(added: bool) -> None:
         price = {a: rng.randint(seed % 2, 5) for a in range(9)}
         actions = rng.sample(range(9), 8)
         found = derive(graph, actions, price, added)
-        assert (found.cost, found.before) == costs_by_definition(graph, actions, price, added)
-        assert list(found.before.values()) == sorted(found.before.values())
-        assert all(found.before[found.maker[o]] == cost for o, cost in found.cost.items())
+        assert (found.cost, found.h_actions) == costs_by_definition(graph, actions, price, added)
+        assert list(found.h_actions.values()) == sorted(found.h_actions.values())
+        assert all(found.h_actions[found.maker[o]] == cost for o, cost in found.cost.items())
         tree = found.tree(graph, graph.goals)
         if graph.start.union(found.cost).issuperset(graph.goals):
             assert tree is not None
@@ -115,7 +115,7 @@ def test_estimates_are_what_they_are_defined_to_be(added: bool) -> None:
 
 def test_what_is_there_from_the_start_is_made_by_nothing() -> None:
     graph = plain([([], [0, 1]), ([0], [2])], [0, 2], [0])
-    found = derive(graph, range(2), {0: 1, 1: 1}.__getitem__, added=True)
+    found = derive(graph, range(2), {0: 1, 1: 1}.__getitem__, h_add=True)
     assert found == Derivations({1: 1, 2: 1}, {1: 0, 2: 1}, {0: 1, 1: 1})
     assert [found.tree(graph, objects) for objects in ([0], [0, 2], [2, 3])] == [set(), {1}, None]
 
@@ -124,7 +124,7 @@ def test_of_a_tree_each_action_is_followed_once() -> None:
     # two of each of 60 steps, each of which needs both of the step before: 2 ** 60 ways back
     steps = [([2 * step, 2 * step + 1], [2 * step + 2 + side]) for step in range(60) for side in range(2)]
     graph = plain(steps, [120, 121], [0, 1])
-    found = derive(graph, range(120), dict.fromkeys(range(120), 1), added=False)
+    found = derive(graph, range(120), dict.fromkeys(range(120), 1), h_add=False)
     assert found.tree(graph, graph.goals) == set(range(120))
 
 
@@ -155,34 +155,38 @@ def test_what_is_near_is_what_it_is_defined_to_be() -> None:
         graph = random_graph(seed, actions=12)
         rest = {a: rng.randint(seed % 2, 5) for a in range(12)}
         allowed = set(rng.sample(range(12), 11))
-        before = derive(graph, allowed, rest, added=False).before
+        before = derive(graph, allowed, rest, h_add=False).h_actions
         for limit in (0, 1, 2, 4, 7, 11):
             for known in (None, before):
-                found = near(graph, allowed, rest.__getitem__, limit, known, least=seed % 2)
+                found = neighbourhood(
+                    graph, allowed, rest.__getitem__, limit, known, min_reduced_cost=seed % 2
+                )
                 assert found == near_by_definition(graph, allowed, rest, limit, known)
                 some += 0 < len(found) < 9
-            nearest = near(graph, allowed, rest.__getitem__, 99, most=limit)
-            assert len(nearest) >= min(limit, len(near(graph, allowed, rest.__getitem__, 99)))
+            nearest = neighbourhood(graph, allowed, rest.__getitem__, 99, enough=limit)
+            assert len(nearest) >= min(limit, len(neighbourhood(graph, allowed, rest.__getitem__, 99)))
     assert some > 50
 
 
 def test_all_cheap_trees_are_near() -> None:
     for price, graph, slim in with_trees():
         cone, _ = graph.cone()
-        made = derive(graph, cone, price.__getitem__, added=False)
+        made = derive(graph, cone, price.__getitem__, h_add=False)
         for limit in (0, 1, 3, 6, 12, 100):
             cheap = [tree for tree in slim if sum(map(price.__getitem__, tree)) <= limit]
-            close = near(graph, set(cone), price.__getitem__, limit)
-            assert frozenset().union(*cheap) <= near(graph, set(cone), price.__getitem__, limit, made.before)
+            close = neighbourhood(graph, set(cone), price.__getitem__, limit)
+            assert frozenset().union(*cheap) <= neighbourhood(
+                graph, set(cone), price.__getitem__, limit, made.h_actions
+            )
             assert frozenset().union(*cheap) <= close
-        assert near(graph, range(len(graph.needs)), price.__getitem__, 10**9) == set(cone)
+        assert neighbourhood(graph, range(len(graph.needs)), price.__getitem__, 10**9) == set(cone)
 
 
 def test_the_nearest_come_first_until_there_are_enough() -> None:
     # 0, 1 and 2 give the goal; 3 and 4 what 0 needs, 5 what 1 needs, 6 what 5 needs
     graph = plain([([2], [1]), ([3], [1]), ([], [1]), ([], [2]), ([], [2]), ([4], [3]), ([], [4])], [1])
     rest = {0: 1, 1: 2, 2: 5, 3: 1, 4: 0, 5: 1, 6: 1}.__getitem__
-    enough = [len(near(graph, range(7), rest, 100, most=most)) for most in (1, 3, 4, 5, 6, 7, 8)]
+    enough = [len(neighbourhood(graph, range(7), rest, 100, enough=most)) for most in (1, 3, 4, 5, 6, 7, 8)]
     assert enough == [3, 3, 5, 5, 6, 7, 7]
 
 
@@ -195,7 +199,7 @@ def test_what_cannot_be_within_the_limit_is_not_asked_about(least: int, asked: l
         prices.append(action)
         return 1
 
-    assert near(row, range(4), rest, 2, least=least) == {0, 1}
+    assert neighbourhood(row, range(4), rest, 2, min_reduced_cost=least) == {0, 1}
     assert prices == asked
 
 
@@ -213,7 +217,7 @@ def test_what_is_within_reach_is_what_is_derived_at_once(
         allowed = set(rng.sample(range(14), 12))
         rest = {a: rng.randint(seed % 2, 4) for a in allowed}
         exact = (deep, looks, seed % 2) == (100, 1000, 1)
-        made = derive(graph, allowed, rest, added=False)
+        made = derive(graph, allowed, rest, h_add=False)
         reach = within_reach(graph, allowed, rest.__getitem__)
         asked = [(o, limit) for o in range(graph.size) for limit in range(9)]
         rng.shuffle(asked)
@@ -223,9 +227,9 @@ def test_what_is_within_reach_is_what_is_derived_at_once(
             assert (beyond == said) if exact else (beyond or not said), (seed, o, limit)
             told += said
         for limit in (0, 2, 5):
-            close = near(graph, allowed, rest.__getitem__, limit, made.before)
+            close = neighbourhood(graph, allowed, rest.__getitem__, limit, made.h_actions)
             reach = within_reach(graph, allowed, rest.__getitem__)
-            found = near(graph, allowed, rest.__getitem__, limit, within=reach)
+            found = neighbourhood(graph, allowed, rest.__getitem__, limit, reachable=reach)
             assert found == close if exact else found >= close, (seed, limit)
     assert told > 500
 
@@ -257,25 +261,25 @@ def test_costs_may_be_larger_than_any_float() -> None:
 
 def test_actions_are_added_until_there_is_a_tree() -> None:
     for graph, price, _ in solvable(40):
-        found = [narrow(graph, set(), price.__getitem__, most) for most in (0, 4, 99)]
+        found = [restricted_subproblem(graph, set(), price.__getitem__, most) for most in (0, 4, 99)]
         assert found[-1] is not None
         for made, tree in filter(None, found):
             assert executes(graph, tree)
-            assert tree <= {*made.before}
-    assert narrow(plain([([2], [1]), ([1], [2])], [1]), set(), lambda _: 1, 100) is None
-    assert narrow(plain([([0], [1])], [1], [0]), set(), lambda _: 1, 0) is not None
+            assert tree <= {*made.h_actions}
+    assert restricted_subproblem(plain([([2], [1]), ([1], [2])], [1]), set(), lambda _: 1, 100) is None
+    assert restricted_subproblem(plain([([0], [1])], [1], [0]), set(), lambda _: 1, 0) is not None
 
 
 def test_of_a_large_network_few_actions_are_added() -> None:
     """One for each object that is wanted and not made: those that lack least, then cheap ones first."""
     # the goal 1 is given by 0, of what nothing gives, and by 1, of 2 and 3, which are given by two each
     few = plain([([5, 0], [1]), ([2, 3], [1]), ([2], [2]), ([0], [2]), ([6], [3]), ([0], [3])], [1], [0])
-    found = narrow(few, set(), {0: 1, 1: 1, 2: 1, 3: 4, 4: 1, 5: 2}.__getitem__, 100)
+    found = restricted_subproblem(few, set(), {0: 1, 1: 1, 2: 1, 3: 4, 4: 1, 5: 2}.__getitem__, 100)
     assert found is not None
-    assert (found[1], found[0].before) == ({1, 3, 5}, {3: 4, 5: 2, 1: 5})
-    cheap = narrow(plain([([0], [1])] * 3, [1], [0]), set(), [9, 1, 1].__getitem__, 100)
+    assert (found[1], found[0].h_actions) == ({1, 3, 5}, {3: 4, 5: 2, 1: 5})
+    cheap = restricted_subproblem(plain([([0], [1])] * 3, [1], [0]), set(), [9, 1, 1].__getitem__, 100)
     assert cheap is not None
-    assert {*cheap[0].before} == cheap[1] == {1}
+    assert {*cheap[0].h_actions} == cheap[1] == {1}
 
 
 # --- What is of no use.
@@ -285,7 +289,7 @@ def test_of_a_large_network_few_actions_are_added() -> None:
 def test_those_that_dominate_are_found_as_by_looking_at_all(
     few: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(dominance, "_FEW", few)
+    monkeypatch.setattr(dominance, "_INDEXED", few)
     gone = 0
     for seed in range(60):
         chance = random.Random(seed)
@@ -324,9 +328,9 @@ def test_what_others_dominate_costs_no_tree() -> None:
 def test_all_trees_without_a_spare_unit_are_beside_what_is_forced() -> None:
     for _, graph, slim in with_trees():
         cone, _ = graph.cone()
-        assert frozenset().union(*slim) <= beside_forced(graph, set(cone))
+        assert frozenset().union(*slim) <= relevant_beside_landmarks(graph, set(cone))
         for tree in slim:  # allowed is heard: nothing comes from units that are not
-            assert beside_forced(graph, tree) == tree
+            assert relevant_beside_landmarks(graph, tree) == tree
 
 
 @pytest.mark.parametrize(
@@ -351,7 +355,7 @@ def test_all_trees_without_a_spare_unit_are_beside_what_is_forced() -> None:
 def test_beside_what_is_forced_nothing_else_stays(
     actions: list[Action], goals: list[int], expected: set[int]
 ) -> None:
-    assert beside_forced(plain(actions, goals, [0]), range(len(actions))) == expected
+    assert relevant_beside_landmarks(plain(actions, goals, [0]), range(len(actions))) == expected
 
 
 # --- A question as plain arrays.

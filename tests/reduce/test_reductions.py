@@ -103,7 +103,7 @@ SIZES: dict[str, dict[str, object]] = {
     "nearest first": {"_LARGE": 0, "_FIRST": 1},
     "no searches left out": {"_LARGE": 0, "_FIRST": 1, "_EASY": 0},
     "costs shared out": {"_SMALL": 0, "_EASY": 0},
-    "branching": {"_SMALL": 0, "_NEAR": (1, 0), "_AMONG": 1.0},
+    "branching": {"_SMALL": 0, "_BRANCHING_GAP": (1, 0), "_AMONG": 1.0},
 }
 
 
@@ -179,9 +179,15 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
             objectives = levels(tuple(dict.fromkeys(map(Objective, some_names))))
             names = list(map(str, objectives))
             worst = dearest(problem, found, names)
-            monkeypatch.setattr(reduction, "without_spare", lambda *_, tree=worst: set(tree))
+            monkeypatch.setattr(reduction, "irredundant", lambda *_, tree=worst: set(tree))
             reducer = reduction._Reducer(
-                problem, objectives, reductions, lambda: False, Listener(), spare=False, rest=False
+                problem,
+                objectives,
+                reductions,
+                lambda: False,
+                Listener(),
+                redundant=False,
+                other_rules=False,
             )
             reduced = reducer.reduce(nullcontext)
             if not found:
@@ -193,7 +199,7 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
                 assert in_hand == expected
                 continue
             bad += in_hand > expected
-            assert_left(reducer._units(reducer.left), found, names, reductions)
+            assert_left(reducer._units(reducer.remaining), found, names, reductions)
     assert bad > len(seeds) / 30
 
 
@@ -212,7 +218,9 @@ def test_all_that_trees_up_to_a_limit_have_is_within_it(seeds: range, redundant:
             found = without_redundant(found)
         names = LISTS[seed % len(LISTS)]
         by = [*names, "units"]
-        wide = reduce(problem, levels(tuple(map(Objective, names))), spare=redundant, rest=True).wide
+        wide = reduce(
+            problem, levels(tuple(map(Objective, names))), redundant=redundant, other_rules=True
+        ).wide
         if wide is None:
             continue
         everything = wide.everything()
@@ -223,7 +231,7 @@ def test_all_that_trees_up_to_a_limit_have_is_within_it(seeds: range, redundant:
         assert [keys[total] for total in sorted(keys)] == sorted(keys.values())
         for total in keys:
             for limit in {total - 1, total, total + 1, total * 11 // 10}:
-                within = wide.within(limit, lambda: False)
+                within = wide.units_within(limit, lambda: False)
                 asked, left_out = asked + 1, left_out + (within < everything)
                 assert within <= everything
                 for tree in found:

@@ -9,7 +9,7 @@ import pytest
 from foon_asp.bounds.shared_costs import SharedCosts
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
-from foon_asp.reduce.upper_bound import following, guessed, improved, varied, without_spare
+from foon_asp.reduce.upper_bound import following, guessed, improved, irredundant, perturbation_search
 from tests.reduce.test_reduce_parts import solvable, with_trees
 from tests.support.plain_graphs import executes, plain
 
@@ -25,9 +25,9 @@ def total(tree: Collection[int], price: dict[int, int]) -> int:
 def test_nothing_more_can_be_left_out_of_a_tree() -> None:
     costs = 0
     for graph, price, able in solvable(120):
-        tree = without_spare(graph, able, price.__getitem__)
+        tree = irredundant(graph, able, price.__getitem__)
         assert executes(graph, tree)
-        made = (derive(graph, tree - {a}, price, added=True) for a in tree)
+        made = (derive(graph, tree - {a}, price, h_add=True) for a in tree)
         assert all(each.tree(graph, graph.goals) is None for each in made)
         costs += total(tree, price)
     assert costs <= 660
@@ -36,16 +36,16 @@ def test_nothing_more_can_be_left_out_of_a_tree() -> None:
 def test_what_cannot_be_left_out_stays() -> None:
     only = 0
     for price, graph, slim in with_trees():
-        able = derive(graph, graph.cone()[0], price.__getitem__, added=False).before
-        assert without_spare(graph, able, price.__getitem__) in slim
+        able = derive(graph, graph.cone()[0], price.__getitem__, h_add=False).h_actions
+        assert irredundant(graph, able, price.__getitem__) in slim
         for tree in slim:
-            assert without_spare(graph, tree, price.__getitem__) == tree
+            assert irredundant(graph, tree, price.__getitem__) == tree
             for larger in (tree | {more} for more in able):
                 inside = [other for other in slim if other <= larger]
-                runs = derive(graph, larger, lambda _: 1, added=False).before
+                runs = derive(graph, larger, lambda _: 1, h_add=False).h_actions
                 if len(runs) == len(larger) and len(inside) == 1:
                     only += 1  # whatever the costs
-                    assert without_spare(graph, larger, price.__getitem__) == tree
+                    assert irredundant(graph, larger, price.__getitem__) == tree
     assert only > 100
 
 
@@ -63,7 +63,7 @@ CHAIN = plain([([], [1]), ([4], [1, 2]), ([], [2, 3]), ([0], [4])], [1, 2, 3], [
     ],
 )
 def test_dear_ones_go_first(prices: list[int], expected: set[int]) -> None:
-    assert without_spare(CHAIN, range(4), prices.__getitem__) == expected
+    assert irredundant(CHAIN, range(4), prices.__getitem__) == expected
 
 
 def test_with_one_out_the_others_are_followed_by_costs_that_add_up() -> None:
@@ -71,14 +71,14 @@ def test_with_one_out_the_others_are_followed_by_costs_that_add_up() -> None:
     makers = [([0], [1]), ([2, 3, 4], [1]), ([0], [2]), ([0], [3]), ([0], [4]), ([5], [1]), ([0], [5])]
     graph = plain([*makers, ([1], [6])], [6], [0])
     prices = [20, 1, 3, 3, 3, 2, 6, 1]
-    assert without_spare(graph, range(8), prices.__getitem__) == {5, 6, 7}
+    assert irredundant(graph, range(8), prices.__getitem__) == {5, 6, 7}
 
 
 @pytest.mark.parametrize("thorough", [False, True])
 def test_a_tree_is_exchanged_for_a_cheaper_one_only(thorough: bool) -> None:
     costs = better = 0
     for price, graph, slim in with_trees():
-        able = derive(graph, graph.cone()[0], price.__getitem__, added=False).before
+        able = derive(graph, graph.cone()[0], price.__getitem__, h_add=False).h_actions
         ordered = sorted((total(tree, price), sorted(tree)) for tree in slim)
         best, dearest = set(ordered[0][1]), set(ordered[-1][1])
         found = improved(graph, able, dearest, price.__getitem__, lambda a: a % 3, never, thorough)
@@ -88,7 +88,7 @@ def test_a_tree_is_exchanged_for_a_cheaper_one_only(thorough: bool) -> None:
         costs += total(found, price)
         better += found is not dearest
     for graph, price, runs in solvable(120):
-        tree = without_spare(graph, runs, {a: 6 - price[a] for a in price}.__getitem__)
+        tree = irredundant(graph, runs, {a: 6 - price[a] for a in price}.__getitem__)
         found = improved(graph, runs, tree, price.__getitem__, lambda a: a % 3, never, thorough)
         costs += total(found, price)
     assert better > 10
@@ -186,7 +186,9 @@ def by_chance(
 ) -> set[int]:
     """Look for a cheaper tree where a relaxed solution says nothing."""
     nothing = dict.fromkeys(actions, 0.0)
-    return varied(graph, actions, tree, price, enough, expired, nothing, random.Random(0).random, 40)
+    return perturbation_search(
+        graph, actions, tree, price, enough, expired, nothing, random.Random(0).random, 40
+    )
 
 
 def test_chance_leads_where_no_estimate_does() -> None:
@@ -207,18 +209,18 @@ def test_chance_goes_along_with_a_relaxed_solution() -> None:
     for times, least in ((0.4, 6), (0.6, 9)):  # each other time
         chances = iter([times, *[0.5] * 12])
         chance = partial(next, chances, 0.999)
-        found = varied(SETS, range(12), single, price, 8, never, shares, chance, 1)
+        found = perturbation_search(SETS, range(12), single, price, 8, never, shares, chance, 1)
         assert (sum(map(price, found)) == 6) == (least == 6)
 
 
 def test_what_chance_leads_to_is_a_tree_and_no_dearer() -> None:
     costs = 0
     for graph, price, able in solvable(80):
-        tree = without_spare(graph, able, lambda _: 1)  # not by what they cost
+        tree = irredundant(graph, able, lambda _: 1)  # not by what they cost
         better = by_chance(graph, able, tree, price.__getitem__, 0)
         assert executes(graph, better)
         assert better <= set(able)
         assert better is tree or total(better, price) < total(tree, price)
-        assert better == without_spare(graph, better, price.__getitem__) or better is tree
+        assert better == irredundant(graph, better, price.__getitem__) or better is tree
         costs += total(better, price)
     assert costs <= 333

@@ -17,14 +17,14 @@ UNITS, KITCHEN = Objective.UNITS, Objective.KITCHEN
 
 
 def wide_of(problem: Problem, *objectives: Objective, spare: bool = False) -> Wide:
-    wide = reduce(problem, levels(objectives or (UNITS,)), spare=spare, rest=True).wide
+    wide = reduce(problem, levels(objectives or (UNITS,)), redundant=spare, other_rules=True).wide
     assert wide is not None
     return wide
 
 
 def within(wide: Wide, units: Collection[int]) -> set[int]:
     """Return what trees can have that cost no more than these units."""
-    return {*wide.within(wide.total(units), lambda: False)}
+    return {*wide.units_within(wide.total(units), lambda: False)}
 
 
 # 0 makes the goal, 1 to 3 and 4 lead to no goal, 5 and 7 wait for what nobody has, and so nothing needs 6
@@ -45,8 +45,8 @@ def test_what_a_tree_up_to_a_cost_can_have() -> None:
     ):
         assert within(plain, units) == {0}
         assert within(spare, units) == expected
-    assert spare.within(0, lambda: False) == plain.within(0, lambda: False) == frozenset()
-    assert spare.within(2, lambda: True) == {0, 1, 6}
+    assert spare.units_within(0, lambda: False) == plain.units_within(0, lambda: False) == frozenset()
+    assert spare.units_within(2, lambda: True) == {0, 1, 6}
     removed = wide_of(replace(JUNK, restriction=Restriction(lambda unit: unit in {1, 5})), spare=True)
     assert within(removed, {0, 6}) == {*removed.everything()} == {0, 6}
 
@@ -65,17 +65,17 @@ MADE = replace(
 
 def test_what_makes_what_units_need_and_what_makes_the_same() -> None:
     wide = wide_of(MADE)
-    assert wide.makers([]) == wide.makers([0]) == {0, 1}
-    assert wide.makers([1]) == {0, 1, 2, 3, 4}
-    assert wide.makers([4, 5]) == {0, 1, 5, 6}
-    assert [wide.beside(units) for units in ([2], [0, 6], [7])] == [{2, 3}, {0, 1, 6}, set()]
+    assert wide.achievers_for([]) == wide.achievers_for([0]) == {0, 1}
+    assert wide.achievers_for([1]) == {0, 1, 2, 3, 4}
+    assert wide.achievers_for([4, 5]) == {0, 1, 5, 6}
+    assert [wide.rival_achievers(units) for units in ([2], [0, 6], [7])] == [{2, 3}, {0, 1, 6}, set()]
 
 
 def test_what_units_build_upon_without_a_choice() -> None:
     wide = wide_of(MADE)
-    assert [wide.with_only_makers([unit], 99) for unit in (0, 1, 8)] == [{0}, {1, 4, 5, 6}, {8, 9}]
-    assert wide.with_only_makers([1, 0], 2) == {0, 1}
-    assert [len(wide.with_only_makers([1], most)) for most in range(6)] == [1, 1, 2, 3, 4, 4]
+    assert [wide.with_only_achievers([unit], 99) for unit in (0, 1, 8)] == [{0}, {1, 4, 5, 6}, {8, 9}]
+    assert wide.with_only_achievers([1, 0], 2) == {0, 1}
+    assert [len(wide.with_only_achievers([1], most)) for most in range(6)] == [1, 1, 2, 3, 4, 4]
 
 
 def test_sets_of_units_of_which_each_tree_has_one() -> None:
@@ -132,10 +132,10 @@ def test_the_units_nearest_to_the_goals_make_them_sooner_or_later() -> None:
 def test_ctrl_c_while_cuts_are_found_anew_ends_it() -> None:
     for calls in range(2):
         with pytest.raises(KeyboardInterrupt):
-            wide_of(JUNK, spare=True).within(2, interrupt_at(calls))
+            wide_of(JUNK, spare=True).units_within(2, interrupt_at(calls))
 
 
 def test_what_is_wide_is_what_was_there_before_anything_was_left_out() -> None:
     for seed in range(3):
         wide = wide_of(gap_problem(seed))
-        assert {*wide.left} == wide.everything() == wide.graph.cone()[0]
+        assert {*wide.remaining} == wide.everything() == wide.graph.cone()[0]

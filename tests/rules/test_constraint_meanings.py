@@ -195,14 +195,14 @@ def test_what_is_wrong_with_a_tree_is_named() -> None:
         [
             Meaning(units(7), barred=lambda used, without: used | without),
             Meaning(units(8), [*ways], things, Fraction(4)),
-            Meaning(never=True, things=[(units(2), Fraction(1, 2))], most=Fraction(1)),
+            Meaning(never=True, things=[(units(2), Fraction(1, 2))], max_sum=Fraction(1)),
         ],
         10,
         20,
     )
     assert ruled.removed == {7, 8}
     assert (ruled.never, set(ruled.barred)) == ({2}, {0})
-    assert [limit.left({0, 21, 5}) for limit in ruled.limits.values()] == [-2, 1]
+    assert [limit.remaining({0, 21, 5}) for limit in ruled.limits.values()] == [-2, 1]
     assert ruled.bars(units(1), units(2)) == {0: {1, 2}}
     for tree, fault in (
         (units(0, 7), "has unit 7, which a rule removes"),
