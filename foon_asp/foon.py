@@ -60,7 +60,7 @@ def load(
     Parameters:
         source: A folder with all files; or a network (FOON text or JSON), several networks to merge, or a
             store. Without it, the bundled kitchen is loaded.
-        kitchen: The file with the object nodes at hand, instead of that of the folder; or ``"@starting"``
+        kitchen: The file with the available object nodes, instead of that of the folder; or ``"@starting"``
             for what makes the units of each file run, which is also assumed where there is no kitchen.
         rates: The file with the success rates of motions, instead of that of the folder.
         utensils: The file with the labels of utensils, instead of that of the folder.
@@ -158,8 +158,8 @@ def build(
             ``("pour", ["water; hot", "cup; empty"], ["cup; contains {water}"])``; or as a dictionary with the
             keys ``motion``, ``inputs`` and ``outputs``; or a :class:`FunctionalUnit`. Or a network, made by a
             :class:`NetworkBuilder`.
-        kitchen: The object nodes at hand, by label, in one-line notation, or as :class:`ObjectNode`. Without
-            it, or as ``"@starting"``, it is what makes all units run; ``()`` is nothing.
+        kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`.
+            Without it, or as ``"@starting"``, it is what makes all units run; ``()`` is nothing.
         goals: What is to be made, in the same way. Without it, what the last unit makes and no unit needs.
         rates: The success rates of motions, above 0 and at most 1.
         utensils: The labels of the utensils that the container rule ``implied`` is about.

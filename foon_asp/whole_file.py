@@ -123,7 +123,7 @@ def _own_file(folder: Path) -> tuple[Path, BinaryIO]:
 
 @functools.cache  # once for each folder: fmt writes many files
 def _clear(folder: Path) -> None:
-    """Remove what writes that were killed left in a folder: files of ours that nobody has locked."""
+    """Remove what writes that were killed left in a folder: temporary files that nobody has locked."""
     with contextlib.suppress(OSError):
         for name in filter(_PARTIAL.fullmatch, os.listdir(folder)):
             with contextlib.suppress(OSError):

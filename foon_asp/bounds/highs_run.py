@@ -6,7 +6,7 @@ from typing import Any, Final
 from foon_asp.aside import Aside
 from foon_asp.deadline import uninterrupted
 
-_SMALL: Final = 6000  # columns and rows, with which so many steps take at most about a second
+_SMALL: Final = 6000  # columns and rows, a run of that many steps takes about a second
 _STEPS: Final = 4000  # of the simplex algorithm
 _LOOKS = 0.05  # seconds between two looks at the time
 _LATE = 0.3  # seconds that HiGHS has to end; a step of the interior point method may take longer

@@ -17,7 +17,7 @@ class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
 
 
 class Solved(NamedTuple):
-    """A relaxed solution ``x``, ``None`` if there is none, and a proved lower ``bound``.
+    """A relaxed solution ``x``, ``None`` without one, and a proved lower ``bound``.
 
     A solution with a bound of -infinity may fail rows by a little. The bound is infinite where it is proved
     that there is no solution, and -infinite where nothing is.
@@ -28,7 +28,7 @@ class Solved(NamedTuple):
 
 
 class Relaxation(NamedTuple):
-    """A relaxed solution ``x`` in floats, ``None`` if there is none, and the ``weights`` of the rows.
+    """A relaxed solution ``x`` in floats, ``None`` without one, and the ``weights`` of the rows.
 
     The weights are the duals or, without a solution, a Farkas combination of the rows. ``columns`` and
     ``rows`` are those of the basis: between them is the square system that the weights solve.

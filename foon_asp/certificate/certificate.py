@@ -83,9 +83,9 @@ def certify(
     not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
     trees: then the certificate proves a bound on all of them. ``cuts`` are sets of object nodes, a goal in
     each, that are tried first, and ``cases`` are told apart first: :attr:`foon_asp.asp.Outcome.cuts` and
-    ``Outcome.cases``. ``subject`` is the whole that the network
-    is a part of, if it is one: with all makers of each node that is neither at hand nor an output alone, and
-    without constraints. ``None`` where nothing is found before
+    ``Outcome.cases``. ``subject`` is the whole that the network is a part of, if it is one: with all
+    makers of each node that is neither available nor an output alone, and without constraints. ``None`` where
+    nothing is found before
     ``expired`` says so, for objectives that need rates with rates of 0 or with rates that are not those of
     the motions, and where nothing is found within the limits of ``verify``, as where products of rates are
     too close to be compared, or too long to be written.

@@ -349,7 +349,7 @@ def write_list(number: int, items: Iterable[int]) -> str:
 
 
 def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
-    """Return facts of the cost of dropping each constraint, by number, and of those that are kept."""
+    """Return facts of the cost of dropping each constraint, by number, and of constraints kept."""
     facts = [f"_constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
     return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])
 

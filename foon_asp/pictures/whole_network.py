@@ -26,8 +26,8 @@ class WholeNetwork(Value, frozen=True):
 
     Attributes:
         places: Of units, then of objects: x and y of each.
-        kitchen: The positions of objects at hand.
-        reachable: The positions of objects at hand or that can be made.
+        kitchen: The positions of available objects.
+        reachable: The positions of objects that are available or can be made.
         possible: The positions of units that can be done with these.
     """
 
