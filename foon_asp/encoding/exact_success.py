@@ -1,8 +1,8 @@
 """Success rates as integer weights for clingo, and as exact exponents where rounding could decide.
 
 The logarithm of a product of rates is the sum of their logarithms; clingo adds integers, so each
-rate p has the weight ``floor(S * -ln p)``. Rounding down loses less than 1 per unit, which bounds its error: see
-``docs/dev/exact-success.md`` for the argument and ``foon_asp/asp/solver.py`` for its use.
+rate p has the weight ``floor(S * -ln p)``. Rounding down loses less than 1 per unit, which bounds its error:
+see ``docs/dev/exact-success.md`` for the argument and ``foon_asp/asp/solver.py`` for its use.
 """
 
 import math

@@ -6,6 +6,14 @@ from foon_asp.results.values import Value
 from foon_asp.text.diagnostics import Diagnostic, Severity, excerpt_with_caret
 
 
+class SeverityCounts(Value, frozen=True):
+    """How many findings there are of each severity."""
+
+    error: int
+    warning: int
+    note: int
+
+
 class Finding(Value, frozen=True):
     """Something that is wrong or doubtful at one place.
 

@@ -14,7 +14,7 @@ from foon_asp.errors import UserError
 from foon_asp.linting import linter
 from foon_asp.linting.baseline import read_baseline
 from foon_asp.linting.catalog import CATALOG, unknown_code
-from foon_asp.linting.finding import Finding
+from foon_asp.linting.finding import Finding, SeverityCounts
 from foon_asp.linting.linted_files import with_tables
 from foon_asp.linting.settings import find_settings
 from foon_asp.questions.result import Ending, Result
@@ -50,7 +50,7 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
     ROWS = "findings"
 
     files: int
-    counts: dict[str, int]
+    counts: SeverityCounts
     codes: dict[str, int]
     mended: int
     known: int
@@ -60,7 +60,7 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
     @property
     def ending(self) -> Ending:
         """``NEGATIVE`` if there are errors or warnings; notes do not count."""
-        bad = self.counts[Severity.ERROR] + self.counts[Severity.WARNING]
+        bad = self.counts.error + self.counts.warning
         return Ending.NEGATIVE if bad else Ending.DONE
 
     def show(self) -> Iterator[Block]:
@@ -121,7 +121,7 @@ class Findings(NamedTuple):
         codes = Counter(finding.code for finding in self.findings)
         return Linted(
             files=len(self.files),
-            counts={str(severity): severities[severity] for severity in Severity},
+            counts=SeverityCounts(**{str(severity): severities[severity] for severity in Severity}),
             codes=dict(sorted(codes.items())),
             mended=mended,
             known=self.baselined,

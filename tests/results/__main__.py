@@ -35,7 +35,6 @@ def documents() -> dict[str, type[Document]]:
         tag = each.__struct_config__.tag
         if isinstance(tag, str) and tag.startswith("foon-asp/"):
             found[tag.split("/")[1]] = each
-    del found["lint"]  # findings are laid out by linting
     return found
 
 
