@@ -5,7 +5,7 @@
 # make coverage  which lines of the package the tests reach: from Python 3.12 little slower than the tests
 # make mutants   changes the code on purpose, to see whether a test notices: hours, or with SAMPLE=600 ten minutes;
 #                with SINCE=REVISION only the files that differ from it, with the tests of their rooms
-# make lint   style and types
+# make lint   style, types, and names and docstrings that hide a meaning
 # make bench  the benchmarks, in a few minutes, into docs/dev/performance.md; make bench-full the large ones, which
 #             take about an hour and a half (with DATA=DIR also on the network in a folder)
 # Each makes .venv and installs what it needs when run first. With PYTHON=python3.13 VENV=.venv-3.13 it is another
@@ -60,6 +60,7 @@ lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/python -m tests.docs.words
 
 bench: $(VENV)/installed-bench
 	$(BIN)/python benchmarks/solve_phases.py

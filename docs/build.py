@@ -66,6 +66,7 @@ PAGES = {
     "Working on it": (
         "CONTRIBUTING",
         "docs/dev/architecture",
+        "docs/dev/words",
         "docs/dev/reductions",
         "docs/dev/questions",
         "docs/dev/certificates",
