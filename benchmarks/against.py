@@ -31,7 +31,6 @@ from typing import Any, NamedTuple
 OBJECTIVES = ("units", "inputs", "success")
 LEAST = 0.001  # seconds that both answers take at least, where a ratio says something
 COMMANDS = {
-    "solve": ("solve", "--format", "json"),
     "compare": ("compare", "--all-makeable", "--format", "json"),
     "batch": ("batch", "{questions}", "--results", "{results}"),
 }
@@ -113,7 +112,7 @@ class Checkout:
     def run(self, words: Sequence[str]) -> float:
         """Return the seconds of a whole command; raises :class:`RuntimeError` where it fails."""
         began = time.perf_counter()
-        command = [self.python, "-m", "foon_asp", *words]
+        command = [self.python, "-P", "-m", "foon_asp", *words]  # -P: not the code of the current folder
         ended = subprocess.run(command, check=False, env=self.environment, capture_output=True, text=True)
         if ended.returncode not in {0, 1, 3}:
             raise RuntimeError(f"{self.folder}: {ended.stderr}")
