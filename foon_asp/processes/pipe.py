@@ -1,5 +1,6 @@
 """Messages through pipes between two processes of this program: pickled values, each after its length."""
 
+import contextlib
 import os
 import pickle
 import queue
@@ -32,6 +33,12 @@ def write(pipe: RawIOBase, content: bytes) -> None:
     unwritten = memoryview(content)
     while unwritten:
         unwritten = unwritten[pipe.write(unwritten) :]
+
+
+def write_if_open(pipe: RawIOBase, content: bytes) -> None:
+    """Write bytes completely, or not where the other end is closed: who waits for an answer notices that."""
+    with contextlib.suppress(OSError, ValueError):
+        write(pipe, content)
 
 
 def send(pipe: RawIOBase, value: object) -> None:

@@ -11,7 +11,7 @@ from queue import Empty, SimpleQueue
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from foon_asp.errors import BugError
-from foon_asp.processes.pipe import packed, receive, receive_packed, requests, send, write
+from foon_asp.processes.pipe import packed, receive, receive_packed, requests, send, write, write_if_open
 from foon_asp.processes.python_process import PythonProcess
 
 Task = TypeVar("Task")
@@ -123,7 +123,9 @@ class _Worker(PythonProcess, Generic[Task]):
         self.task = task
         self.is_late = False
         self.end_by: float | None = None
-        self.start_thread(_write, self._out, first + packed(task))  # waits until the process has started
+        self.start_thread(
+            write_if_open, self._out, first + packed(task)
+        )  # waits until the process has started
         self.start_thread(_listen, self._in, number, messages)
 
     def start_timer(self, seconds: float | None) -> None:
@@ -134,12 +136,7 @@ class _Worker(PythonProcess, Generic[Task]):
         """Send the process another task; if it has died, its message ``lost`` follows."""
         self.task = task
         self.start_timer(seconds)
-        _write(self._out, packed(task))
-
-
-def _write(pipe: RawIOBase, content: bytes) -> None:
-    with contextlib.suppress(OSError, ValueError):
-        write(pipe, content)
+        write_if_open(self._out, packed(task))
 
 
 def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:

@@ -53,6 +53,7 @@ class PythonProcess:
         )
         self._out = cast("RawIOBase", self._process.stdin)
         self._in = cast("RawIOBase", self._process.stdout)
+        self._group_ended = False  # or not ours: its number may be that of others by now
         self._threads: list[Aside] = []
         _all.add(self)
 
@@ -70,9 +71,10 @@ class PythonProcess:
     def end(self) -> int:
         """Kill the process and the processes that it has started; return its exit code."""
         with uninterrupted():
-            if hasattr(os, "killpg"):
+            if hasattr(os, "killpg") and not self._group_ended:
                 with contextlib.suppress(OSError):
                     os.killpg(self._process.pid, signal.SIGKILL)
+            self._group_ended = True
             self._process.kill()
             code = self._process.wait()
         for thread in self._threads:
@@ -89,6 +91,8 @@ class PythonProcess:
     def abandon(self) -> None:
         """Forget the process after a fork: it is a child of the process that this one is a copy of."""
         self._process.returncode = 0
+        self._group_ended = True
+        self._threads = []  # which a copy does not have
         self._close()
 
     def _close(self) -> None:

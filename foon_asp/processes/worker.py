@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError
-from foon_asp.processes.pipe import receive, write
+from foon_asp.processes.pipe import receive, write_if_open
 from foon_asp.processes.python_process import PythonProcess
 
 Message = tuple[str, Any]
@@ -64,7 +64,7 @@ class Worker(PythonProcess):
         self._busy = True
         deadline.count(self._process.pid)
         try:
-            self.start_thread(_write, self._out, request)
+            self.start_thread(write_if_open, self._out, request)
             while True:
                 kind, value = self._next(deadline)
                 if handlers is None or kind not in handlers:
@@ -83,7 +83,7 @@ class Worker(PythonProcess):
 
     def tell(self, request: bytes) -> None:
         """Send a request without an answer, short enough for the buffer of the pipe."""
-        _write(self._out, request)
+        write_if_open(self._out, request)
 
     def _next(self, deadline: Deadline) -> Message:
         """Wait for a message; raises :class:`DiedError` or :class:`LimitError`."""
@@ -128,11 +128,6 @@ def give_back(key: Hashable, worker: Worker) -> None:
     """Make a worker the idle one of a key; it is ended if it is not ready, or the key has an idle worker."""
     if not worker.ready or _idle.setdefault(key, worker) is not worker:
         worker.end()
-
-
-def _write(pipe: RawIOBase, content: bytes) -> None:
-    with contextlib.suppress(OSError, ValueError):  # the wait for the answer notices a process that died
-        write(pipe, content)
 
 
 def _listen(

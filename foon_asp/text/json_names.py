@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.text.json_layout import TOKEN
-from foon_asp.text.json_object import is_none
+from foon_asp.text.json_object import LISTED_UNDER, is_none
 from foon_asp.text.json_value import json_line
 from foon_asp.text.line import LineError, Mention, NameKind, line_names
 from foon_asp.text.line_parser import read_line
@@ -19,7 +19,6 @@ _LABELS = {"label", "object_label"}
 _STATES = {"states", "object_states"}
 _RELATED = {"relative_object", "related_object"}
 _NAMED = {*_LABELS, "state_label", "motion_label"}  # by the id beside it
-_CONTENTS = "contains"  # the word that listed ingredients are read under
 _IDS = {NameKind.OBJECT: "object_id", NameKind.MOTION: "motion_id"}
 
 
@@ -38,9 +37,9 @@ def renamed_json(text: str, renaming: "Renaming") -> str:
     edits: list[tuple[int, int, str]] = []
     names = _json_names(text)
     word = renaming.rename
-    if word.kind == NameKind.WORD and word.old == _CONTENTS and any(map(_is_word_of_list, names)):
+    if word.kind == NameKind.WORD and word.old == LISTED_UNDER and any(map(_is_word_of_list, names)):
         raise UserError(
-            f"JSON lists ingredients under the word {_CONTENTS!r} alone, which cannot be renamed there; "
+            f"JSON lists ingredients under the word {LISTED_UNDER!r} alone, which cannot be renamed there; "
             "convert the file to text before"
         )
     for json_name in names:
@@ -132,13 +131,13 @@ def _with_ids(level: _Level) -> Iterator[_JsonName]:
 
 
 def _is_word_of_list(name: _JsonName) -> bool:
-    return name.kind is NameKind.WORD and name.name == _CONTENTS
+    return name.kind is NameKind.WORD and name.name == LISTED_UNDER
 
 
 def _name_contents(names: list[_JsonName], first: int) -> None:
     """Make the state ``contains`` of an object that lists ingredients the word of its contents."""
     for index in range(first, len(names)):
-        if names[index].kind is NameKind.STATE and names[index].name == _CONTENTS:
+        if names[index].kind is NameKind.STATE and names[index].name == LISTED_UNDER:
             names[index] = names[index]._replace(kind=NameKind.WORD)
             return
 

@@ -19,6 +19,9 @@ from foon_asp.text.reading import Reading
 # The equivalent keys of the two forms, and the keys that are allowed.
 _LABEL, _STATES = ("label", "object_label"), ("states", "object_states")
 _STATE_LABEL, _RELATED = ("state_label", "label"), ("relative_object", "related_object")
+LISTED_UNDER = "contains"
+"""The word that listed ingredients are read under."""
+
 _OTHERS = {"ingredients", "container", "object_id", "object_in_motion", "has_portions", "recipe_category"}
 KEYS = {*_LABEL, *_STATES, *_OTHERS}
 _STATE_KEYS = {*_STATE_LABEL, *_RELATED, "state_id"}
@@ -208,7 +211,7 @@ def _state(value: object) -> StateLine:
 
 def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
     """Return states with the ingredients in the state ``contains``, or else behind all states."""
-    contents = Contents("contains", tuple(sorted(ingredients)))
+    contents = Contents(LISTED_UNDER, tuple(sorted(ingredients)))
     for index, state in enumerate(states):
         if state.attribute == contents.word:
             return [*states[:index], StateLine(contents, state.id, ingredients), *states[index + 1 :]]
