@@ -297,6 +297,7 @@ def opened(chromium: Browser, file: Path, tab: str) -> None:
     chromium.size(1440, 900)
     chromium.open(file)
     chromium.run(f"[...document.querySelectorAll('[role=tab]')].find(t => t.textContent === {tab!r}).click()")
+    chromium.drawn()
     assert texts(chromium, "[aria-selected=true][role=tab]") == [tab]
     assert chromium.complaints == []
 

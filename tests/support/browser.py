@@ -77,6 +77,10 @@ class Browser:
         self._ask("Page.navigate", url=page if isinstance(page, str) else page.resolve().as_uri())
         while not self._loaded:
             self._read()
+        self.drawn()
+
+    def drawn(self) -> None:
+        """Wait until what the page has been told so far is drawn, and its observers of sizes were called."""
         self.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     def run(self, script: str) -> Any:
