@@ -191,10 +191,9 @@ class _Solver:
             if reduced.settled:
                 return self._optimal(tree)
         self.prepared = replace(self.prepared, reduced=reduced._replace(settled=False))
-        outcome = self._case_split(reduced, subproblem)
-        if outcome is None and keeps:
-            outcome = self._gap_bounded(subproblem, tree, None)
-        return outcome or self._solve_violated(subproblem, tree)
+        if keeps:
+            return self._gap_bounded(subproblem, tree, None)
+        return self._solve_violated(subproblem, tree)
 
     def _solve_violated(self, subproblem: Wide, tree: Units) -> Outcome:
         """Find the best tree under rules that the given tree breaks.
@@ -219,30 +218,6 @@ class _Solver:
         if not run.exhausted:
             return self._limited(run.units, ())
         return self._gap_bounded(subproblem, self._best_reported(run.units), run)
-
-    def _case_split(self, reduced: Reduced, subproblem: Wide) -> Outcome | None:
-        """Find the best tree under ready-made constraints by case split; ``None`` if undecided."""
-        rules, settings = self.program.ready_made, self.prepared.settings
-        if rules is None or Reduction.BOUNDS not in settings.reductions:
-            return None
-        from foon_asp.reduce.cases import best_kept  # noqa: PLC0415 (of use with few rules)
-
-        try:
-            with self.deadline.watched("cutting the network", late=True):
-                result = best_kept(
-                    self.problem, self.levels, subproblem, reduced, rules, lambda: self.deadline.passed
-                )
-        except KeyboardInterrupt:
-            self.deadline.interrupt()
-            if self.listener.incumbent is None:
-                return self._outcome(Status.UNKNOWN, None, {})
-            return self._limited(self.listener.incumbent[0], ())
-        if result is None:
-            return None
-        if result.tree is None:
-            return self._outcome(Status.INFEASIBLE, None, {})
-        self.listener.tree(result.tree)
-        return self._optimal(self._best_reported(result.tree))
 
     def _with_priced_limit(self, subproblem: Wide, tree: Units) -> Outcome | None:
         """Find the best tree by a Lagrangian price on a limited sum; ``None`` where no price decides."""

@@ -1,4 +1,4 @@
-"""The best tree that keeps to ready-made constraints, by cases or by prices, against all trees there are."""
+"""The best tree that keeps to ready-made constraints, by prices or by clingo, against all trees there are."""
 
 import random
 from collections.abc import Iterator
@@ -9,14 +9,12 @@ from typing import Any
 import pytest
 
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.asp.solver import _Solver
 from foon_asp.deadline import Deadline
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.reduce import ALL, NONE, within_limit
 from foon_asp.reduce.within_limit import Limited
 from foon_asp.rules.constraint import given_constraint
-from foon_asp.rules.ready_made import ReadyMade
 from tests.oracle.constraints import keeps, random_rule, settings_of
 from tests.rules.test_constraint_meanings import small, trees
 from tests.rules.test_ready_made import known
@@ -28,9 +26,9 @@ SEEDS = [range(30, 40), pytest.param(range(100), marks=pytest.mark.slow)]
 Tree = tuple[frozenset[int], tuple[Any, ...]]
 # How an answer is looked for: small problems are treated as large ones are.
 WAYS = {
-    "case by case": {},
-    "by prices": {"cases._EFFORT": 0, "within_limit._EASY": 0},
-    "by rising prices": {"cases._EFFORT": 0, "within_limit._MANY": 0},
+    "by one price": {},
+    "by prices": {"within_limit._EASY": 0},
+    "by rising prices": {"within_limit._MANY": 0},
 }
 
 
@@ -41,14 +39,13 @@ def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None
         monkeypatch.setattr(f"foon_asp.reduce.{tuned}", value)
 
 
-def ways(*names: str) -> pytest.MarkDecorator:
-    return pytest.mark.parametrize("way", names or [*WAYS], indirect=True)
+ways = pytest.mark.parametrize("way", WAYS, indirect=True)
 
 
-def asked(seeds: range) -> Iterator[tuple[Problem, list[dict[str, Any]], ReadyMade, list[Tree]]]:
+def asked(seeds: range) -> Iterator[tuple[Problem, list[dict[str, Any]], list[Tree]]]:
     """Draw problems, and constraints of which some do more than to remove and to require units."""
     for seed in seeds:
-        rng = random.Random(f"cases {seed}")
+        rng = random.Random(f"limits {seed}")
         problem = (random_steps if seed % 3 else random_problem)(seed, list(ContainerRule)[seed % 2])
         prices = {motion: Fraction(place * place, 10) for place, motion in enumerate(MOTIONS)}
         rates = problem.rates or dict.fromkeys(problem.network.motions, Fraction(1, 2))
@@ -61,17 +58,16 @@ def asked(seeds: range) -> Iterator[tuple[Problem, list[dict[str, Any]], ReadyMa
                 most = max(motions, key=motions.count)
                 limit = {"limited_motion": most, "max_uses": motions.count(most) - 1}
                 drawn["at_most_motion"] = {"rule": "at_most_motion", **limit}
-            ready = known(problem, settings_of([*drawn.values()]))
-            if ready.unsettled:
-                yield problem, [*drawn.values()], ready, found
+            if known(problem, settings_of([*drawn.values()])).unsettled:
+                yield problem, [*drawn.values()], found
 
 
-@ways()
+@ways
 @pytest.mark.usefixtures("way")
 @pytest.mark.parametrize("seeds", SEEDS)
 def test_the_answer_is_the_best_of_all_trees_that_keep_to_them(seeds: range) -> None:
     none = 0
-    for place, (problem, rules, _, found) in enumerate(asked(seeds)):
+    for place, (problem, rules, found) in enumerate(asked(seeds)):
         names = LISTS[place % len(LISTS)]
         objectives = tuple(map(Objective, names))
         order = levels(objectives)
@@ -83,34 +79,6 @@ def test_the_answer_is_the_best_of_all_trees_that_keep_to_them(seeds: range) -> 
         assert outcome.units is None or frozenset(outcome.units) in kept
         none += not kept
     assert none > len(seeds) / 8
-
-
-@pytest.mark.parametrize("seeds", SEEDS)
-def test_no_tree_that_keeps_to_them_has_all_of_a_conflict(seeds: range) -> None:
-    conflicts = 0
-    for problem, rules, ready, found in asked(seeds):
-        others = [rule for rule in rules if not more_than_to_remove(rule["rule"])]
-        kept = [units for units, tree in found if all(keeps(problem, tree, rule) for rule in rules)]
-        for units, tree in found:
-            if not all(keeps(problem, tree, rule) for rule in others):
-                continue
-            conflict = ready.conflict(problem, units)
-            assert (conflict is None) == (units in kept), (rules, units)
-            if conflict is None:
-                continue
-            conflicts += 1
-            assert not any(units.isdisjoint(each) for each in conflict)
-            for tree_kept in kept:
-                assert any(tree_kept.isdisjoint(each) for each in conflict), (rules, units, tree_kept)
-            for without in (frozenset[int](), *kept[:2]):
-                others_kept = [each for each in kept if each.isdisjoint(without)]
-                assert all(ready.barred(problem, without).isdisjoint(each) for each in others_kept)
-    assert conflicts > len(seeds)
-
-
-def more_than_to_remove(name: str) -> bool:
-    """Whether a constraint does more than to remove units and to require some."""
-    return name in {"before", "not_both_motions"} or name.startswith("at_most")
 
 
 # --- By hand: p, q and r are cut by one unit each, or fried and boiled by two.
@@ -126,7 +94,7 @@ def within(**limits: int) -> Settings:
     return Settings(tuple(map(given_constraint, rules)))
 
 
-@ways()
+@ways
 @pytest.mark.usefixtures("way")
 def test_the_best_tree_of_so_many_cuts() -> None:
     for cuts in range(4):
@@ -161,32 +129,17 @@ def test_the_best_is_found_and_no_more_is_left_to_be_searched_than_was(units: in
     assert left <= units
 
 
-def test_few_cases_are_told_without_clingo(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_Solver, "_run", None)
-    for cuts in range(4):
-        assert solve(THREE, settings=within(cut=cuts)).status is Status.OPTIMAL
-        assert cuts == 3 or solve(THREE, settings=within(cut=cuts, boil=2 - cuts)).units is None
-
-
-STRUCK = "foon_asp.reduce.cases.best_kept", "foon_asp.reduce.within_limit.limited"
-
-
-@ways("by prices")
-@pytest.mark.usefixtures("way")
-@pytest.mark.parametrize("struck", STRUCK)
-def test_ctrl_c_while_limits_are_looked_at(struck: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_while_limits_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     def pressed(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(struck, pressed)
+    monkeypatch.setattr(within_limit, "limited", pressed)
     deadline = Deadline()
     outcome = solve(THREE, settings=within(cut=2)._replace(deadline=deadline))
     assert (outcome.status, outcome.units, deadline.interrupted) == (Status.UNKNOWN, None, True)
     assert outcome.stopped == "ctrl-C while cutting the network"
 
 
-@ways("by prices")
-@pytest.mark.usefixtures("way")
 @pytest.mark.parametrize("units", [None, frozenset(range(10))])
 def test_a_tree_within_a_limit_that_is_found_as_time_is_up_is_not_lost(
     units: frozenset[int] | None, monkeypatch: pytest.MonkeyPatch
@@ -202,8 +155,6 @@ def test_a_tree_within_a_limit_that_is_found_as_time_is_up_is_not_lost(
     assert (outcome.status, outcome.units) == (Status.FEASIBLE, (0, 1, 7, 8, 9))
 
 
-@ways("by prices")
-@pytest.mark.usefixtures("way")
 def test_what_leads_nowhere_has_no_costs() -> None:
     """It can run, but what takes its output cannot; where rates count, nothing knows what it costs."""
     nowhere = small(
@@ -216,28 +167,11 @@ def test_what_leads_nowhere_has_no_costs() -> None:
     assert (outcome.status, outcome.units) == (Status.OPTIMAL, (2, 3, 4))
 
 
-def test_what_runs_too_early_is_told_by_what_it_builds_upon() -> None:
-    problem = small(
-        *("cut: start > a", "wash: start > b", "peel: b > c", "wash: start > d"),
-        *("fry: c > e", "mix: a, d, e > end"),
-    )
-    ready = known(problem, Settings((given_constraint("before:earlier_motion=cut,later_motion=fry"),)))
-    every = frozenset(range(6))
-    assert ready.conflict(problem, every) == [frozenset({unit}) for unit in (1, 2, 4)]
-    later = known(problem, Settings((given_constraint("before:earlier_motion=wash,later_motion=fry"),)))
-    assert later.conflict(problem, every) is None
-    assert ready.barred(problem, frozenset()) == {4}  # nothing that is cut leads to it
-    assert later.barred(problem, frozenset()) == frozenset()
-    assert later.barred(problem, frozenset({1})) == {4}
-
-
-def test_what_counts_most_is_in_a_conflict() -> None:
+def test_a_limit_counts_what_a_unit_costs_in_hundredths() -> None:
     problem = small("cut: start > a", "wash: start > b", "fry: a, b > end")
     prices = UnitPrices({"cut": Fraction(3), "wash": Fraction(1), "fry": Fraction(5)}, {})
     priced = replace(problem, unit_prices=prices)
-    for most, units in ((799, (2, 0)), (800, (2, 0, 1)), (900, None), (499, (2,)), (-1, ())):
+    for most in (-1, 799, 900):
         ready = known(priced, Settings((given_constraint(f"at_most_price:max_price={most}"),)))
-        expected = None if units is None else [frozenset({unit}) for unit in units]
-        assert ready.conflict(priced, frozenset({0, 1, 2})) == expected
         [(counts, limit)] = ready.counted(priced)
         assert ([*map(counts, range(3))], limit) == ([300, 100, 500], most)
