@@ -13,7 +13,7 @@ import pytest
 
 from foon_asp.bounds import highs_run
 from foon_asp.bounds.relaxation import Covering
-from foon_asp.bounds.whole_program import Solved, Stopped, WholeProgram
+from foon_asp.plans.whole_program import Solved, Stopped, WholeProgram
 
 Look = Callable[[object, object, object, Any, object], None]
 
@@ -124,7 +124,7 @@ def test_large_programs_have_the_same_solutions(monkeypatch: pytest.MonkeyPatch)
     assert amid is not None
     assert amid.value == pytest.approx(1.5)
     assert covering.solve().value == pytest.approx(1.5)
-    monkeypatch.setattr("foon_asp.bounds.whole_program.run", lambda *_: False)
+    monkeypatch.setattr("foon_asp.plans.whole_program.run", lambda *_: False)
     with pytest.raises(Stopped):
         program.solve({0: 1})
 

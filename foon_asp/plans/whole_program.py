@@ -7,8 +7,12 @@ from typing import Any, NamedTuple
 
 from foon_asp.bounds.highs_run import libraries, run, silent_highs
 
-# Denominators of rounded weights; the first that suffices is used, since most weights are simple fractions.
-_PARTS = (720720, 2**40)
+PARTS = (720720, 2**40)
+"""Denominators of rounded weights; the first that suffices is used, as most weights are simple fractions."""
+
+INTEGRALITY = 1e-6
+"""Integrality tolerance, for choosing where to branch."""
+
 _GAP = 1e-6  # relative violation of rows allowed where floats find neither a solution nor a proof
 
 
@@ -221,7 +225,7 @@ class WholeProgram:
     ) -> float | Fraction:
         """Return the Lagrangian bound that weights of rows prove, whatever they are, in whole numbers."""
         best: float | Fraction = -math.inf
-        for parts in _PARTS:
+        for parts in PARTS:
             scaled = [max(0, round(weight * parts)) if abs(weight) < 1e15 else 0 for weight in weights]
             total = 0
             reduced_costs = dict.fromkeys(range(self.columns), 0)

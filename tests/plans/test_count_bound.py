@@ -9,17 +9,11 @@ from random import Random
 
 import pytest
 
-from foon_asp.bounds import counts as counts_module
-from foon_asp.bounds.counts import (
-    BetterError,
-    CountBound,
-    Counts,
-    Flows,
-    Level,
-    Measure,
-    SumLimit,
-)
-from foon_asp.bounds.whole_program import Solved, Stopped, WholeProgram
+from foon_asp.plans import count_bound
+from foon_asp.plans.conditions import Counts, Level, Measure, SumLimit
+from foon_asp.plans.count_bound import BetterError, CountBound
+from foon_asp.plans.flows import Flows
+from foon_asp.plans.whole_program import Solved, Stopped, WholeProgram
 
 _LONGEST = 4
 
@@ -317,7 +311,7 @@ def test_it_stops_when_time_is_up() -> None:
 def test_it_stops_after_many_parts_and_where_floats_lead_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
     costs = Measure([1])
     assert proves(CountBound(flows(">0")), whole(costs, 4)) == [{0: 1}, {0: 2}, {0: 3}]
-    monkeypatch.setattr(counts_module, "_MOST_PARTS", 2)
+    monkeypatch.setattr(count_bound, "_MOST_PARTS", 2)
     with pytest.raises(Stopped):
         proves(CountBound(flows(">0")), whole(costs, 4))
     monkeypatch.setattr(WholeProgram, "solve", lambda *_: Solved(None, -math.inf))
@@ -367,7 +361,7 @@ def test_it_is_proved_that_there_is_no_plan(monkeypatch: pytest.MonkeyPatch) -> 
             found.none_is_left(Measure([1, 1]), lambda _: True)
     CountBound(flows("1>0", ">2")).none_is_left(Measure([1, 1]), is_better)
     asked.clear()
-    monkeypatch.setattr(counts_module, "_MOST_UNCAPPED", 5)
+    monkeypatch.setattr(count_bound, "_MOST_UNCAPPED", 5)
     with pytest.raises(Stopped):
         CountBound(flows(">0", ">2", targets=(0, 2))).none_is_left(Measure([1, 1]), is_better)
     assert asked[0] == {0: 1, 1: 1}

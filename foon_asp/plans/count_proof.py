@@ -1,8 +1,9 @@
 """Proofs that no plan costs less: Farkas combinations of conditions on counts, and branching over counts.
 
-The relaxation of whole counts (:mod:`foon_asp.bounds.counts`) has dual values of its rows in floats. Whatever
-they are, rounded or solved for exactly, they prove the bound of a Lagrangian relaxation: the right-hand sides
-of the weighted rows, plus for each action the least of its reduced cost over the counts that it may have.
+The relaxation of whole counts (:mod:`foon_asp.plans.count_bound`) has dual values of its rows in floats.
+Whatever they are, rounded or solved for exactly, they prove the bound of a Lagrangian relaxation: the
+right-hand sides of the weighted rows, plus for each action the least of its reduced cost over the counts that
+it may have.
 """
 
 import math
@@ -11,13 +12,13 @@ from fractions import Fraction
 from functools import cmp_to_key
 from typing import NamedTuple
 
-from foon_asp.bounds.counts import Condition, CountBound, Landmark, Level, Measure, _Model
 from foon_asp.bounds.exact_optimum import NowhereError, solve_exactly
 from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus, times
-from foon_asp.bounds.whole_program import Relaxation
+from foon_asp.plans.conditions import Condition, Landmark, Level, Measure
+from foon_asp.plans.count_bound import CountBound
+from foon_asp.plans.count_model import CountModel
+from foon_asp.plans.whole_program import INTEGRALITY, PARTS, Relaxation
 
-_PARTS = (720720, 2**40)  # denominators of rounded weights; the first that suffices is used
-_INTEGRALITY = 1e-6  # integrality tolerance, for choosing where to branch
 _ROUNDS = 20  # of separation at a node
 _MOST_DEPTH = 150
 _MOST_LEAVES = 1_000
@@ -90,7 +91,7 @@ class PlanProver(CountBound):
         """Add known landmarks."""
         self._landmarks += landmarks
 
-    def _prove_part(self, model: _Model, depth: int) -> CountProof:
+    def _prove_part(self, model: CountModel, depth: int) -> CountProof:
         """Return the proof of a node, and lower the claim where less is proved of it."""
         program = model.program
         model.tighten()
@@ -120,7 +121,7 @@ class PlanProver(CountBound):
             return self._leaf(model, best[1] if best else {})
         return self._split(model, *column, depth)
 
-    def _split(self, model: _Model, column: int, max_count: int, depth: int) -> Split:
+    def _split(self, model: CountModel, column: int, max_count: int, depth: int) -> Split:
         program, size = model.program, self._size
         lower, upper = list(program.lower), list(program.upper)
         action = column < size
@@ -136,20 +137,20 @@ class PlanProver(CountBound):
         program.lower, program.upper = lower, upper
         return Split(column, max_count, up_to, above)
 
-    def _choice(self, model: _Model, x: Sequence[float]) -> tuple[int, int] | None:
+    def _choice(self, model: CountModel, x: Sequence[float]) -> tuple[int, int] | None:
         """Return a column to branch on, and the greatest value below; ``None`` if all are whole."""
         program, size = model.program, self._size
         for a in range(size):
             upper = program.upper[a]
             if (
-                x[size + a] < min(1.0, x[a]) - _INTEGRALITY
+                x[size + a] < min(1.0, x[a]) - INTEGRALITY
                 and not program.lower[a]
                 and (upper is None or upper > 1)
             ):
-                return a, max(1, math.floor(x[a] + _INTEGRALITY))
+                return a, max(1, math.floor(x[a] + INTEGRALITY))
         columns = [*range(size), *self._columns]
         halves = [(abs(x[column] - math.floor(x[column]) - 0.5), column) for column in columns]
-        half = min((candidate for candidate in halves if candidate[0] < 0.5 - _INTEGRALITY), default=None)
+        half = min((candidate for candidate in halves if candidate[0] < 0.5 - INTEGRALITY), default=None)
         return None if half is None else (half[1], math.floor(x[half[1]]))
 
     def _give_up(self, best: tuple[Vector, object] | None) -> None:
@@ -169,11 +170,11 @@ class PlanProver(CountBound):
             return order.sign(bound) > 0
         return order.compare(self._rounded(bound), self._least) >= 0
 
-    def _leaf(self, model: _Model, weights: Mapping[int, Vector]) -> Weighted:
+    def _leaf(self, model: CountModel, weights: Mapping[int, Vector]) -> Weighted:
         self._leaves += 1
         return Weighted([(model.conditions[row], weight) for row, weight in sorted(weights.items())])
 
-    def _weights(self, model: _Model, relaxed: Relaxation) -> "list[dict[int, Vector]]":
+    def _weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
         """Return candidate weights of rows: the rounded duals, perhaps the exact duals of the basis."""
         claim = self._claim
         first = claim.order.levels[0]
@@ -184,7 +185,7 @@ class PlanProver(CountBound):
             largest = max(floats, default=0.0)
             if largest == 0.0:
                 return []
-            for parts in _PARTS:
+            for parts in PARTS:
                 ray = self._rounded_weights(model, [weight / largest for weight in floats], parts, one)
                 nothing = self._bound(model, ray, free=True)
                 if nothing is None or claim.order.sign(nothing) <= 0:
@@ -196,21 +197,21 @@ class PlanProver(CountBound):
                 return [{row: times(weight, factor) for row, weight in ray.items()}]
             return []
         floats = [weight / scale for weight in floats]
-        candidates = [self._rounded_weights(model, floats, parts, one) for parts in _PARTS]
+        candidates = [self._rounded_weights(model, floats, parts, one) for parts in PARTS]
         value = sum(cost * relaxed.x[column] for column, cost in self._objective.items())
         least = 0.0 if self._least is None else claim.order.approximate(self._least)[0]
-        close = value > least - _INTEGRALITY * max(1.0, abs(least))
+        close = value > least - INTEGRALITY * max(1.0, abs(least))
         if close and (first is not None or claim.parts is None):
             candidates += self._exact_weights(model, relaxed)
         return candidates
 
     def _rounded_weights(
-        self, model: _Model, floats: Sequence[float], parts: int, one: Vector
+        self, model: CountModel, floats: Sequence[float], parts: int, one: Vector
     ) -> dict[int, Vector]:
         rounded = {row: round(floats[row] * parts) for row in model.conditions if abs(floats[row]) < 1e15}
         return {row: times(one, Fraction(n, parts)) for row, n in rounded.items() if n > 0}
 
-    def _exact_weights(self, model: _Model, relaxed: Relaxation) -> "list[dict[int, Vector]]":
+    def _exact_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
         """Return the exact duals of a basis, by which its columns have reduced cost 0; none if singular."""
         columns, tight = set(relaxed.columns), relaxed.rows
         matrix: dict[int, dict[int, Fraction]] = {column: {} for column in sorted(columns)}
@@ -233,7 +234,7 @@ class PlanProver(CountBound):
             return claim.costs[column]
         return claim.item if column in self._columns else claim.order.zero
 
-    def _bound(self, model: _Model, weights: Mapping[int, Vector], free: bool = False) -> Vector | None:
+    def _bound(self, model: CountModel, weights: Mapping[int, Vector], free: bool = False) -> Vector | None:
         """Return the bound that weights prove of the current node; ``None`` where they prove none.
 
         With ``free``, all costs are 0.

@@ -11,9 +11,9 @@ from typing import Any
 import highspy
 import pytest
 
-from foon_asp.bounds import whole_program
 from foon_asp.bounds.highs_run import silent_highs
-from foon_asp.bounds.whole_program import Relaxation, Solved, Stopped, WholeProgram
+from foon_asp.plans import whole_program
+from foon_asp.plans.whole_program import Relaxation, Solved, Stopped, WholeProgram
 
 NOTHING = Solved(None, -math.inf)  # neither a solution nor a proof that there is none
 NONE = Solved(None, math.inf)

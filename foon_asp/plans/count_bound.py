@@ -13,102 +13,23 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from heapq import heappop, heappush
-from typing import NamedTuple
 
 from foon_asp.bounds.cut import Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.whole_program import Solved, Stopped, WholeProgram
-
-Counts = dict[int, int]
-"""How often each action is executed, without actions that are not."""
+from foon_asp.plans.conditions import Counts, Landmark, Level, Measure, SumLimit
+from foon_asp.plans.count_model import CountModel
+from foon_asp.plans.flows import Flows
+from foon_asp.plans.whole_program import INTEGRALITY, Solved, Stopped, WholeProgram
 
 _Bounds = tuple[list[int], list[int | None]]
 
 _SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
-_INTEGRALITY = 1e-6  # integrality tolerance, for choosing where to branch
 _PROBES = 60  # actions probed at the root: can they be executed twice?
 _MOST_PARTS = 20_000  # nodes after which a proof is given up
 _MOST_UNCAPPED = 1_000  # the same where the number of executions is unbounded
 _ORDERS = 3  # orders in which landmarks are looked for before the search for them ends
 _FAR = 1000  # assumed greatest count of an unbounded action when looking for counts
 _FEWER = 8  # the same at first, which is much faster
-
-
-class Flows(NamedTuple):
-    """Actions with preconditions and effects on copies of objects, all by number.
-
-    An action can be executed while there is a copy of each of its preconditions ``asks``. It consumes one
-    copy of each object of ``uses``, and adds one of each object of ``adds``. ``start`` maps initial objects
-    to their numbers of copies. Objects that are not consumable are in none of these; ``items`` are the
-    preconditions of each action among them. One copy of each of the ``targets`` has to remain.
-    """
-
-    asks: Sequence[Sequence[int]]
-    uses: Sequence[Sequence[int]]
-    adds: Sequence[Sequence[int]]
-    items: Sequence[Sequence[int]]
-    start: Mapping[int, int]
-    targets: Sequence[int]
-
-
-class Measure(NamedTuple):
-    """The cost of executions by one objective, to be minimized.
-
-    ``costs`` are those of each action, whole numbers from 0, and ``item`` is the cost of each distinct item
-    and of each initial copy that is consumed. Where ``exact`` is not ``None``, ``costs`` are rounded down and
-    ``exact`` returns the exact cost of counts, which depends on the number of executions in each of the
-    ``classes`` of actions; actions of class -1 do not change it.
-    """
-
-    costs: Sequence[int]
-    item: int = 0
-    exact: Callable[[Mapping[int, int]], Fraction] | None = None
-    classes: Sequence[int] = ()
-
-
-class Landmark(NamedTuple):
-    """The condition that one of the ``members`` is executed, or an initial copy of ``stock`` is consumed.
-
-    With an ``action``, it holds only if the action is executed. ``objects`` are the cut of the landmark.
-    """
-
-    members: tuple[int, ...]
-    stock: tuple[int, ...] = ()
-    action: int | None = None
-    objects: tuple[int, ...] = ()
-
-
-class Balance(NamedTuple):
-    """The row of the state equation of an object: no more copies are consumed than there are."""
-
-    object: int
-
-
-class Sum(NamedTuple):
-    """The condition that a sum keeps to a limit, by the index of the limit."""
-
-    limit: int
-
-
-SumLimit = tuple[Mapping[int, int], int, bool, bool]
-"""Weights by action, a bound on their sum, whether it is a lower bound, whether an action counts once."""
-
-
-class Level(NamedTuple):
-    """An objective with the cost of the incumbent.
-
-    ``max_cost`` is the greatest sum of the (rounded) costs of a plan that is as good as the incumbent. If
-    ``strict``, a plan of equal cost does not count as good.
-    """
-
-    measure: Measure
-    cost: Fraction
-    max_cost: int
-    strict: bool = False
-
-
-Condition = Landmark | Balance | Sum | Level
-"""The condition on the counts of every plan that a row of the program states."""
 
 
 class BetterError(Exception):
@@ -143,13 +64,10 @@ class CountBound:
         self._size = len(flows.asks)
         self._levels, self._excluded_counts = tuple(levels), tuple(excluded_counts)
         self.derivation = derivation
-        self._random, self._many = random.Random(0), _FAR
+        self._random = random.Random(0)
         self.proved: float | Fraction = 0  # lower bound on every plan by the first level
         self._landmarks = [Landmark(tuple(units)) for units in required]
-        self._achievers: dict[int, list[int]] = {}
-        for action, effects in enumerate(flows.adds):
-            for o in effects:
-                self._achievers.setdefault(o, []).append(action)
+        self._achievers = flows.achievers
 
     def counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important; ``None`` if infeasible.
@@ -157,16 +75,17 @@ class CountBound:
         The counts belong to a plan of the delete relaxation; they need not belong to a plan, and their
         optimality is not proved.
         """
-        for self._many in (_FEWER, _FAR):
-            counts = self._counts(measures, rounds)
-            if counts is not None and max(counts.values(), default=0) < self._many:
+        counts = None
+        for assumed_cap in (_FEWER, _FAR):
+            counts = self._counts(measures, rounds, assumed_cap)
+            if counts is not None and max(counts.values(), default=0) < assumed_cap:
                 break
         return counts
 
-    def _counts(self, measures: Sequence[Measure], rounds: int) -> Counts | None:
+    def _counts(self, measures: Sequence[Measure], rounds: int, assumed_cap: int) -> Counts | None:
         counts: Counts | None = None
         for _ in range(rounds):
-            model = self._model(measures, far=True)
+            model = self._model(measures, assumed_cap)
             x: list[float] = []
             for measure in measures:
                 relaxed = self._relaxed(model, model.objective(measure))
@@ -181,7 +100,7 @@ class CountBound:
                 break
         return counts
 
-    def _relaxed(self, model: "_Model", objective: Mapping[int, int]) -> list[float] | None:
+    def _relaxed(self, model: CountModel, objective: Mapping[int, int]) -> list[float] | None:
         """Add violated landmarks to the relaxation; return its solution if it is whole, else ``None``."""
         while True:
             self._check()
@@ -191,7 +110,7 @@ class CountBound:
         columns = {*range(model.program.columns)}
         if not self._excluded_counts:
             columns.difference_update(range(self._size, 2 * self._size))
-        if x is None or any(abs(x[column] - round(x[column])) > _INTEGRALITY for column in columns):
+        if x is None or any(abs(x[column] - round(x[column])) > INTEGRALITY for column in columns):
             return None
         for a in range(self._size):
             x[self._size + a] = float(x[a] > 0.5)
@@ -296,7 +215,7 @@ class CountBound:
             if number > (_MOST_UNCAPPED if max_cost is None else _MOST_PARTS):
                 raise Stopped
 
-    def _solved(self, model: "_Model", objective: Mapping[int, int], cutoff: float) -> Solved:
+    def _solved(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
         """Return the relaxed solution of a node, all violated landmarks added; no ``x`` without a plan."""
         while True:
             self._check()
@@ -309,15 +228,23 @@ class CountBound:
             if not self._add_landmark(solved.x, model) and not self._separate(solved.x, model, at_root=False):
                 return solved
 
-    def _model(self, measures: Sequence[Measure], far: bool = False) -> "_Model":
+    def _model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
         every = (*measures, *(level.measure for level in self._levels))
         different = {id(measure): measure for measure in every}
-        model = _Model(self, list(different.values()), far)
+        model = CountModel(
+            self._flows,
+            list(different.values()),
+            self._landmarks,
+            self._limits,
+            self._excluded_counts,
+            assumed_cap,
+            self._expired,
+        )
         for level in self._levels:
             model.limit(level)
         return model
 
-    def _tighten_root(self, model: "_Model", objective: Mapping[int, int], cutoff: int) -> None:
+    def _tighten_root(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
         """Probe which actions cannot be executed twice, which tightens the rows of their indicators."""
         program, probed = model.program, set[int]()
         while len(probed) < _PROBES:
@@ -330,7 +257,7 @@ class CountBound:
             loose = [
                 a
                 for a in range(self._size)
-                if solved.x[self._size + a] < min(1.0, solved.x[a]) - _INTEGRALITY and a not in probed
+                if solved.x[self._size + a] < min(1.0, solved.x[a]) - INTEGRALITY and a not in probed
             ]
             if not loose:
                 return
@@ -346,7 +273,7 @@ class CountBound:
 
     def _branches(
         self,
-        model: "_Model",
+        model: CountModel,
         x: Sequence[float],
         levels: Sequence[Level],
         is_better: Callable[[Counts], bool | None],
@@ -354,7 +281,7 @@ class CountBound:
         """Yield the bounds of the child nodes; whole counts of the node are checked first."""
         program = model.program
         halves = [(abs(value - math.floor(value) - 0.5), column) for column, value in enumerate(x)]
-        half = min((h for h in halves if h[0] < 0.5 - _INTEGRALITY), default=None)
+        half = min((h for h in halves if h[0] < 0.5 - INTEGRALITY), default=None)
         if half is not None:
             column = half[1]
             below = math.floor(x[column])
@@ -390,15 +317,15 @@ class CountBound:
             raise BetterError(counts)
         yield from _around(program, x, range(self._size))
 
-    def _add_landmark(self, x: Sequence[float], model: "_Model") -> bool:
+    def _add_landmark(self, x: Sequence[float], model: CountModel) -> bool:
         """Add a landmark that a solution violates; return whether there is one.
 
         The initial objects are closed under the executed actions in the delete relaxation. For a target or an
         executed action that is not reached, the landmark are the achievers on the border.
         """
         flows = self._flows
-        used = {a for a in range(self._size) if x[self._size + a] > _INTEGRALITY}
-        reached = {o for o, column in model.stock.items() if x[column] > _INTEGRALITY}
+        used = {a for a in range(self._size) if x[self._size + a] > INTEGRALITY}
+        reached = {o for o, column in model.stock.items() if x[column] > INTEGRALITY}
         if not model.stock:
             reached = {o for o, n in flows.start.items() if n}
         waiting = set(used)
@@ -424,7 +351,7 @@ class CountBound:
         start = [o for o, count in flows.start.items() if count]
         return Cutter(Hypergraph(max(objects, default=0) + 1, flows.asks, flows.adds, start), flows.targets)
 
-    def _separate(self, x: Sequence[float], model: "_Model", at_root: bool) -> bool:
+    def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
 
         Actions of great LP values are kept out of landmarks first, and at the root the derivation less one
@@ -448,7 +375,7 @@ class CountBound:
             model.add_landmark(self._landmarks[-1])
         return bool(cuts)
 
-    def _landmark(self, o: int, reached: set[int], used: set[int], model: "_Model") -> Landmark:
+    def _landmark(self, o: int, reached: set[int], used: set[int], model: CountModel) -> Landmark:
         """Return a landmark by a small cut grown backwards from an object that is not reached."""
         asks = self._flows.asks
         zone, stack, edge = {o}, [o], dict[int, None]()
@@ -465,155 +392,6 @@ class CountBound:
     def _check(self) -> None:
         if self._expired():
             raise Stopped
-
-
-class _Model:
-    """The conditions as rows over columns: the count of each action, its indicator, auxiliary columns."""
-
-    def __init__(self, bound: CountBound, measures: Sequence[Measure], far: bool = False) -> None:
-        flows, size = bound._flows, bound._size
-        self._flows = flows
-        self.program = program = WholeProgram(size, bound._expired)
-        self._far, self._size, self._many = far, size, bound._many
-        self.conditions: dict[int, Condition] = {}  # by row
-        for _ in range(size):
-            program.column(0, 1)  # whether an action is executed at all
-        self._loose = [program.open_row((size + a, a), 0) for a in range(size)]
-        for a in range(size):
-            program.row({a: 1, size + a: -1}, 0)
-        self._classes: dict[int, list[int]] = {}
-        priced = any(measure.item for measure in measures)
-        self.stock: dict[int, int] = {}
-        if priced:
-            self.stock = {o: program.column(0, count) for o, count in flows.start.items() if count}
-        change: dict[int, dict[int, int]] = {o: {} for o in (*bound._achievers, *flows.targets)}
-        for action in range(size):
-            for o in flows.adds[action]:
-                change[o][action] = change[o].get(action, 0) + 1
-            for o in flows.uses[action]:
-                row = change.setdefault(o, {})
-                row[action] = row.get(action, 0) - 1
-        wanted = set(flows.targets)
-        for o, row in change.items():
-            if any(effect < 0 for effect in row.values()) or o in wanted:
-                self.conditions[program.row(*self._with_stock(o, row, int(o in wanted)))] = Balance(o)
-        items = self.items = dict[int, int]()
-        for action in range(size):
-            y = size + action
-            for o in (needed for needed in flows.asks[action] if needed not in flows.uses[action]):
-                achievers = {size + achiever: 1 for achiever in bound._achievers.get(o, ())}
-                read = program.row(*self._with_stock(o, {**achievers, y: -1}, 0))
-                if o in self.stock or not flows.start.get(o):  # else it says nothing
-                    self.conditions[read] = Landmark((), (), action, (o,))
-            for o in flows.items[action] if priced else ():
-                if o not in items:
-                    items[o] = program.column(0, 1)
-                self.conditions[program.row({items[o]: 1, y: -1}, 0)] = Landmark((), (), action, (o,))
-        for landmark in bound._landmarks:
-            self.add_landmark(landmark)
-        for i, (weights, limit, at_least, used) in enumerate(bound._limits):
-            first, sign = size if used else 0, 1 if at_least else -1
-            row = {first + a: sign * weight for a, weight in weights.items()}
-            self.conditions[program.row(row, sign * limit)] = Sum(i)
-            for a, weight in weights.items() if not at_least and not used else ():
-                program.cap(a, max(limit, 0) // weight)
-        for measure in measures:
-            if measure.exact is not None and not far:
-                self._add_classes(measure)
-        self._count_indicators: dict[tuple[int, int], tuple[int, int]] = {}
-        for counts in bound._excluded_counts:
-            columns = [self._count_indicator(a, n) for a, n in counts.items()]
-            program.row(dict.fromkeys(columns, -1), 1 - len(columns))
-        self.tighten()
-
-    def _count_indicator(self, action: int, count: int) -> int:
-        """Return the column that indicates whether an action is executed at least ``count`` times."""
-        if count == 1:
-            return self._size + action
-        if (action, count) not in self._count_indicators:
-            column = self.program.column(0, 1)
-            self.program.row({action: 1, column: -count}, 0)
-            self._count_indicators[action, count] = column, self.program.open_row((column, action), 1 - count)
-        return self._count_indicators[action, count][0]
-
-    def unforced_count(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
-        """Return an action, count and indicator where the action reaches the count and the indicator is 0."""
-        for (action, count), (column, _) in self._count_indicators.items():
-            if action in counts and counts[action] >= count and not round(x[column]):
-                return action, count, column
-        return None
-
-    def _with_stock(self, o: int, row: dict[int, int], least: int) -> tuple[dict[int, int], int]:
-        if o in self.stock:
-            return {**row, self.stock[o]: 1}, least
-        return row, least - self._flows.start.get(o, 0)
-
-    def _add_classes(self, measure: Measure) -> None:
-        columns = []
-        for number in sorted(set(measure.classes) - {-1}):
-            members = [a for a, class_number in enumerate(measure.classes) if class_number == number]
-            column = self.program.column(0, None)
-            self.program.row({column: 1, **dict.fromkeys(members, -1)}, 0)
-            self.program.row({column: -1, **dict.fromkeys(members, 1)}, 0)
-            columns.append(column)
-        self._classes[id(measure)] = columns
-
-    def class_columns(self, measure: Measure) -> list[int]:
-        """Return the columns that count the executions of each class of actions."""
-        return self._classes[id(measure)]
-
-    def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark, unless an initial copy without column may satisfy it."""
-        members, stock, action, _ = landmark
-        if not self.stock.keys() >= set(stock):
-            return
-        row = {self._size + member: 1 for member in members} | {self.stock[o]: 1 for o in stock}
-        if action is None:
-            number = self.program.row(row, 1)
-        else:
-            number = self.program.row({**row, self._size + action: -1}, 0)
-        self.conditions[number] = landmark
-
-    def tighten(self) -> None:
-        """Tie each indicator to its action by the greatest count that it can have."""
-        program = self.program
-        for action, row in enumerate(self._loose):
-            max_count = self._max_count(action)
-            program.change(row, {} if max_count is None else {self._size + action: max_count, action: -1})
-        for (action, count), (column, row) in self._count_indicators.items():
-            max_count = self._max_count(action)
-            program.change(row, {} if max_count is None else {column: max_count - count + 1, action: -1})
-
-    def _max_count(self, action: int) -> int | None:
-        upper = self.program.upper[action]
-        return self._many if upper is None and self._far else upper
-
-    def cap(self, measure: Measure, max_cost: int) -> None:
-        """Bound the counts of actions by the greatest total cost."""
-        for action, cost in enumerate(measure.costs):
-            if cost:
-                self.program.cap(action, max(max_cost, 0) // cost)
-        self.tighten()
-
-    def objective(self, measure: Measure) -> dict[int, int]:
-        """Return the cost of each column."""
-        costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
-        if measure.item:
-            costs |= dict.fromkeys((*self.items.values(), *self.stock.values()), measure.item)
-        return costs
-
-    def limit(self, level: Level) -> None:
-        """Add the row that counts are as good by a level as the incumbent."""
-        costs = self.objective(level.measure)
-        row = self.program.row({column: -cost for column, cost in costs.items()}, -level.max_cost)
-        self.conditions[row] = level
-        self.cap(level.measure, level.max_cost)
-
-    def keep(self, measure: Measure, solution: Sequence[float]) -> None:
-        """Add the row that counts cost no more than a solution."""
-        costs = self.objective(measure)
-        max_cost = sum(cost * round(solution[column]) for column, cost in costs.items())
-        self.program.row({column: -cost for column, cost in costs.items()}, -max_cost)
 
 
 def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:

@@ -11,15 +11,17 @@ import pytest
 
 from foon_asp.asp import Settings
 from foon_asp.asp.optimum import solve
-from foon_asp.bounds import plan_proof
-from foon_asp.bounds.counts import Balance, CountBound, Counts, Flows, Landmark, Level, Measure, Sum, SumLimit
 from foon_asp.bounds.lexicographic import Lexicographic, Vector
-from foon_asp.bounds.plan_proof import Claim, CountProof, PlanProver, Split
-from foon_asp.bounds.whole_program import Relaxation, WholeProgram
 from foon_asp.certificate import certify_outcome
+from foon_asp.plans import count_proof
+from foon_asp.plans.conditions import Balance, Counts, Landmark, Level, Measure, Sum, SumLimit
+from foon_asp.plans.count_bound import CountBound
+from foon_asp.plans.count_proof import Claim, CountProof, PlanProver, Split
+from foon_asp.plans.flows import Flows
+from foon_asp.plans.whole_program import Relaxation, WholeProgram
 from foon_asp.problem import Objective
-from tests.bounds.test_counts import flows, possible, random_flows, random_limit, whole, within
 from tests.oracle import used_up
+from tests.plans.test_count_bound import flows, possible, random_flows, random_limit, whole, within
 
 COUNT = Lexicographic([None])
 ORDERS = [COUNT, Lexicographic([None, None]), Lexicographic([[Fraction(1, 2)], None])]
@@ -251,7 +253,7 @@ def test_a_proof_is_given_up_where_parts_are_too_many(monkeypatch: pytest.Monkey
     for name in ("_MOST_LEAVES", "_MOST_DEPTH"):
         with monkeypatch.context() as patched:
             for most, expected in ((-1, (half, [0])), (0, (half, [1, 1])), (1, whole_proof)):
-                patched.setattr(plan_proof, name, most)
+                patched.setattr(count_proof, name, most)
                 assert proved(None) == expected
 
 
