@@ -94,9 +94,18 @@ class Subject(NamedTuple):
         Digests in ``stated`` are not computed. The digest of sources covers only the places that the rules
         look at.
         """
+        return {
+            name: self.stated.get(name) or _digest(value()) for name, value in self._described(rules).items()
+        }
+
+    def described(self, rules: Iterable[Rule] = ()) -> str:
+        """Return all that a certificate can depend on as canonical JSON: the values of the digests by name."""
+        return canonical({name: value() for name, value in self._described(rules).items()})
+
+    def _described(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
         network, rates, prices = self.network, self.rates, self.prices
         places = [looked for rule in rules if (looked := looked_at(rule, network)) is not None]
-        values: dict[str, Callable[[], object]] = {
+        return {
             "network": lambda: _described(network),
             "kitchen": lambda: sorted(self.kitchen),
             "rates": lambda: rates and sorted([motion, str(rate)] for motion, rate in rates.items()),
@@ -104,7 +113,6 @@ class Subject(NamedTuple):
             "prices": lambda: prices and _stated(prices, network.detailed or network),
             "sources": lambda: places or None,
         }
-        return {name: self.stated.get(name) or _digest(value()) for name, value in values.items()}
 
 
 class RefusedError(Exception):
