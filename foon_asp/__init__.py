@@ -27,6 +27,7 @@ _ROOMS = {
     "deadline": ("Cancel", "StoppedError"),
     "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
+    "planning.py_trees_root": ("Execution", "py_trees_root"),
     "planning.unified": ("register_engine",),
     "problem": ("ContainerRule", "Costs", "Fate", "Objective", "Problem", "UsedUp"),
     "problem.progress": ("Progress",),

@@ -17,6 +17,8 @@ from foon_asp.network import NetworkBuilder as NetworkBuilder
 from foon_asp.network import ObjectNode as ObjectNode
 from foon_asp.network import Source as Source
 from foon_asp.network import TaskTree as TaskTree
+from foon_asp.planning.py_trees_root import Execution as Execution
+from foon_asp.planning.py_trees_root import py_trees_root as py_trees_root
 from foon_asp.planning.unified import register_engine as register_engine
 from foon_asp.problem import ContainerRule as ContainerRule
 from foon_asp.problem import Costs as Costs
