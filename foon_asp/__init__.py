@@ -23,6 +23,7 @@ _ROOMS = {
     "questions.search": ("Retrieved", "search"),
     "questions.export": ("to_unified_planning",),
     "questions.tree": ("Tree",),
+    "questions.ways_on": ("WaysOn", "ways_on"),
     "asp": ("Outcome", "Reporter", "Status"),
     "deadline": ("Cancel", "StoppedError"),
     "errors": ("BugError", "FoonWarning", "UserError"),

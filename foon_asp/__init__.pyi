@@ -78,6 +78,8 @@ from foon_asp.questions.verify import VerifiedCertificate as VerifiedCertificate
 from foon_asp.questions.verify import verify as verify
 from foon_asp.questions.view import View as View
 from foon_asp.questions.view import view as view
+from foon_asp.questions.ways_on import WaysOn as WaysOn
+from foon_asp.questions.ways_on import ways_on as ways_on
 from foon_asp.questions.why_not import Explanation as Explanation
 from foon_asp.questions.why_not import why_not as why_not
 from foon_asp.results.timed_step import TimedStep as TimedStep
