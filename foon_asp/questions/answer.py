@@ -1,6 +1,6 @@
 """The best tree for a problem, and its proof."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -24,12 +24,14 @@ from foon_asp.results.table import Block
 from foon_asp.results.values import Figure, ListedConstraint, Node, Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
 from foon_asp.text.json_value import schema_name
+from foon_asp.text.tables import Duration
 from foon_asp.text.writer import write_units
 
 if TYPE_CHECKING:  # slow to import, and not needed to print an answer
     from foon_asp.certificate import Certificate
     from foon_asp.dataset.nearby import Nearby
     from foon_asp.pictures.drawing import Drawing
+    from foon_asp.questions.robot_plan import RobotPlan
     from foon_asp.questions.tree import Tree
 
 
@@ -324,21 +326,24 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         comments = [f"Task tree for: {' + '.join(map(str, self.goals))}", *self.headlines()]
         return write_units(map(self.problem.network.unit, self.ids), comments)
 
-    def steps(self) -> str:
-        """Return the plan for a robot's program, as JSON; empty without a tree."""
+    durations = Unserialized[Mapping[str, Duration]]({})
+    """How long motions take, as far as that was stated."""
+
+    def robot_plan(self) -> "RobotPlan | None":
+        """Return the plan for a robot's program; ``None`` without a tree."""
         if self.ids is None:
-            return ""
+            return None
         from foon_asp.questions.robot_plan import RobotPlan  # noqa: PLC0415
 
-        return RobotPlan.of(self.problem, self.objectives, self.ids).json_text()
+        return RobotPlan.of(self.problem, self.objectives, self.ids, self.durations)
 
     def remark(self, format_: str) -> str:
         """Return the claim where that is not the best tree, and the notes, which JSON needs not."""
         claim, *note = self.headlines()
         note += self.remarks()
         claimed = [] if self.status is Status.OPTIMAL and self.penalty is UNSET else [claim]
-        if format_ == "steps" and self.units and not self.problem.utensils:
-            note.append("note: no utensils are known (--utensils), so no step has tools: all is acted on")
+        if format_ in {"steps", "steps-csv", "behaviour-tree"} and self.units and not self.problem.utensils:
+            note.append("note: no utensils are known (--utensils): tools are what a step leaves as it is")
         return "\n".join([*claimed, *([] if format_ == "json" else note), *self.notes])
 
     def drawing(self) -> "Drawing | None":

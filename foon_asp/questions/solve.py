@@ -13,6 +13,7 @@ from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.questions.arguments import Objectives, chosen_objectives, constraint_weights, read, whole
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, not_built, question
+from foon_asp.questions.durations import Durations, stated_durations
 from foon_asp.questions.options import ITEMS, SOFT, TREE
 from foon_asp.questions.result import Result
 
@@ -26,6 +27,7 @@ def solve_or_each(
     certificate: File | None = None,
     cross_check: bool = False,
     clingo_options: Sequence[str] = (),
+    durations: Durations | None = None,
     all_goals: bool = False,
     **options: Unpack[CommonOptions],
 ) -> Result:
@@ -39,6 +41,7 @@ def solve_or_each(
             certificate=certificate,
             cross_check=cross_check,
             clingo_options=clingo_options,
+            durations=durations,
             **options,
         )
     from foon_asp.questions.all_goals import solve_all_goals  # noqa: PLC0415
@@ -61,7 +64,7 @@ def solve_or_each(
         Role.PROBLEM | Role.QUESTION,
         default=False,
     ),
-    formats=(*TABLES, "foon", "steps"),
+    formats=(*TABLES, "foon", "steps", "steps-csv", "behaviour-tree"),
     command=solve_or_each,
     help_="""
     \b
@@ -107,6 +110,10 @@ def solve(
             positional=True,
         ),
     ] = (),
+    durations: Annotated[
+        Durations | None,
+        Option(help="How long motions take, for the formats for robots.", kind=Kind.FILE, metavar="FILE"),
+    ] = None,
     reporter: Reporter | None = None,
     **options: Unpack[CommonOptions],
 ) -> Answer:
@@ -126,6 +133,8 @@ def solve(
         cross_check: Also ask other engines: bare clingo, HiGHS, Fast Downward and those of packages, if
             installed. Each has its part of what is left of the ``time_limit``, or a minute without one.
         clingo_options: Options to pass to clingo, for example ``["--opt-strategy=bb"]``.
+        durations: How long motions take, for the formats for robots: a file as for :func:`schedule`, or
+            seconds by motion.
         reporter: Receives trees, bounds and warnings during the search. Without it, a warning about a
             constraint is a :class:`FoonWarning`.
 
@@ -151,6 +160,7 @@ def solve(
         reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
     )
     weights = constraint_weights(soft or {})
+    seconds = stated_durations(durations)
     if soft is not None and problem.items is not None:
         raise not_built("solve --soft")
     if soft is not None and certificate is not None:
@@ -176,4 +186,5 @@ def solve(
         from foon_asp.questions.several_goals import with_goals_apart  # noqa: PLC0415
 
         answer = with_goals_apart(answer, settings, problem)
-    return cross_checked(answer, settings, weights, engines) if cross_check else answer
+    answer = cross_checked(answer, settings, weights, engines) if cross_check else answer
+    return answer.knowing(durations=seconds)

@@ -102,6 +102,7 @@ LIBRARIES = {
     "distributed": {"batch"},
     "networkx": {"network"},
     "pandas": {"results"},
+    "py_trees": {"planning"},
     "pyarrow": {"batch"},
     "unified_planning": {"planning"},
     "ortools": {"planning"},
@@ -201,7 +202,7 @@ def test_libraries_are_the_declared_dependencies() -> None:
     extras = project["optional-dependencies"]
     optional = [
         line
-        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "schedule", "view")
+        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "robot", "schedule", "view")
         for line in extras[name]
     ]
     declared = [*project["dependencies"], *optional]
