@@ -74,6 +74,8 @@ class Costs:
             ValueError: if data are missing, as for ``success`` without rates, or for ``attempts`` with a
                 rate of 0.
         """
+        if objective not in self.measures and objective.row.needs is Known.STAND_INS:
+            return Fraction(0)  # there are none
         if objective not in self.measures:
             needs = objective.row.needs
             condition = " above 0" if needs is Known.RATES else ""
