@@ -23,6 +23,7 @@ _ROOMS = {
     "questions.search": ("Retrieved", "search"),
     "questions.export": ("to_unified_planning",),
     "questions.tree": ("Tree",),
+    "questions.unit_union": ("UnitUnion", "unit_union"),
     "asp": ("Outcome", "Reporter", "Status"),
     "deadline": ("Cancel", "StoppedError"),
     "errors": ("BugError", "FoonWarning", "UserError"),

@@ -72,6 +72,8 @@ from foon_asp.questions.stats import stats as stats
 from foon_asp.questions.trace import Traced as Traced
 from foon_asp.questions.trace import trace as trace
 from foon_asp.questions.tree import Tree as Tree
+from foon_asp.questions.unit_union import UnitUnion as UnitUnion
+from foon_asp.questions.unit_union import unit_union as unit_union
 from foon_asp.questions.verify import VerifiedCertificate as VerifiedCertificate
 from foon_asp.questions.verify import verify as verify
 from foon_asp.questions.view import View as View
