@@ -78,16 +78,13 @@ def test_union_and_intersection_against_brute_force(rule: ContainerRule, seeds: 
         best = min(key(problem, tree, objectives) for tree in everything)
         if within:
             first = [task_trees.measure(problem, tuple(tree), objectives[0]) for tree in everything]
-            share = Fraction(within, 100)
-            best_first = max(first) if objectives[0] == "success" else min(first)
+            share = Fraction(
+                -within if objectives[0] == "success" else within, 100
+            )  # success counts negative
             count = [
                 tree
                 for tree, figure in zip(everything, first, strict=True)
-                if (
-                    figure >= best_first * (1 - share)
-                    if objectives[0] == "success"
-                    else figure <= best_first * (1 + share)
-                )
+                if figure <= min(first) * (1 + share)
             ]
         else:
             count = [tree for tree in everything if key(problem, tree, objectives) == best]
