@@ -24,6 +24,7 @@ _ROOMS = {
     "questions.export": ("to_unified_planning",),
     "questions.tree": ("Tree",),
     "questions.ways_on": ("WaysOn", "ways_on"),
+    "questions.unit_union": ("UnitUnion", "unit_union"),
     "asp": ("Outcome", "Reporter", "Status"),
     "deadline": ("Cancel", "StoppedError"),
     "errors": ("BugError", "FoonWarning", "UserError"),

@@ -13,6 +13,7 @@ from foon_asp.asp.optimum import solve as find
 from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels
+from foon_asp.problem.dead_ends import Cause
 from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
@@ -85,6 +86,28 @@ class Serving(Value, frozen=True):
     goals: tuple[Node, ...]
 
 
+class SkippedGoal(Value, frozen=True):
+    """A goal that cannot be made, and was left out.
+
+    Attributes:
+        cause: missing: an object node is not in the kitchen, and no unit makes it. cycle: one can only be
+            made from itself, by way of others.
+        object: That object node, the first on the easiest way to the goal.
+        cycle_size: How many object nodes can only be made from each other; 0 for the cause missing.
+    """
+
+    goal: Node
+    cause: Cause
+    object: Node
+    cycle_size: int
+
+    def __str__(self) -> str:
+        if self.cause is Cause.CYCLE:
+            return f"{self.goal}: {self.object} can only be made from itself ({self.cycle_size} in the cycle)"
+        what = "it" if self.object == self.goal else self.object
+        return f"{self.goal}: {what} is not in the kitchen, and no unit makes it"
+
+
 class EngineCheck(Value, frozen=True):
     """The check of an answer by another engine.
 
@@ -124,6 +147,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         seconds: The time of each phase.
         penalty: Under soft constraints, the sum of weight times ways over them; null without a tree.
         soft_constraints: Every constraint that may be broken; empty without a tree.
+        skipped: The goals that cannot be made and were left out, if that was asked for.
         goals_alone: Of several goals, the best tree for each by itself.
         sum_of_goals_alone: What these cost by the first objective, added up (success: multiplied); null
             if one has no tree.
@@ -160,6 +184,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     seconds: dict[str, float]
     penalty: int | UnsetType | None = UNSET
     soft_constraints: tuple[SoftConstraint, ...] | UnsetType = UNSET
+    skipped: tuple[SkippedGoal, ...] | UnsetType = UNSET
     goals_alone: tuple[Alone, ...] | UnsetType = UNSET
     sum_of_goals_alone: Figure | UnsetType | None = UNSET
     serves: tuple[Serving, ...] | UnsetType = UNSET
@@ -283,7 +308,11 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             yield from why_infeasible(self.problem, caller().deadline)
 
     def remarks(self) -> Iterator[str]:
-        """Return lines on units shared between goals, and on soft constraints."""
+        """Return lines on goals left out, on units shared between goals, and on soft constraints."""
+        if isinstance(self.skipped, tuple) and self.skipped:
+            be = "is" if len(self.skipped) == 1 else "are"
+            yield f"{counted(len(self.skipped), 'goal')} cannot be made and {be} left out:"
+            yield from (f"  {skipped}" for skipped in self.skipped)
         yield from self._sharing()
         yield from self._penalty()
 

@@ -9,8 +9,15 @@ from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import Reduction, parse_reductions
 from foon_asp.problem import Problem
-from foon_asp.questions.answer import Answer, answered_under
-from foon_asp.questions.arguments import Objectives, chosen_objectives, constraint_weights, read, whole
+from foon_asp.questions.answer import Answer, SkippedGoal, answered_under
+from foon_asp.questions.arguments import (
+    Objectives,
+    asked_with,
+    chosen_objectives,
+    constraint_weights,
+    read,
+    whole,
+)
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, not_built, question
 from foon_asp.questions.durations import Durations, stated_durations
@@ -26,6 +33,7 @@ def solve_or_each(
     reductions: str = "all",
     certificate: File | None = None,
     cross_check: bool = False,
+    skip_unreachable: bool = False,
     clingo_options: Sequence[str] = (),
     durations: Durations | None = None,
     all_goals: bool = False,
@@ -40,12 +48,15 @@ def solve_or_each(
             reductions=reductions,
             certificate=certificate,
             cross_check=cross_check,
+            skip_unreachable=skip_unreachable,
             clingo_options=clingo_options,
             durations=durations,
             **options,
         )
     from foon_asp.questions.all_goals import solve_all_goals  # noqa: PLC0415
 
+    if skip_unreachable:
+        raise UserError("--all-goals says of each goal whether it can be made: leave out --skip-unreachable")
     if soft or certificate is not None or cross_check:
         raise UserError(
             "--all-goals lists what each goal costs: ask for soft constraints, a certificate or a "
@@ -73,6 +84,7 @@ def solve_or_each(
     foon-asp solve --goal ice --constraint forbid_motion -c forbidden_motion=crush
     foon-asp solve --goal 'greek salad' --certificate proof.json
     foon-asp solve --goal ice --soft forbid_motion.lp=3 -c forbidden_motion=crush
+    foon-asp solve --goal ice --goal omelet --skip-unreachable
     foon-asp solve --all-goals --objective units --objective success
 
     Rules without a head (:- ...) in a --soft file may be broken: each way to break one, with other values of
@@ -100,6 +112,7 @@ def solve(
         File | None, Option(help="Also write a proof, which `foon-asp verify` checks.", kind=Kind.WRITTEN)
     ] = None,
     cross_check: Annotated[bool, Option()] = False,
+    skip_unreachable: Annotated[bool, Option()] = False,
     clingo_options: Annotated[
         Sequence[str],
         Option(
@@ -132,6 +145,8 @@ def solve(
             that cost, or of more: then it claims a ``bound``.
         cross_check: Also ask other engines: bare clingo, HiGHS, Fast Downward and those of packages, if
             installed. Each has its part of what is left of the ``time_limit``, or a minute without one.
+        skip_unreachable: Leave out goals that cannot be made from the kitchen, and list each with its cause.
+            Constraints are not looked at for that. If no goal can be made, none is left out.
         clingo_options: Options to pass to clingo, for example ``["--opt-strategy=bb"]``.
         durations: How long motions take, for the formats for robots: a file as for :func:`schedule`, or
             seconds by motion.
@@ -170,6 +185,11 @@ def solve(
         from foon_asp.questions.cross_check import cross_checked  # noqa: PLC0415
 
         problem, engines = whole(problem), find_engines()
+    skipped: tuple[SkippedGoal, ...] = ()
+    if skip_unreachable:
+        from foon_asp.questions.unreachable_goals import without_unreachable  # noqa: PLC0415
+
+        problem, skipped = without_unreachable(asked_with(problem, settings))
     # without reading more of a large store
     has_several_goals = soft is None and len(shown(problem).goals) > 1
     if soft is not None:
@@ -186,5 +206,7 @@ def solve(
         from foon_asp.questions.several_goals import with_goals_apart  # noqa: PLC0415
 
         answer = with_goals_apart(answer, settings, problem)
+    if skip_unreachable:
+        answer = answer.having(skipped=skipped)
     answer = cross_checked(answer, settings, weights, engines) if cross_check else answer
     return answer.knowing(durations=seconds)
