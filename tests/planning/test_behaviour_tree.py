@@ -274,7 +274,8 @@ def test_bundled_goals_are_reached(bundled: Foon, goal: str, runs: int) -> None:
 @pytest.fixture
 def runs(request: pytest.FixtureRequest) -> int:
     """How often a tree is run: a hundred times by the slow tests."""
-    return 100 if request.node.get_closest_marker("slow") else 3
+    markers = map(request.node.get_closest_marker, ("slow", "nightly"))
+    return 100 if any(markers) else 3
 
 
 def reach(problem: Problem, answer: foon_asp.Answer, runs: int) -> None:
@@ -290,7 +291,7 @@ def reach(problem: Problem, answer: foon_asp.Answer, runs: int) -> None:
 
 
 @needs_py_trees
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_goals_of_the_corpus_are_reached(universal: Path, runs: int) -> None:
     with warnings.catch_warnings(action="ignore", category=foon_asp.FoonWarning):
         foon = foon_asp.load(universal)
