@@ -28,6 +28,7 @@ _ROOMS = {
     "deadline": ("Cancel", "StoppedError"),
     "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
+    "network.stand_in_table": ("StandInTable",),
     "planning.py_trees_root": ("Execution", "py_trees_root"),
     "planning.unified": ("register_engine",),
     "problem": ("ContainerRule", "Costs", "Fate", "Objective", "Problem", "UsedUp"),

@@ -13,8 +13,8 @@ from foon_asp.asp.settings import Settings
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
+from foon_asp.hypergraph import NONE, Bounds, Listener, Reduced, Reduction, reduce
 from foon_asp.problem import Objective, Problem, Restriction, first_tree, levels, reach, relevant
-from foon_asp.reduce import NONE, Bounds, Listener, Reduced, Reduction, reduce
 
 if TYPE_CHECKING:  # often clingo need not run
     from foon_asp.encoding.scales import Scales
@@ -207,7 +207,7 @@ def prepare(
             )
             if reduced.interrupted:
                 deadline.interrupt()
-            if not prepared.unsettled or reduced.wide is not None or reduced.tree is None:
+            if not prepared.unsettled or reduced.subproblem is not None or reduced.tree is None:
                 return replace(prepared, units=reduced.units, tree=reduced.tree, reduced=reduced)
         with deadline.watched("cutting the network"):
             stocked = replace(kept, kitchen=problem.kitchen.union(for_sale)) if for_sale else kept

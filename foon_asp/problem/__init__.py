@@ -28,6 +28,7 @@ from foon_asp.problem.problem import Measure as Measure
 from foon_asp.problem.problem import Names as Names
 from foon_asp.problem.problem import Origin as Origin
 from foon_asp.problem.problem import Problem as Problem
+from foon_asp.problem.problem import StandIns as StandIns
 from foon_asp.problem.problem import UnitPricesNamed as UnitPricesNamed
 from foon_asp.problem.problem import Unpriced as Unpriced
 from foon_asp.problem.problem import count_unpriced as count_unpriced

@@ -490,7 +490,7 @@ def _answered_reading(
                 return _noted(partial)
             try:
                 with settings.begun.watched("reading"):  # and not late, since there may be a tree already
-                    problem = asked_with(problem, settings)
+                    problem = asked_with(problem, settings, objectives)
             except KeyboardInterrupt:
                 if partial.units is None:
                     raise
@@ -498,7 +498,7 @@ def _answered_reading(
                 bounds = {order[0]: unconstrained.costs.measure(order[0])}
                 partial = partial._replace(status=Status.FEASIBLE, proof=None, stopped=settings.begun.stopped)
                 return _noted(partial._replace(bounds=bounds))
-    return answered(asked_with(problem, settings), objectives, settings, reporter)
+    return answered(asked_with(problem, settings, objectives), objectives, settings, reporter)
 
 
 def answered_nearby(nearby: "Nearby", objectives: Sequence[Objective], settings: Settings) -> Answer:

@@ -18,8 +18,13 @@ Objectives = str | Iterable[str]
 
 
 def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, ...]:
-    """Return parsed objectives; raises :class:`UserError` for one without its rates or prices."""
+    """Return parsed objectives; raises :class:`UserError` for one without its rates or prices.
+
+    With stand-ins, dissimilarity comes first, unless it is named.
+    """
     objectives = parse_objectives([names] if isinstance(names, str) else names, problem.measures)
+    if problem.stand_ins is not None and Objective.DISSIMILARITY not in objectives:
+        objectives = Objective.DISSIMILARITY, *objectives
     with reading():
         problem.require_known_for(objectives)
     return objectives
@@ -47,8 +52,14 @@ def given_constraints(constraints: Files) -> tuple[Constraint, ...]:
     return tuple(map(given_constraint, [constraints] if one else constraints))  # type: ignore[arg-type]
 
 
-def asked_with(problem: Problem, settings: Settings) -> Problem:
-    """Return the problem over all data if the settings have rules that may be about any unit."""
+def asked_with(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
+    """Return the problem over all data if the settings have rules that may be about any unit.
+
+    It then has all stand-ins, as it has unless only the best tree by ``objectives`` is asked for, and
+    dissimilarity is the first of them.
+    """
+    if problem.stand_ins is not None and tuple(objectives[:1]) != (Objective.DISSIMILARITY,):
+        return whole(problem)
     from foon_asp.asp.assembly import need_whole_network  # noqa: PLC0415 (where there may be rules)
 
     return whole(problem) if need_whole_network(problem, settings) else problem

@@ -7,6 +7,7 @@ from foon_asp.asp import Reporter
 from foon_asp.dataset.nearby import shown
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.hypergraph import Reduction, parse_reductions
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.questions.arguments import (
@@ -22,7 +23,6 @@ from foon_asp.questions.contract import TABLES, Kind, Option, Role, not_built, q
 from foon_asp.questions.durations import Durations, stated_durations
 from foon_asp.questions.options import ITEMS, SOFT, TREE
 from foon_asp.questions.result import Result
-from foon_asp.reduce import Reduction, parse_reductions
 
 
 def solve_or_each(

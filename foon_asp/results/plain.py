@@ -13,7 +13,7 @@ import msgspec
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
-from foon_asp.problem import Costs, Objective
+from foon_asp.problem import Costs, Known, Objective
 from foon_asp.text.json_value import Json
 
 T = TypeVar("T")
@@ -48,8 +48,12 @@ def costs_plain(costs: Costs) -> Json:
 
 
 def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
-    """Return the costs of a tree by the name of the objective, as exact numbers; ``None`` if unknown."""
-    measures = {**dict.fromkeys(Objective), **costs.measures}
+    """Return the costs of a tree by the name of the objective, as exact numbers; ``None`` if unknown.
+
+    Without stand-ins, there is no dissimilarity.
+    """
+    usual = (objective for objective in Objective if objective.row.needs is not Known.STAND_INS)
+    measures = {**dict.fromkeys(usual), **costs.measures}
     return {**exact_measures(measures), "ingredients": costs.ingredients}
 
 
