@@ -41,7 +41,11 @@ def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
         return NOT_BUILT
     data = subject.described(read_rules(certificate["rules"], len(subject.network)))
     ended = subprocess.run(
-        [checker], input=f"{data}\n{canonical(certificate)}", capture_output=True, encoding="utf-8", check=False
+        [checker],
+        input=f"{data}\n{canonical(certificate)}",
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
     )
     answer, _, reason = ended.stdout.strip().partition(": ")
     if ended.returncode == 1:
