@@ -74,11 +74,13 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
             yield f"no tree exists from this state ({self.conditions}); it lacks"
             yield from (f"  {node}" for node in self.lacks)
         now = [unit for unit in self.units if not unit.lacks]
-        yield f"{counted(len(now), 'unit')} that can run now lead{'s' if len(now) == 1 else ''} to the goals"
+        number = counted(len(now), "unit") if now else "no unit"
+        yield f"{number} that can run now lead{'' if len(now) > 1 else 's'} to the goals"
         yield from (f"  {unit.id}  {unit.motion}    [{unit.source[0]}]" for unit in now[:_MAX_SHOWN])
-        if len(self.units) > len(now[:_MAX_SHOWN]):
-            more = counted(len(self.units) - len(now[:_MAX_SHOWN]), "more unit")
-            yield f"  ... and {more}, {len(self.units) - len(now)} of them later; --format json lists all"
+        if len(now) > _MAX_SHOWN:
+            yield f"  ... and {len(now) - _MAX_SHOWN} more"
+        if later := len(self.units) - len(now):
+            yield f"{counted(later, 'unit')} that cannot run yet; --format json says what each lacks"
         if self.answer is not None:
             yield "from here:" if not self.lacks else "once that is there:"
             yield from self.answer.findings()
