@@ -23,7 +23,14 @@ Definition compare_part a b :=
   | decided => decided
   end.
 
-Definition power (p : positive) (k : N) := match k with N0 => 1%positive | Npos k => Pos.pow p k end.
+(** Powers by squaring, so that 1 to a large power is found at once. *)
+Fixpoint power_pos (p k : positive) : positive :=
+  match k with
+  | xH => p
+  | xO k => let q := power_pos p k in q * q
+  | xI k => let q := power_pos p k in p * (q * q)
+  end%positive.
+Definition power (p : positive) (k : N) := match k with N0 => 1%positive | Npos k => power_pos p k end.
 Definition times_part k a := Part (Z.of_N k * number a) (power (over a) k) (power (under a) k).
 
 Fixpoint plus (a b : amount) : amount :=
@@ -207,7 +214,10 @@ Qed.
 (** ** Multiples *)
 
 Lemma power_succ p k : power p (N.succ k) = (p * power p k)%positive.
-Proof. destruct k; [reflexivity|apply Pos.pow_succ_r]. Qed.
+Proof.
+  destruct k as [|k]; cbn; [now rewrite Pos.mul_1_r|]. induction k as [k IH|k IH|]; cbn; trivial.
+  rewrite IH. lia.
+Qed.
 
 Lemma power_1 k : power 1 k = 1%positive.
 Proof. induction k as [|k IH] using N.peano_ind; [reflexivity|]. now rewrite power_succ, IH. Qed.
@@ -231,7 +241,7 @@ Qed.
 Lemma times_1 a : times 1 a = a.
 Proof.
   induction a as [|[z p q] a IH]; cbn [times map]; trivial. f_equal; trivial.
-  unfold times_part, power; cbn [number over under]. rewrite !Pos.pow_1_r. f_equal. lia.
+  unfold times_part, power; cbn [number over under]. cbn [power_pos]. f_equal. lia.
 Qed.
 
 Lemma times_plus k a : forall b, times k (plus a b) = plus (times k a) (times k b).

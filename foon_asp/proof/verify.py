@@ -111,7 +111,7 @@ class Subject(NamedTuple):
         }
 
     def described(self, rules: Iterable[Rule] = ()) -> str:
-        """Return all that a certificate can depend on as canonical JSON: the values of the digests by name."""
+        """Return the values of the digests by name, as canonical JSON: all that a certificate depends on."""
         return canonical({name: value() for name, value in self._described(rules).items()})
 
     def _described(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
