@@ -65,8 +65,9 @@ class Branching:
 
     All of the actions can run, and each costs more than 0. ``cuts`` are sets of objects of cuts to begin
     with. ``guess`` is the primal heuristic: it proposes derivations from the LP values of the actions and
-    from the forbidden ones. ``better`` is called with each new incumbent, ``bounded`` with each new bound.
-    ``effort`` is what remains of the search budget after a search, in actions looked at.
+    from the forbidden ones. ``incumbent`` is the best derivation found, if any; no derivation costs less than
+    ``bound`` and it. ``closed`` is true where it is proved that none costs less than the incumbent, or than
+    ``total`` without one. ``effort`` is what remains of the budget of a search, in actions looked at.
     """
 
     def __init__(
@@ -78,8 +79,6 @@ class Branching:
         cuts: Iterable[Collection[int]],
         total: int,
         guess: Guess,
-        better: Callable[[set[int]], None],
-        bounded: Callable[[int], None],
     ) -> None:
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
@@ -93,7 +92,9 @@ class Branching:
         self._dearest = max(self._costs, default=1)
         self._relative = np.array([c / self._dearest for c in self._costs])
         self._parts = in_parts(self._costs)
-        self._total, self._guess, self._better, self._bounded = total, guess, better, bounded
+        self._total, self._guess = total, guess
+        self.incumbent: frozenset[int] | None = None
+        self.bound, self.closed = 0, False
         self._random = random.Random(0)
         self._covering = Covering(self._relative.tolist())
         self._rows: list[Any] = []
@@ -109,35 +110,35 @@ class Branching:
         for cut in cuts:
             self._add(frozenset(position[o] for o in cut if o in position))
 
-    def search(self, effort: int, expired: Callable[[], bool]) -> bool:
+    def search(self, effort: int, expired: Callable[[], bool]) -> Iterator[None]:
         """Branch, best bound first, until no node is open or ``effort`` actions were looked at.
 
-        Returns whether it is proved that no derivation costs less than the incumbent, or than ``total`` where
-        there is no incumbent.
+        Yields after each new incumbent or bound, and at the end.
         """
         self.effort = effort
         waiting = [(0, 0, 0, self._root)]
         number = 0
-        reported = 0
         try:
             while waiting:
                 bound, depth, _, node = waiting[0]
-                reached = min(-(-bound // PARTS), self._total)
-                if reached > reported:
-                    reported = reached
-                    self._bounded(reported)
-                if self._stopped(expired):
-                    return False
-                if not self._closes(bound) and not self._solve(node, number, expired):
-                    return False
+                before = self.bound, self._total
+                self.bound = max(self.bound, min(-(-bound // PARTS), self._total))
+                stopped = self._stopped(expired)
+                if not stopped and not self._closes(bound):
+                    stopped = not self._solve(node, number, expired)
+                if (self.bound, self._total) != before:
+                    yield
+                if stopped:
+                    return
                 heappop(waiting)
                 for child in (node.using, node.without):
                     if child is not None:
                         number += 1
                         heappush(waiting, (child.bound, depth - 1, number, child))
         except UnsolvedError:
-            return False
-        return True
+            return
+        self.closed = True
+        yield
 
     def proof(self, max_length: float = math.inf, expired: Callable[[], bool] = lambda: False) -> Proof:
         """Return the proof of a search that closed all nodes.
@@ -258,8 +259,7 @@ class Branching:
     def _record(self, actions: set[int]) -> None:
         total = sum(self._costs[i] for i, a in enumerate(self._actions) if a in actions)
         if total < self._total:
-            self._total = total
-            self._better(actions)
+            self._total, self.incumbent = total, frozenset(actions)
 
     def _try_guesses(self, shares: Any, node: _Node) -> None:
         self.effort -= 2 * len(self._actions)
@@ -364,11 +364,11 @@ def branched(
     costs = [cost(action) for action in actions]
     if math.gcd(*costs) != 1 or 0 in costs:
         return None
-    cheaper: list[set[int]] = []
-    search = Branching(
-        *(graph, targets, actions, cost, cuts, total, lambda *_: (), cheaper.append, lambda _: None)
-    )
-    if not search.search(_LONG, expired) or cheaper:
+    search = Branching(graph, targets, actions, cost, cuts, total, lambda *_: ())
+    for _ in search.search(_LONG, expired):
+        if search.incumbent is not None:
+            return None
+    if not search.closed:
         return None
     try:
         return search.proof(_LENGTH, expired)

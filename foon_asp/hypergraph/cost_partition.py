@@ -24,7 +24,6 @@ _ALONE = 8  # times all actions: the total size of the cutters for single target
 _SMALL = 0.5  # of the actions: the size of a cutter for a single target, at most
 _STALLED = 8  # solutions after which a bound that hardly grows counts as optimal
 _GROWS = 0.01  # of the gap: what these solutions have to gain
-_OFTEN = 8  # solutions from one call of ``on_solution`` to the next
 _TWICE = 1.001  # a cut with a greater sum of LP values is not tight
 _LARGE = 2**62  # sums that do not fit into 64 bits
 _LOST = Fraction(1, 100)  # how much the rounded bound may be below the LP value
@@ -43,29 +42,6 @@ class SharedCosts(NamedTuple):
     cuts: list[tuple[frozenset[int], int]]
     shares: dict[int, float]
     tight: Sequence[frozenset[int]] = ()
-
-
-def share_costs(
-    graph: Hypergraph,
-    targets: Iterable[int],
-    actions: Collection[int],
-    cost: Callable[[int], int],
-    known_cuts: Iterable[Iterable[int]],
-    enough: int,
-    expired: Callable[[], bool],
-    on_solution: Callable[[SharedCosts], int] | None = None,
-    every: int = _OFTEN,
-) -> SharedCosts | None:
-    """Find landmark cuts of the targets and an optimal cost partition over them.
-
-    All of the actions can run, and actions of cost 0 count as used. ``known_cuts`` are the objects of cuts to
-    begin with. The search ends at a bound of ``enough``. After each ``every`` solutions, ``on_solution`` is
-    called with the cost partition so far, and returns the bound that is enough from then on, or 0 to end.
-    Returns ``None`` where the targets cannot be reached or are all available, and where HiGHS fails.
-    """
-    return _Sharing(graph, targets, actions, cost, expired).share(
-        known_cuts, enough, expired, on_solution, every
-    )
 
 
 def renumbered(
@@ -125,7 +101,13 @@ def stalled(values: Sequence[float], lacks: float) -> bool:
     return len(values) > _STALLED and values[-1] - values[-1 - _STALLED] < _GROWS * lacks
 
 
-class _Sharing:
+class CostPartitioning:
+    """An optimal cost partition over landmark cuts of the targets, found solution by solution.
+
+    All of the actions can run, and actions of cost 0 count as used. ``known_cuts`` are the objects of cuts to
+    begin with. ``converged`` is true where no further solution is of use, or time is up.
+    """
+
     def __init__(
         self,
         graph: Hypergraph,
@@ -133,8 +115,9 @@ class _Sharing:
         actions: Collection[int],
         cost: Callable[[int], int],
         expired: Callable[[], bool],
+        known_cuts: Iterable[Iterable[int]],
     ) -> None:
-        self._actions = sorted(actions)
+        self._actions, self._expired = sorted(actions), expired
         plain, self._objects, small_targets = renumbered(graph, targets, self._actions)
         self._achievers = FirstAchievers(plain, expired)
         small = self._achievers.graph
@@ -153,56 +136,56 @@ class _Sharing:
         self._cuts: list[frozenset[int]] = []
         self._whole_cuts: dict[int, frozenset[int]] = {}  # by row, the objects of its cut in the whole graph
         self._interior_point = True  # faster, until it is not exact enough
-
-    def share(
-        self,
-        known_cuts: Iterable[Iterable[int]],
-        enough: int,
-        expired: Callable[[], bool],
-        on_solution: Callable[[SharedCosts], int] | None,
-        every: int,
-    ) -> SharedCosts | None:
-        if self._cutter.hopeless or not self._cutter.targets:
-            return None
+        self._values: list[float] = []
+        self._last: Weighed | None = None
+        self.converged = False
         position = {o: i for i, o in enumerate(self._objects)}
-        for objects in known_cuts:
+        for objects in () if self._cutter.hopeless else known_cuts:
             self._add(frozenset(position[o] for o in objects if o in position))
-        values: list[float] = []
-        last: Weighed | None = None
-        while last is None or not expired():
-            relaxed = self._solved(expired)
+
+    def advance(self, enough: int, max_solutions: float = math.inf) -> SharedCosts | None:
+        """Solve, and separate violated cuts, up to a bound of ``enough`` or ``max_solutions`` times.
+
+        ``None`` where the targets cannot be reached or are all available, and where HiGHS fails.
+        """
+        if self._cutter.hopeless or not self._cutter.targets:
+            self.converged = True
+            return None
+        above = 100 * enough - 99  # hundredths: costs are whole, and so are bounds
+        solutions = 0
+        while self._last is None or not self._expired():
+            relaxed = self._solved()
             if relaxed is None:
                 break
-            last = relaxed
-            values.append(relaxed.value)
-            above = 100 * enough - 99  # hundredths: costs are whole, and so are bounds
+            self._last = relaxed
+            self._values.append(relaxed.value)
+            solutions += 1
             lacks = _quotient(above, 100 * self._dearest) - relaxed.value
-            ends = lacks <= 0 or stalled(values, lacks)
-            if ends or not self._separate(relaxed.x, expired):
+            ends = lacks <= 0 or stalled(self._values, lacks)
+            if ends or not self._separate(relaxed.x):
                 if self._interior_point and not ends:
                     self._interior_point = False
                     continue
                 shared = self._shared(relaxed)
                 lost = Fraction(relaxed.value) * self._dearest - Fraction(shared.bound, PARTS)
                 if not self._interior_point or lost < _LOST:
+                    self.converged = True
                     return shared
                 self._interior_point = False
-            elif on_solution is not None and len(values) % every == 0:
-                shared = self._shared(relaxed)
-                enough = on_solution(shared)
-                if not enough:
-                    return shared
-        return None if last is None else self._shared(last)
+            elif solutions >= max_solutions:
+                return self._shared(relaxed)
+        self.converged = True
+        return None if self._last is None else self._shared(self._last)
 
-    def _solved(self, expired: Callable[[], bool]) -> Weighed | None:
+    def _solved(self) -> Weighed | None:
         """Return an LP solution; ``None`` where HiGHS finds none before time is up."""
         if self._interior_point:
-            relaxed = self._covering.interior_point(expired)
+            relaxed = self._covering.interior_point(self._expired)
             if relaxed is not None:
                 return relaxed
             self._interior_point = False
         try:
-            solved = self._covering.solve(expired)
+            solved = self._covering.solve(self._expired)
         except UnsolvedError:
             return None
         return Weighed(solved.value, solved.x, self._covering.weights())
@@ -212,7 +195,7 @@ class _Sharing:
         self._rows.append(self._achievers.members(cut))
         self._covering.add(self._rows[-1])
 
-    def _separate(self, x: list[float], expired: Callable[[], bool]) -> bool:
+    def _separate(self, x: list[float]) -> bool:
         """Add disjoint cuts that an LP solution violates; return whether there are any."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
@@ -224,7 +207,7 @@ class _Sharing:
         for cutter in (*self._single_target_cutters, *self._other_targets_cutters):
             cuts = disjoint_violated_cuts(cutter, (), shares, relative, random_number)
             while effort > 0:
-                if expired():
+                if self._expired():
                     return False
                 effort -= len(cutter.actions)
                 cut = next(cuts, None)

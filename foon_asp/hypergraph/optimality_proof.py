@@ -17,7 +17,7 @@ from functools import cache, cmp_to_key, partial
 from operator import mul
 from typing import NamedTuple, Protocol
 
-from foon_asp.hypergraph.cost_partition import PARTS, SharedCosts, share_costs
+from foon_asp.hypergraph.cost_partition import PARTS, CostPartitioning, SharedCosts
 from foon_asp.hypergraph.covering import Covering
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.exact_optimum import ExactOptimum, Limit, exact_optimum
@@ -355,15 +355,7 @@ class Prover:
 
         enough = math.ceil(goal[0] / step)
 
-        def still_needed(shared: SharedCosts) -> int:
-            cutoff = (enough - 1) * PARTS - shared.bound
-            above_cutoff = sum(reduced_cost > cutoff for reduced_cost in shared.reduced_costs.values())
-            return 0 if above_cutoff > _WORTH * len(cutter.actions) else enough
-
-        shared = share_costs(
-            *(self._graph, targets, cutter.actions, steps, known_cuts, enough, self._expired, still_needed),
-            every=1,
-        )
+        shared = self._optimal_partition(cutter, steps, known_cuts, enough)
         if shared is not None:
             weighted_cuts = [
                 (self._widened(cutter, cut), (weight * step / PARTS,)) for cut, weight in shared.cuts
@@ -377,6 +369,22 @@ class Prover:
                 return proof, cuts
             cuts += [cut for cut, _ in weighted_cuts]
         return self._searched(cutter, goal, cuts, step) if at_root else None, cuts
+
+    def _optimal_partition(
+        self, cutter: Cutter, cost: Callable[[int], int], known_cuts: Iterable[frozenset[int]], enough: int
+    ) -> SharedCosts | None:
+        """Return the optimal cost partition, or one by which enough actions are above the cutoff."""
+        partitioning = CostPartitioning(
+            self._graph, cutter.targets, cutter.actions, cost, self._expired, known_cuts
+        )
+        while True:
+            shared = partitioning.advance(enough, max_solutions=1)
+            if shared is None or partitioning.converged:
+                return shared
+            cutoff = (enough - 1) * PARTS - shared.bound
+            above_cutoff = sum(reduced_cost > cutoff for reduced_cost in shared.reduced_costs.values())
+            if above_cutoff > _WORTH * len(cutter.actions):
+                return shared
 
     def _step(self) -> Fraction:
         """Return the step that all costs are multiples of, where they are one number each; else 0."""

@@ -18,14 +18,17 @@ from foon_asp.hypergraph import (
     SAFE,
     Reduction,
     branch_and_bound,
+    greedy_stages,
     optimality_proof,
     reduce,
     reduction,
+    relaxation_stages,
 )
 from foon_asp.hypergraph.branch_and_bound import Branching, TooLongError, branched
 from foon_asp.hypergraph.covering import Covering, Relaxed
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.optimality_proof import Branch
+from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import RefusedError, seal, verify
 from tests.hypergraph.small_graphs import asked, cheapest, parts, reaches, require_proves
@@ -43,16 +46,19 @@ class Run:
         self.trees: list[set[int]] = []
         self.bounds: list[int] = []
         self.total = sum(costs) + 1
-        self.search = Branching(
-            *(graph, targets, range(len(costs)), costs.__getitem__, (), self.total),
-            *(guess, self.trees.append, self.bounds.append),
-        )
+        self.search = Branching(graph, targets, range(len(costs)), costs.__getitem__, (), self.total, guess)
 
     def require_right(
         self, best: int, effort: int = 10**6, expired: Callable[[], bool] = lambda: False
     ) -> bool:
         """Search, and hold all that is heard against what the cheapest costs; whether that is proved."""
-        ended = self.search.search(effort, expired)
+        search = self.search
+        for _ in search.search(effort, expired):
+            if search.incumbent is not None and (not self.trees or self.trees[-1] != search.incumbent):
+                self.trees.append(set(search.incumbent))
+            if not self.bounds or self.bounds[-1] != search.bound:
+                self.bounds.append(search.bound)
+        ended = search.closed
         graph, targets, costs = self.question
         before = self.total
         for tree in self.trees:
@@ -202,7 +208,7 @@ def test_guessed_derivations_count_and_those_of_other_actions_do_not(size: int) 
 @pytest.fixture
 def searching(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave small questions to branching, too."""
-    monkeypatch.setattr(reduction, "_SMALL", 0)
+    monkeypatch.setattr(reduction, "PRESOLVE", PresolveTuning(relaxed_actions=0))
 
 
 @pytest.mark.slow
@@ -213,8 +219,8 @@ def test_answers_are_those_of_the_plain_program(
     seed: int, rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With a tree that may be bad."""
-    monkeypatch.setattr(reduction, "improved", lambda graph, few, tree, *_: tree)
-    monkeypatch.setattr(reduction, "guessed", lambda *_: ())
+    monkeypatch.setattr(greedy_stages, "improved", lambda graph, few, tree, *_: tree)
+    monkeypatch.setattr(relaxation_stages, "guessed", lambda *_: ())
     problem = random_problem(seed, rule, units=14)
     by = [(Objective.UNITS,), (Objective.PRICE,), (Objective.INPUTS, Objective.PRICE), (Objective.KITCHEN,)]
     objectives = by[seed % 4]
