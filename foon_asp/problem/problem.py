@@ -408,6 +408,15 @@ class Problem:
         if by_prices and self.unpriced:
             raise UserError(_unpriced_text(self.unpriced))
 
+    def has_stand_ins_for(self, objectives: Sequence[Objective]) -> bool:
+        """Return whether the stand-ins that a best tree by objectives can have are in the network.
+
+        Parameters:
+            objectives: The objectives, the most important first.
+        """
+        nearest = self.stand_ins is not None and self.stand_ins.nearest
+        return not nearest or tuple(objectives[:1]) == (Objective.DISSIMILARITY,)
+
     def rate(self, unit: int) -> Fraction:
         """Return the success rate of a unit: its own, or that of its motion.
 

@@ -18,6 +18,7 @@ from foon_asp.problem.dead_ends import Cause
 from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.questions.why_infeasible import why_infeasible
 from foon_asp.results.document import AboutGoals, Unserialized
@@ -204,6 +205,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         serves: Of several goals, those that each unit is needed for.
         cross_check: The checks by other engines, where they are requested.
         policy: With ``--retries``, the trees to follow, and their chance; null without a tree.
+        stand_ins: Of a problem with stand-ins, what is used in place of what; empty without a tree.
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
@@ -241,6 +243,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     serves: tuple[Serving, ...] | UnsetType = UNSET
     cross_check: tuple[EngineCheck, ...] | UnsetType = UNSET
     policy: RetryPolicy | UnsetType | None = UNSET
+    stand_ins: tuple[StandIn, ...] | UnsetType = UNSET
 
     @classmethod
     def of(cls, outcome: Outcome, bought: Collection[int] = (), **fields: Any) -> Self:
@@ -268,6 +271,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             used_up=used_up_of(problem, None if units is None else problem.tree(units)),
             units=None if units is None else steps_of(problem, units, bought),
             seconds={phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
+            stand_ins=UNSET if problem.stand_ins is None else stand_ins_in(problem, units or ()),
             **fields,
         )
         return answer.knowing(outcome=outcome)
@@ -360,7 +364,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             yield from why_infeasible(self.problem, caller().deadline)
 
     def remarks(self) -> Iterator[str]:
-        """Return lines on goals left out, on shared units, on soft constraints, and on retries."""
+        """Return lines on goals left out, on shared units, soft constraints, retries and stand-ins."""
         if isinstance(self.skipped, tuple) and self.skipped:
             be = "is" if len(self.skipped) == 1 else "are"
             yield f"{counted(len(self.skipped), 'goal')} cannot be made and {be} left out:"
@@ -369,6 +373,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         yield from self._penalty()
         if isinstance(self.policy, RetryPolicy):
             yield from self.policy.lines()
+        if isinstance(self.stand_ins, tuple) and self.units is not None:
+            yield from stand_in_lines(self.stand_ins)
 
     def _sharing(self) -> Iterator[str]:
         """Return lines with the costs of each goal by itself, and the units that serve several goals."""

@@ -5,7 +5,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from fractions import Fraction
 
-from foon_asp.network import Edit, Network, ObjectNode, Relation, StandInTable
+from foon_asp.network import Edit, Network, ObjectNode, Relation, StandInTable, spelled_alike, spelling_key
 
 
 class NodePrices:
@@ -30,6 +30,9 @@ class NodePrices:
                 number = network.object_id(serving)
                 if number is not None:
                     self._nodes[served].append(number)
+        self._spelled: defaultdict[str, list[str]] = defaultdict(list)  # labels that are spelled alike
+        for label in network.by_label:
+            self._spelled[spelling_key(label)].append(label)
         self._of: dict[int, dict[int, int]] = {}
 
     def _scaled(self, price: Fraction | None) -> int | None:
@@ -45,7 +48,7 @@ class NodePrices:
     def _priced(self, served: int) -> Iterator[tuple[int, int]]:
         objects, by_label = self._objects, self._by_label
         node = objects[served]
-        labels = (node.label, *self._labels.get(node.label, ()))
+        labels = (*self._spelled[spelling_key(node.label)], *self._labels.get(node.label, ()))
         nodes = dict.fromkeys(o for label in labels for o in by_label.get(label, ()))
         nodes |= dict.fromkeys(self._nodes.get(node, ()))
         for serving in nodes:
@@ -62,7 +65,8 @@ class NodePrices:
         label, states, relations, contents = serving
         served_label, served_states, served_relations, served_contents = served
         if label != served_label:
-            price = self._pairs.get((label, served_label))
+            listed = (label, served_label) in self._pairs or not spelled_alike(label, served_label)
+            price = self._pairs.get((label, served_label)) if listed else self._edits[Edit.SPELLING]
             if price is None:
                 return None
             total += price
