@@ -71,7 +71,7 @@ class Measure(Protocol):
 
     @property
     def text(self) -> str:
-        """The rules."""
+        """The rules; empty for costs that are known without any."""
 
     @property
     def place(self) -> str:
