@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Self, Unpack
 
+from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
@@ -35,6 +36,7 @@ if TYPE_CHECKING:  # takes the solver and linear programs along, which `verify` 
 
 _SECONDS = 60.0  # time limit of each check by clingo
 _NAMED_BY = {
+    "stand-ins": "--stand-ins, and the files of stand-ins",
     "network": "--network FILE",
     "kitchen": "--kitchen FILE",
     "rates": "--rates FILE",
@@ -362,7 +364,7 @@ def verify(
 def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool, proved: bool) -> VerifiedCertificate:
     """Return the claim that a certificate proves about data."""
     dataset = foon.dataset
-    subject = dataset.subject(full or _looks_at_all(content), _goal_ids(content))
+    subject = _subject(dataset, content, full)
     try:
         verified = verify_any(content, subject)
     except proof.RefusedError as refused:
@@ -391,6 +393,20 @@ def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool, proved: b
     )
 
 
+def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:
+    """Return the data that a certificate can be about, with the stand-ins for its goals."""
+    goals = _goal_ids(content)
+    if dataset.stand_ins is None:
+        return dataset.subject(full or _looks_at_all(content), goals)
+    goals = [goal for goal in goals if 0 <= goal < len(dataset.data.network.objects)]
+    objectives, containers = content.get("objective"), content.get("containers")
+    everything = bool(content.get("rules")) or (objectives or ["dissimilarity"])[:1] != ["dissimilarity"]
+    rule = containers if containers in [*ContainerRule] else ContainerRule.STRICT
+    if not goals:
+        raise proof.RefusedError("expected goals of the network")
+    return dataset.subject_with_stand_ins(goals, rule, everything)
+
+
 def _other_part(content: Any, subject: proof.Subject) -> str | None:
     """Return the first part of the data, as digests name it, that a sealed certificate is not about.
 
@@ -400,6 +416,8 @@ def _other_part(content: Any, subject: proof.Subject) -> str | None:
         if content["seal"] == proof.seal(content):
             actual = {"level": subject.network.level, **subject.digests()}
             stated = {**content["digests"], "level": content["level"]}
+            if "stand-ins" in {*stated} ^ {*actual}:
+                return "stand-ins"
             del actual["sources"]  # only some rules depend on them
             other = next(
                 (name for name, digest in actual.items() if stated.get(name, digest) != digest), None
