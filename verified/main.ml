@@ -85,7 +85,7 @@ let read_rules data values =
   let plain r = (Z.zero, r) in
   let read number value =
     let str key = named (get key value) in
-    let num key = let n = number (get key value) in if Z.sign n < 0 then unknown "limits below 0" else n in
+    let num key = let n = Json.number (get key value) in if Z.sign n < 0 then unknown "limits below 0" else n in
     let strs key = List.map named (list (get key value)) in
     let limit r = [(Z.of_int (-number - 1), r)] in
     let by_names least = match !sources with
