@@ -168,6 +168,18 @@ def test_certificates_of_the_universal_network(judge: Judge, universal: Path, tm
                 assert judge(content, subject) == ("accepted", "")
 
 
+@pytest.mark.parametrize("level", [1, 2])
+def test_certificates_below_level_3(judge: Judge, level: int, tmp_path: Path) -> None:
+    foon = foon_asp.load(level=level)
+    subject = foon.dataset.subject()
+    for goal in foon.goals:
+        for containers in ContainerRule:
+            problem = foon.problem(goal, containers=containers)
+            foon_asp.solve(problem, ["inputs", "success"], certificate=tmp_path / "proof.json")
+            content = json.loads((tmp_path / "proof.json").read_text())
+            assert judge(content, subject) == ("accepted", "")
+
+
 def test_verify_asks_both_checkers(cli: Cli, judge: Judge, tmp_path: Path) -> None:
     del judge  # skips where it is not built
     proof = tmp_path / "proof.json"
