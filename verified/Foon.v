@@ -65,8 +65,9 @@ Definition makes_goals (us : list id) : Prop :=
 (** ** Costs
 
     [attempts] is counted in fractions of one, so many that each unit's is whole. A figure that is missing or not whole
-    is -1, which is no cost: no certificate with it is accepted. *)
-Inductive objective := Units | Inputs | Inputs_and_ingredients | Success | Kitchen | Attempts (fractions : positive) | Price.
+    is -1, which is no cost: no certificate with it is accepted. Without stand-ins nothing is dissimilar, and networks
+    with stand-ins are not checked. *)
+Inductive objective := Units | Inputs | Inputs_and_ingredients | Success | Kitchen | Attempts (fractions : positive) | Price | Dissimilarity.
 
 Definition price u : option N :=
   match PositiveMap.find u (unit_prices w) with
@@ -83,7 +84,7 @@ Definition figure (f : objective) u : part :=
   | Inputs => sum_of (Z.of_nat (length ins))
   | Inputs_and_ingredients =>
       sum_of (Z.of_nat (length ins) + Z.of_nat (length (flat_map (fun o => ingredients (node_of o)) ins)))
-  | Kitchen => sum_of 0
+  | Kitchen | Dissimilarity => sum_of 0
   | Price => match price u with Some p => sum_of (Z.of_N p) | None => missing end
   | Success => match PositiveMap.find (motion (unit_of u)) (rates w) with Some (a, b) => Part 0 b a | None => missing end
   | Attempts n => match PositiveMap.find (motion (unit_of u)) (rates w) with

@@ -68,6 +68,10 @@ let read_data value goals implied =
   let sources = match get "sources" value with Null -> [] | l -> list l in
   { foon; count_of_nodes = List.length nodes; coins; network_rates; sources }
 
+(* The checker knows rates above 0: a motion without one has no success. *)
+let never_zero data =
+  if List.exists (fun q -> Q.sign q = 0) data.network_rates then unknown "a motion that never succeeds"
+
 (* --- rules *)
 
 let natural_fraction word =
@@ -80,7 +84,8 @@ let read_rules data values =
   let asking r = incr nodes; (Z.of_int !nodes, r) in
   let plain r = (Z.zero, r) in
   let read number value =
-    let str key = named (get key value) and num key = natural (get key value) in
+    let str key = named (get key value) in
+    let num key = let n = Json.number (get key value) in if Z.sign n < 0 then unknown "limits below 0" else n in
     let strs key = List.map named (list (get key value)) in
     let limit r = [(Z.of_int (-number - 1), r)] in
     let by_names least = match !sources with
@@ -92,7 +97,7 @@ let read_rules data values =
     | "forbid_motion" -> [plain (C.Forbid_motion (str "forbidden_motion"))]
     | "forbid_object" -> [plain (C.Forbid_object (str "forbidden_object"))]
     | "forbid_ingredient" -> [plain (C.Forbid_ingredient (strs "allergen"))]
-    | "least_rate" -> [plain (C.Least_rate (num "least_rate"))]
+    | "least_rate" -> never_zero data; [plain (C.Least_rate (num "least_rate"))]
     | "only_sources" -> by_names Z.one
     | "at_least_videos" -> by_names (num "least_videos")
     | "motion_only_with" -> [plain (C.Motion_only_with (str "tied_motion", str "tied_utensil"))]
@@ -143,9 +148,10 @@ let objective data word =
   | "inputs+ingredients" -> (C.Inputs_and_ingredients, Z.one)
   | "kitchen" -> (C.Kitchen, Z.one)
   | "price" -> (C.Price, data.coins)
+  | "dissimilarity" -> (C.Dissimilarity, Z.one)
   | "attempts" -> let n = fractions () in (C.Attempts n, n)
   | "success" ->
-    if List.exists (fun q -> Q.sign q = 0) data.network_rates then unknown "a motion that never succeeds";
+    never_zero data;
     (C.Success, Z.one)
   | _ -> refuse "an objective is unknown"
 
@@ -293,6 +299,7 @@ let check data certificate =
    | _ -> refuse "expected the format 'foon-asp certificate'");
   if not (Z.equal (number (get "version" certificate)) (Z.of_int 5)) then refuse "expected version 5 of the format";
   exactly keys certificate;
+  if List.mem_assoc "stand-ins" (pairs data) then unknown "stand-ins";
   check_digests data certificate;
   if not (ascending (List.map text (list (get "not_covered" certificate)))) then refuse "expected names in order";
   if pairs (get "measures" certificate) <> [] then unknown "measures of your own";
@@ -370,7 +377,7 @@ let () =
     with
     | Refused message -> ("refused: " ^ message, 1)
     | Unknown message -> ("not checked: the proved checker does not know " ^ message, 3)
-    | Invalid_argument _ -> ("refused: lists that should be equally long are not", 1)
-    | Stack_overflow -> ("not checked: branches nested too deeply", 3) in
+    | Invalid_argument _ | Failure _ -> ("refused: its lists or numbers do not belong together", 1)
+    | Stack_overflow | Z.Overflow | Out_of_memory -> ("not checked: it is too large for the proved checker", 3) in
   print_endline answer;
   exit code
