@@ -16,6 +16,7 @@ from fractions import Fraction
 from heapq import heappop, heappush
 from typing import Any
 
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.cost_partition import PARTS, in_parts, renumbered, shared_out, stalled
 from foon_asp.hypergraph.covering import Covering, UnsolvedError
 from foon_asp.hypergraph.cut import Cut, Cutter
@@ -25,12 +26,7 @@ from foon_asp.hypergraph.optimality_proof import Branch, Cases, CostFixing, Hope
 from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
 
 _WHOLE = 1e-6  # integrality tolerance of LP values
-_CUTS = 40  # cuts separated for one LP solution, at most
-_ROUNDS = 3  # of separation, at each node but the root
-_OFTEN = 10  # nodes from one at which derivations are guessed to the next
 
-_LONG = 10_000_000  # actions looked at for a proof, at most: about a minute of processor time
-_LENGTH = 2_000_000  # objects and landmark actions that a proof may list
 _PACKING_LENGTH = 5000  # of these, counted for each cost partition: limits the depth of the branching
 
 Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
@@ -222,12 +218,12 @@ class Branching:
                 )  # rounding left a gap that floats do not close
                 break
             if number:
-                ends = len(values) > _ROUNDS
+                ends = len(values) > tuning.RELAXATION.node_rounds
             else:
                 ends = stalled(values, self._total / self._dearest - relaxed.value)
             if ends or not self._separate(cutter, shares, node, expired):
                 break
-        if number % _OFTEN == 0:
+        if number % tuning.RELAXATION.guess_interval == 0:
             self._try_guesses(shares, node)
             if self._closes(node.bound):
                 return True
@@ -272,7 +268,7 @@ class Branching:
         """Add disjoint cuts that an LP solution violates; return whether there are any."""
         cuts = disjoint_violated_cuts(cutter, node.used, shares.copy(), self._relative, self._random.random)
         added = 0
-        while added < _CUTS and not self._stopped(expired):
+        while added < tuning.RELAXATION.cuts and not self._stopped(expired):
             self.effort -= len(cutter.actions)
             cut = next(cuts, None)
             if cut is None:
@@ -365,12 +361,12 @@ def branched(
     if math.gcd(*costs) != 1 or 0 in costs:
         return None
     search = Branching(graph, targets, actions, cost, cuts, total, lambda *_: ())
-    for _ in search.search(_LONG, expired):
+    for _ in search.search(tuning.PROOF.search_budget, expired):
         if search.incumbent is not None:
             return None
     if not search.closed:
         return None
     try:
-        return search.proof(_LENGTH, expired)
+        return search.proof(tuning.PROOF.proof_length, expired)
     except TooLongError:
         return None

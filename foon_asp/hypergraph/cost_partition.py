@@ -12,6 +12,7 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.covering import Covering, UnsolvedError, Weighed
 from foon_asp.hypergraph.cut import Cutter
 from foon_asp.hypergraph.first_achievers import FirstAchievers
@@ -19,11 +20,7 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
 
 PARTS = 720720  # of 1: most weights are simple fractions
-_CUTS = 40  # cuts of all targets separated for one LP solution; more where targets need few actions
-_ALONE = 8  # times all actions: the total size of the cutters for single targets, at most
 _SMALL = 0.5  # of the actions: the size of a cutter for a single target, at most
-_STALLED = 8  # solutions after which a bound that hardly grows counts as optimal
-_GROWS = 0.01  # of the gap: what these solutions have to gain
 _TWICE = 1.001  # a cut with a greater sum of LP values is not tight
 _LARGE = 2**62  # sums that do not fit into 64 bits
 _LOST = Fraction(1, 100)  # how much the rounded bound may be below the LP value
@@ -98,7 +95,11 @@ def shared_out(
 
 def stalled(values: Sequence[float], lacks: float) -> bool:
     """Return whether the last solutions closed hardly any of the gap ``lacks``."""
-    return len(values) > _STALLED and values[-1] - values[-1 - _STALLED] < _GROWS * lacks
+    return (
+        len(values) > tuning.RELAXATION.stalled_solutions
+        and values[-1] - values[-1 - tuning.RELAXATION.stalled_solutions]
+        < tuning.RELAXATION.stalled_growth * lacks
+    )
 
 
 class CostPartitioning:
@@ -202,7 +203,7 @@ class CostPartitioning:
         relative, random_number = np.array(self._relative), self._random.random
         shares = np.where(relative > 0, x, 1.0)
         any_added = False
-        effort = _CUTS * len(self._actions)
+        effort = tuning.RELAXATION.cuts * len(self._actions)
         self._random.shuffle(self._single_target_cutters)
         for cutter in (*self._single_target_cutters, *self._other_targets_cutters):
             cuts = disjoint_violated_cuts(cutter, (), shares, relative, random_number)
@@ -222,7 +223,7 @@ class CostPartitioning:
         count, targets = len(self._actions), self._cutter.targets
         alone: list[Cutter] = []
         others: list[int] = []
-        effort = _ALONE * count if len(targets) > 1 else 0
+        effort = tuning.RELAXATION.target_cutters * count if len(targets) > 1 else 0
         everything = bytearray(b"\1") * graph.size
         for target in targets:
             if effort > 0:
