@@ -14,16 +14,19 @@ import random
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, cmp_to_key, partial
+from itertools import islice
 from operator import mul
 from typing import NamedTuple, Protocol
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.cost_partition import PARTS, CostPartitioning, SharedCosts
+from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
 from foon_asp.hypergraph.covering import Covering
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.hypergraph.hypergraph import Hypergraph
+from foon_asp.hypergraph.landmark_relaxation import PARTS
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
 
 _SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
 _STEP = 0.99  # of the step of costs: bounds are rounded up
@@ -629,22 +632,17 @@ class _Node:
 
     def _add_disjoint_cuts(self) -> bool:
         """Add violated cuts with disjoint landmarks; return whether there were any."""
+        import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
+
+        shares = np.zeros(len(self._prover._costs))
+        shares[self._actions] = self.shares[: len(self._actions)]
+        costs = np.zeros(len(self._prover._costs))
+        costs[self._actions] = self._floats
         random_number = self._prover._random.random
-        shares = dict(zip(self._actions, self.shares, strict=False))
-        missed: list[Cut] = []
-        while len(missed) < tuning.RELAXATION.cuts:
-            random_costs = {
-                a: cost * (0.5 + random_number()) for a, cost in zip(self._actions, self._floats, strict=True)
-            }
-            cut = self._cutter.cut(
-                self._used, sorted(self._actions, key=lambda a: (-shares[a], random_costs[a]))
-            )
-            if cut is None or sum(shares[a] for a in cut.members) >= _SATISFIED:
-                break
-            missed.append(cut)
-            shares.update(dict.fromkeys(cut.members, 1.0))
-        self.admit(missed)
-        return bool(missed)
+        cuts = disjoint_violated_cuts(self._cutter, self._used, shares, costs, random_number, _SATISFIED)
+        violated = list(islice(cuts, tuning.RELAXATION.cuts))
+        self.admit(violated)
+        return bool(violated)
 
     def _add_violated_cuts(self) -> bool:
         """Add violated cuts grown around the incumbent less one action; return whether there were any.

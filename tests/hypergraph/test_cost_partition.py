@@ -19,10 +19,11 @@ from foon_asp.hypergraph import (
     relaxation_stages,
     tuning,
 )
-from foon_asp.hypergraph.cost_partition import PARTS, CostPartitioning, SharedCosts
+from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
 from foon_asp.hypergraph.covering import Covering, Relaxed, UnsolvedError, Weighed
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_cuts import Cuts
+from foon_asp.hypergraph.landmark_relaxation import PARTS
 from foon_asp.hypergraph.lexicographic import Lexicographic
 from foon_asp.hypergraph.optimality_proof import Prover
 from foon_asp.hypergraph.tuning import PresolveTuning
