@@ -32,7 +32,7 @@ FLOORS = (
     },
     {"network", "processes"},
     {"text", "problem"},
-    {"hypergraph", "grounding", "offered"},
+    {"hypergraph", "grounding", "offered", "standins"},
     {"encoding", "searches", "proof", "store"},
     {"rules", "results"},
     {"asp", "plans"},
@@ -102,6 +102,7 @@ LIBRARIES = {
     "distributed": {"batch"},
     "networkx": {"network"},
     "pandas": {"results"},
+    "py_trees": {"planning"},
     "pyarrow": {"batch"},
     "unified_planning": {"planning"},
     "ortools": {"planning"},
@@ -201,7 +202,7 @@ def test_libraries_are_the_declared_dependencies() -> None:
     extras = project["optional-dependencies"]
     optional = [
         line
-        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "schedule", "view")
+        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "robot", "schedule", "view")
         for line in extras[name]
     ]
     declared = [*project["dependencies"], *optional]
@@ -209,7 +210,7 @@ def test_libraries_are_the_declared_dependencies() -> None:
 
 
 def test_the_verifier_imports_the_standard_library_and_the_plain_network() -> None:
-    parts = {"foon_asp.proof.constraint", "foon_asp.proof.ruled"}
+    parts = {"foon_asp.proof.constraint", "foon_asp.proof.ruled", "foon_asp.proof.stand_ins"}
     modules = {name.replace(".", "/") + ".py" for name in parts} | {"foon_asp/proof/verify.py"}
     names = {name for module in modules for _, name in imports(module)}
     ours = {name for name in names if name.startswith("foon_asp")}
