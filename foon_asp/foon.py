@@ -19,6 +19,7 @@ from foon_asp.network import (
     NetworkBuilder,
     ObjectNode,
     Source,
+    StandInTable,
     UnitPrices,
     starting_kitchen,
 )
@@ -45,6 +46,7 @@ def load(
     goals: File | None = None,
     unit_prices: File | None = None,
     measures: Files = (),
+    stand_ins: StandInTable | bool | None = None,
     level: int = 3,
     lenient: bool = False,
     time_limit: float | None = None,
@@ -67,6 +69,8 @@ def load(
         goals: The file with goals, instead of that of the folder.
         unit_prices: The file with the prices of units, instead of that of the folder.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
+        stand_ins: Whether available nodes may be used in place of those that cannot be made, by the usual
+            table of prices or another one.
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by
             everything (3).
         lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
@@ -101,6 +105,9 @@ def load(
         named = find_data(folder, () if folder else paths, *side_files)
         with _counted(on_progress, size_of(named.network)) as tell, telling(tell):
             dataset = read_dataset(named, lenient, level).measured(definitions)
+            if stand_ins:
+                table = StandInTable.usual() if isinstance(stand_ins, bool) else stand_ins
+                dataset = dataset.standing_in(table)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
     foon = Foon(dataset, name)
     for remark in foon.warnings:

@@ -14,10 +14,9 @@ from foon_asp.asp.solver import solve
 from foon_asp.encoding.facts import write_avoided, write_in_all, write_objectives, write_unseen
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
+from foon_asp.hypergraph.reduction import at_costs, reduce_under_rules
 from foon_asp.problem import Costs, Objective, Problem, multiplies, reach
 from foon_asp.problem.restriction import Restriction
-from foon_asp.reduce import reduce
-from foon_asp.reduce.reduction import at_costs
 
 _JUST_ABOVE = Fraction(1, 10**30)  # a cost that is this much above a limit is above it, at every scale
 
@@ -101,19 +100,21 @@ class _Union:
             return prepared.units
         problem, by = prepared.kept or prepared.problem, prepared.levels
         try:
-            reduced = reduce(
-                problem, by, expired=lambda: deadline.passed, redundant=prepared.redundant, brief=True
+            reduced = reduce_under_rules(
+                problem, by, expired=lambda: deadline.passed, redundant=prepared.redundant
             )
-            wide, costs = reduced.wide, reduced.costs
-            if wide is None or costs is None:
+            subproblem, costs = reduced.subproblem, reduced.costs
+            if subproblem is None or costs is None:
                 return prepared.units
             if self._worse:
                 none = dict.fromkeys(by, Fraction(0)) | {o: Fraction(1) for o in by if multiplies(o)}
                 limit = costs.of(Costs({**none, by[0]: self._limit()}))
             else:
-                limit = wide.total(self._some) + costs.doubt
+                limit = subproblem.total(self._some) + costs.doubt
             with deadline.watched("cutting the network"):
-                kept = at_costs(wide, by, costs, lambda: deadline.passed, self._some, below=limit + 1).units
+                kept = at_costs(
+                    subproblem, by, costs, lambda: deadline.passed, self._some, below=limit + 1
+                ).units
         except KeyboardInterrupt:
             deadline.interrupt()
             return prepared.units

@@ -8,10 +8,10 @@ from itertools import takewhile
 
 from foon_asp.asp import Status
 from foon_asp.asp.bare_program import bare_plans
-from foon_asp.asp.used_up import order_that_runs
 from foon_asp.encoding.facts import write_times
 from foon_asp.engines.bare_clingo import NAME, Clingo
 from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError
+from foon_asp.plans.counting import order_that_runs
 from foon_asp.problem import Objective, levels
 from foon_asp.proof.replay import replay_for
 

@@ -10,7 +10,16 @@ from typing import NamedTuple, Protocol
 
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, TaskTree, UnitPrices
+from foon_asp.network import (
+    STAND_IN,
+    FunctionalUnit,
+    Network,
+    ObjectNode,
+    Source,
+    StandInTable,
+    TaskTree,
+    UnitPrices,
+)
 from foon_asp.problem.containers import (
     ContainerRule,
     conditions,
@@ -40,6 +49,17 @@ class Unpriced(NamedTuple):
     motion: str
     units: int
     source: Source
+
+
+class StandIns(NamedTuple):
+    """What the stand-ins of a network are made by.
+
+    ``table`` has their prices. ``nearest`` says that the network has only those that a best tree by
+    dissimilarity can have, and not every pair of nodes that the table has a price for.
+    """
+
+    table: StandInTable
+    nearest: bool
 
 
 class Measure(Protocol):
@@ -115,7 +135,7 @@ class Problem:
     variation needs its own. ``items`` is the model in which items are used up; ``None`` if they last.
     ``starting`` says that no kitchen is named, so that all nodes are available that no unit makes out of
     others. Rates that lack a motion of the network are ignored, and ``unrated`` is the error that lists the
-    missing ones.
+    missing ones. ``stand_ins`` is what the stand-ins of the network are made by, ``None`` where it has none.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -152,6 +172,7 @@ class Problem:
     items: UsedUp | None = field(default=None, kw_only=True)
     starting: bool = field(default=False, kw_only=True)
     unrated: str = field(default="", kw_only=True)
+    stand_ins: StandIns | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         if not self.goals:
@@ -177,7 +198,8 @@ class Problem:
     @cached_property
     def whole(self) -> "Problem":
         """The same problem over the whole network: of a store, all of it is read."""
-        is_part = self.origin is not None and self.network.object_numbers
+        nearest = self.stand_ins is not None and self.stand_ins.nearest
+        is_part = self.network.object_numbers or nearest
         return self.origin.posed_whole(self) if self.origin is not None and is_part else self
 
     @property
@@ -248,6 +270,7 @@ class Problem:
     def conditions(self) -> str:
         """The conditions of every claim about this problem, in words: ``strict containers``."""
         text = conditions(self.containers, self.network.level, self.starting)
+        text += "" if self.stand_ins is None else ", stand-ins"
         return text if self.items is None else f"{text}, items used up"
 
     @cached_property
@@ -342,7 +365,7 @@ class Problem:
         """All properties that are compared for equality, except the network."""
         measures = {name: measure.text for name, measure in self.measures.items()}
         rules = self.containers, self.utensils, self.items, self.starting
-        values = self.rates, self.own_rates, self.unit_prices, measures, self.as_seen
+        values = self.rates, self.own_rates, self.unit_prices, measures, self.as_seen, self.stand_ins
         return self.kitchen, self.goals, *rules, *values
 
     def __repr__(self) -> str:
@@ -385,6 +408,15 @@ class Problem:
         if by_prices and self.unpriced:
             raise UserError(_unpriced_text(self.unpriced))
 
+    def has_stand_ins_for(self, objectives: Sequence[Objective]) -> bool:
+        """Return whether the stand-ins that a best tree by objectives can have are in the network.
+
+        Parameters:
+            objectives: The objectives, the most important first.
+        """
+        nearest = self.stand_ins is not None and self.stand_ins.nearest
+        return not nearest or tuple(objectives[:1]) == (Objective.DISSIMILARITY,)
+
     def rate(self, unit: int) -> Fraction:
         """Return the success rate of a unit: its own, or that of its motion.
 
@@ -421,6 +453,24 @@ class Problem:
         price = self.prices[unit]
         if price is None:
             raise ValueError(f"no price of unit {unit} is known")
+        return price
+
+    def dissimilarity(self, unit: int) -> Fraction:
+        """Return the dissimilarity of a stand-in, by the table; 0 of other units.
+
+        Parameters:
+            unit: The id of the unit.
+
+        Raises:
+            ValueError: if the table has no price of the stand-in.
+        """
+        network = self.network
+        if self.stand_ins is None or network.motions[unit] != STAND_IN:
+            return Fraction(0)
+        (serving,), (served,) = network.inputs[unit], network.outputs[unit]
+        price = self.stand_ins.table.dissimilarity(network.objects[serving], network.objects[served])
+        if price is None:
+            raise ValueError(f"the table has no price of unit {unit}")
         return price
 
     def measure(self, name: str, unit: int) -> int | Fraction:
@@ -507,6 +557,8 @@ class Problem:
         available = {Known.MEASURES} | ({Known.RATES} if self.rates is not None else set())
         if self.unit_prices is not None and all(self.prices[unit] is not None for unit in executed):
             available.add(Known.PRICES)
+        if self.stand_ins is not None:
+            available.add(Known.STAND_INS)
         user_objectives = map(Objective.of_measure, self.measures)
         return tree_costs(list(map(self.measured, executed)), items, available, user_objectives)
 
@@ -566,6 +618,11 @@ class _MeasuredUnit(NamedTuple):
     def price(self) -> Fraction:
         """The price."""
         return self.problem.price(self.unit)
+
+    @property
+    def dissimilarity(self) -> Fraction:
+        """The dissimilarity of a stand-in."""
+        return self.problem.dissimilarity(self.unit)
 
     def measure(self, name: str) -> int | Fraction:
         """Return the cost by a user measure."""

@@ -1,11 +1,12 @@
 """What happens to copies of object nodes when a unit runs and items are used up, by docs/plans.md."""
 
 from collections import Counter
-from functools import cache
+from collections.abc import Callable
+from functools import cache, lru_cache, partial
 from typing import NamedTuple
 
-from foon_asp.network import FunctionalUnit, ObjectNode
-from foon_asp.problem import Problem, UsedUp, given_outputs, needed_inputs
+from foon_asp.network import FunctionalUnit, Network, ObjectNode
+from foon_asp.problem import ContainerRule, Problem, UsedUp, given_outputs, needed_inputs
 
 
 class Execution(NamedTuple):
@@ -28,20 +29,8 @@ class Executions:
 
     def __init__(self, problem: Problem) -> None:
         self._problem, self._items = problem, problem.items or UsedUp()
-        self.of = cache(self._of)
-
-    def _of(self, unit: FunctionalUnit) -> Execution:
-        """Return preconditions, consumption and add effects of one execution of a unit."""
-        problem = self._problem
-        rules = problem.containers, problem.utensils, problem.network
-        preconditions = tuple(dict.fromkeys(needed_inputs(unit, *rules)))
-        stays = {node: self._items.fate(unit, node, problem.utensils).stays for node in preconditions}
-        made = dict.fromkeys(given_outputs(unit, *rules))
-        return Execution(
-            preconditions,
-            tuple(node for node in preconditions if not stays[node]),
-            tuple(node for node in made if node not in unit.inputs),
-        )
+        network = None if problem.network.level == 3 else problem.network
+        self.of = _execution_of(problem.items, problem.containers, problem.utensils, network)
 
     def is_endless(self, node: ObjectNode) -> bool:
         """Return whether a node is not consumable: it is in the kitchen, and the stock does not count it."""
@@ -50,3 +39,38 @@ class Executions:
     def stock(self) -> Counter[ObjectNode]:
         """Return the initial number of copies of each consumable node."""
         return Counter({n: count for n, count in self._items.stock.items() if self._problem.at_hand(n)})
+
+
+def _execution_of(
+    items: UsedUp | None, rule: ContainerRule, utensils: frozenset[str], network: Network | None
+) -> Callable[[FunctionalUnit], Execution]:
+    """Return the function from a unit to one execution of it, which remembers what it returned.
+
+    ``network`` is that of the units, where its level is below 3.
+    """
+    if items is None and network is None:
+        return _by_the_rule(rule, utensils)
+    return cache(partial(_execution, items or UsedUp(), rule, utensils, network))
+
+
+@lru_cache(maxsize=4)
+def _by_the_rule(rule: ContainerRule, utensils: frozenset[str]) -> Callable[[FunctionalUnit], Execution]:
+    """Return a function as above, the same one for all trees that are compared or checked one by one."""
+    return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None))
+
+
+def _execution(
+    items: UsedUp,
+    rule: ContainerRule,
+    utensils: frozenset[str],
+    network: Network | None,
+    unit: FunctionalUnit,
+) -> Execution:
+    """Return preconditions, consumption and add effects of one execution of a unit."""
+    preconditions = tuple(dict.fromkeys(needed_inputs(unit, rule, utensils, network)))
+    made = dict.fromkeys(given_outputs(unit, rule, utensils, network))
+    return Execution(
+        preconditions,
+        tuple(node for node in preconditions if not items.fate(unit, node, utensils).stays),
+        tuple(node for node in made if node not in unit.inputs),
+    )

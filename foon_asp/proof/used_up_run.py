@@ -5,8 +5,10 @@ Where some node is used up more often than it is made, there is no such sequence
 for, depth first.
 """
 
+import itertools
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode
@@ -49,21 +51,47 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     if problem.network.level < 3:
         return UsedUpRun(None, proved=False)
     executions = Executions(problem)
+    endless = cache(executions.is_endless)
 
     def finite(nodes: Iterable[ObjectNode]) -> tuple[ObjectNode, ...]:
-        return tuple(node for node in nodes if not executions.is_endless(node))
+        return tuple(itertools.filterfalse(endless, nodes))
 
     steps = [Execution(*map(finite, executions.of(unit))) for unit in tree]
-    search = _OrderSearch(steps, executions.stock(), frozenset(finite(problem.goal_nodes)))
-    listed = search.listed()
+    stock, goals = executions.stock(), frozenset(finite(problem.goal_nodes))
+    listed = _shortage_as_listed(steps, stock, goals)
     if listed is None:
         return UsedUpRun(tuple(range(len(steps))))
+    search = _OrderSearch(steps, stock, goals)
     overdrawn = search.overdrawn()
     if overdrawn is not None:
         return UsedUpRun(None, overdrawn)
     order = search.order()
     shortage = None if order else search.dead_end or listed
     return UsedUpRun(order, shortage, order is not None or search.looks_left > 0)
+
+
+def _shortage_as_listed(
+    steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Iterable[ObjectNode]
+) -> Shortage | None:
+    """Return the copy that is missing when the steps are done as listed; ``None`` where they run."""
+    copies, consumers = dict(stock), dict[ObjectNode, list[int]]()
+
+    def missing(step: int | None, nodes: Iterable[ObjectNode]) -> Shortage | None:
+        for node in nodes:
+            if not copies.get(node):
+                return Shortage(step, node, tuple(consumers.get(node, ())))
+        return None
+
+    for step, (preconditions, consumes, adds) in enumerate(steps):
+        shortage = missing(step, preconditions)
+        if shortage is not None:
+            return shortage
+        for node in consumes:
+            copies[node] -= 1
+            consumers.setdefault(node, []).append(step)
+        for node in adds:
+            copies[node] = copies.get(node, 0) + 1
+    return missing(None, goals)
 
 
 class _OrderSearch:
@@ -87,24 +115,6 @@ class _OrderSearch:
         self._readers = Counter(
             node for step in steps for node in set(step.preconditions).difference(step.consumes)
         )
-
-    def listed(self) -> Shortage | None:
-        """Return the copy that is missing when the steps are done as listed; ``None`` where they run."""
-        copies, consumers = self._copies.copy(), dict[ObjectNode, list[int]]()
-
-        def missing(step: int | None, nodes: Iterable[ObjectNode]) -> Shortage | None:
-            node = next((node for node in nodes if not copies[node]), None)
-            return None if node is None else Shortage(step, node, tuple(consumers.get(node, ())))
-
-        for step, (preconditions, consumes, adds) in enumerate(self._steps):
-            shortage = missing(step, preconditions)
-            if shortage is not None:
-                return shortage
-            copies.subtract(consumes)
-            copies.update(adds)
-            for node in consumes:
-                consumers.setdefault(node, []).append(step)
-        return missing(None, self._goals)
 
     def overdrawn(self) -> Shortage | None:
         """Return the first copy that is missing in every order, as more are used up than there ever are."""

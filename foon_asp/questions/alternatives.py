@@ -7,9 +7,7 @@ from typing import Annotated, NamedTuple, Unpack
 
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import CLINGO_OPTIONS
-from foon_asp.asp.ranked_plans import RankedPlans
 from foon_asp.asp.ranking import Ranked
-from foon_asp.asp.used_up import best_plans
 from foon_asp.encoding.facts import write_distances
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.encoding.search import run
@@ -17,6 +15,7 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.network import counted
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.pictures.notebook import page_bundle
+from foon_asp.plans.ranked_plans import RankedPlans, best_plans
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.arguments import Objectives, asked_with, at_least, chosen_objectives
 from foon_asp.questions.caller import caller
