@@ -72,7 +72,7 @@ class _Union:
         self._best = best
         self._some, self._every = set(best.units), set(best.units)
         self._number = prepared.problem.network.unit_number
-        self._settled = "" if not worse else "_without_spare.\n"
+        self._settled = "" if not worse else "_without_spare(1).\n"
         self._avoided = 0
 
     def run(self) -> TreeUnion:
