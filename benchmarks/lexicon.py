@@ -3,9 +3,9 @@
     apt-get install wordnet-base
     python benchmarks/lexicon.py FOON.txt recipe.txt > similar.txt
 
-Labels are looked up as nouns, in the singular. Two labels of one synset cost 2; of a synset and one right above
-it 4; of two right below one, 8. A label that ends in another
-one is a kind of it, and costs 4: ground pepper and pepper. Of tools and vessels only those of one synset are listed: a pan is no kettle.
+Labels are looked up as nouns, in the singular. Two labels of one synset cost 2, of a synset and one right
+above it 4, of two right below one 8. A label that ends in another one is a kind of it and costs 4, as ground
+pepper does for pepper. Of tools and vessels only those of one synset are listed: a pan is no kettle.
 """
 
 import argparse
@@ -46,10 +46,12 @@ class WordNet:
 
 
 def compounds(labels: set[str]) -> Iterator[tuple[str, str, int]]:
-    """Give each label that ends in another one, with that: ground pepper is a pepper, and a glass may be too."""
+    """Give each label that ends in another one, with that: ground pepper and pepper."""
     keys = {label: spelling_key(label) for label in sorted(labels)}
     for label, key in keys.items():
-        heads = [other for other, head in keys.items() if len(head) > 3 and key != head and key.endswith(head)]
+        heads = [
+            other for other, head in keys.items() if len(head) > 3 and key != head and key.endswith(head)
+        ]
         longest = max((len(keys[head]) for head in heads), default=0)
         for head in heads:
             if len(keys[head]) == longest:
@@ -77,7 +79,9 @@ def pairs(labels: set[str], wordnet: WordNet) -> Iterator[tuple[str, str, int]]:
 
 def main() -> None:
     """Print the lexicon of the labels of networks."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("networks", nargs="+", type=Path, metavar="NETWORK")
     parser.add_argument("--wordnet", type=Path, default=Path("/usr/share/wordnet"))
     options = parser.parse_args()

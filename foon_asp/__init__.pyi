@@ -17,6 +17,7 @@ from foon_asp.network import NetworkBuilder as NetworkBuilder
 from foon_asp.network import ObjectNode as ObjectNode
 from foon_asp.network import Source as Source
 from foon_asp.network import TaskTree as TaskTree
+from foon_asp.network.stand_in_table import StandInTable as StandInTable
 from foon_asp.planning.unified import register_engine as register_engine
 from foon_asp.problem import ContainerRule as ContainerRule
 from foon_asp.problem import Costs as Costs
@@ -28,6 +29,8 @@ from foon_asp.problem.progress import Progress as Progress
 from foon_asp.proof.simulation import Simulation as Simulation
 from foon_asp.proof.simulation import Verdict as Verdict
 from foon_asp.proof.verify import RefusedError as RefusedError
+from foon_asp.questions.align import Aligned as Aligned
+from foon_asp.questions.align import align as align
 from foon_asp.questions.all_goals import Optima as Optima
 from foon_asp.questions.all_goals import solve_all_goals as solve_all_goals
 from foon_asp.questions.alternatives import Alternatives as Alternatives
@@ -58,6 +61,8 @@ from foon_asp.questions.regret import Regrets as Regrets
 from foon_asp.questions.regret import regret as regret
 from foon_asp.questions.relax import Relaxed as Relaxed
 from foon_asp.questions.relax import relax as relax
+from foon_asp.questions.repair import Repaired as Repaired
+from foon_asp.questions.repair import repair as repair
 from foon_asp.questions.schedule import Schedule as Schedule
 from foon_asp.questions.schedule import schedule as schedule
 from foon_asp.questions.search import Retrieved as Retrieved
