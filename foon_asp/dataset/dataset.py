@@ -46,7 +46,6 @@ from foon_asp.problem import (
 from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning
 from foon_asp.text.goal_name import entry_names, find_goal, listed_goal, listed_nodes
 from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.repeated_node import refuse_repeated
 from foon_asp.warning import warn
 
 if TYPE_CHECKING:  # plain answers do not need it
@@ -62,8 +61,6 @@ def ask(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
     """Return the problem of goals, by id in the network of ``data``, a part of the dataset ``origin``."""
-    if items is not None:
-        refuse_repeated(data.repeated)
     unrated = origin.unrated
     return Problem(
         data.network,
@@ -78,6 +75,7 @@ def ask(
         items=items,
         starting=data.starting,
         unrated=unrated,
+        amounts=data.amounts,
     )
 
 
@@ -112,7 +110,7 @@ class Dataset:
     def of(cls, data: Data, seconds: float = 0.0) -> Self:
         """Return the dataset of data that are in memory; ``seconds`` is how long reading them took."""
         return cls(
-            Source(data.network, seconds, data.left_out, data.repeated),
+            Source(data.network, seconds, data.left_out, data.repeated, data.amounts),
             Kitchen(data.kitchen),
             data.goals,
             data.rates,
@@ -172,6 +170,7 @@ class Dataset:
             self.starting,
             self.goals_from,
             self.source.repeated,
+            self.source.amounts,
         )
 
     def _unit_prices(self, network: Network) -> UnitPrices | None:

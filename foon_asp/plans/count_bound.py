@@ -76,7 +76,8 @@ class CountBound:
         optimality is not proved.
         """
         counts = None
-        for assumed_cap in (_FEWER, _FAR):
+        wanted = max(self._flows.targets.values(), default=1)
+        for assumed_cap in (_FEWER * wanted, _FAR * wanted):
             counts = self._counts(measures, rounds, assumed_cap)
             if counts is not None and max(counts.values(), default=0) < assumed_cap:
                 break
@@ -93,6 +94,8 @@ class CountBound:
                 if whole is None:
                     return None
                 x = whole
+                for a in range(self._size):  # the larger a count, the less of an indicator satisfies floats
+                    x[self._size + a] = float(x[a] > 0.5)
                 model.keep(measure, x)
                 self._check()
             counts = {a: round(x[a]) for a in range(self._size) if x[a] > 0.5}
@@ -112,8 +115,6 @@ class CountBound:
             columns.difference_update(range(self._size, 2 * self._size))
         if x is None or any(abs(x[column] - round(x[column])) > INTEGRALITY for column in columns):
             return None
-        for a in range(self._size):
-            x[self._size + a] = float(x[a] > 0.5)
         return x
 
     def none(self) -> bool:
@@ -349,7 +350,8 @@ class CountBound:
         flows = self._flows
         objects = {o for numbers in (*flows.asks, *flows.adds, flows.targets, flows.start) for o in numbers}
         start = [o for o, count in flows.start.items() if count]
-        return Cutter(Hypergraph(max(objects, default=0) + 1, flows.asks, flows.adds, start), flows.targets)
+        sides = (list(map(tuple, side)) for side in (flows.asks, flows.adds))
+        return Cutter(Hypergraph(max(objects, default=0) + 1, *sides, start), tuple(flows.targets))
 
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.

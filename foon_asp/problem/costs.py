@@ -93,12 +93,12 @@ class Costs:
 
 
 def tree_costs(
-    units: Collection[Measured],
+    units: Mapping[Measured, int],
     items: int,
     available: Collection[Known],
     user_objectives: Iterable[Objective] = (),
 ) -> Costs:
-    """Return the costs of units that need a number of distinct kitchen ``items``.
+    """Return the costs of units, each with its number of executions, that need distinct kitchen ``items``.
 
     Objectives that need data which are not ``available`` for all units are left out, and ``attempts`` where a
     rate is 0. ``user_objectives`` are measured besides the built-in ones.
@@ -109,12 +109,12 @@ def tree_costs(
         if row.needs is not None and row.needs not in available:
             continue
         try:
-            figures = list(map(row.unit, units))
+            figures = [(row.unit(unit), times) for unit, times in units.items()]
         except ZeroDivisionError:  # with a rate of 0, the expected number of attempts is infinite
             continue
         if row.multiplies:
-            measures[objective] = math.prod(figures, start=Fraction(1))
+            measures[objective] = math.prod((figure**times for figure, times in figures), start=Fraction(1))
         else:
             start = 0 if row.whole else Fraction(0)
-            measures[objective] = sum(figures, start=start) + items * row.item
+            measures[objective] = sum((figure * n for figure, n in figures), start=start) + items * row.item
     return Costs(measures)

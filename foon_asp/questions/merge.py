@@ -160,7 +160,7 @@ def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Mer
     builder = NetworkBuilder()
     copies = 0
     for file in network_files:
-        for motion, inputs, outputs, sources in reader.file_units(file):
+        for motion, inputs, outputs, sources, _ in reader.file_units(file):
             builder.add(motion, inputs, outputs, *sources)
             copies += 1
     warnings = tuple(summarize(reader.diagnostics))

@@ -14,6 +14,7 @@ PROVING = (
     "foon_asp/proof",
     "foon_asp/reduce",
     "foon_asp/bounds",
+    "foon_asp/plans",
     "foon_asp/certificate",
     "foon_asp/asp/prepared.py",
     "foon_asp/asp/solver.py",
