@@ -61,6 +61,8 @@ def ask(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
     """Return the problem of goals, by id in the network of ``data``, a part of the dataset ``origin``."""
+    if items is not None and data.amounts.conflict:
+        raise UserError(data.amounts.conflict)
     unrated = origin.unrated
     return Problem(
         data.network,
@@ -75,7 +77,7 @@ def ask(
         items=items,
         starting=data.starting,
         unrated=unrated,
-        amounts=data.amounts,
+        amounts=data.amounts.units,
     )
 
 

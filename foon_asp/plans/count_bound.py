@@ -350,8 +350,8 @@ class CountBound:
         flows = self._flows
         objects = {o for numbers in (*flows.asks, *flows.adds, flows.targets, flows.start) for o in numbers}
         start = [o for o, count in flows.start.items() if count]
-        sides = (list(map(tuple, side)) for side in (flows.asks, flows.adds))
-        return Cutter(Hypergraph(max(objects, default=0) + 1, *sides, start), tuple(flows.targets))
+        asks, adds = ([tuple(copies) for copies in side] for side in (flows.asks, flows.adds))
+        return Cutter(Hypergraph(max(objects, default=0) + 1, asks, adds, start), tuple(flows.targets))
 
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.

@@ -10,9 +10,9 @@ class Flows(NamedTuple):
     """Actions with preconditions and effects on copies of objects, all by number.
 
     Each action maps objects to numbers of copies. It can be executed while there are those that it ``asks``
-    for; it consumes those that it ``uses``, and adds those that it ``adds``. ``start`` maps initial objects to
-    their numbers of copies, and ``targets`` those that have to remain. Objects that are not consumable are in
-    none of these; ``items`` are the preconditions of each action among them.
+    for. It consumes those that it ``uses``, and adds those that it ``adds``. ``start`` maps initial objects
+    to their numbers of copies, and ``targets`` those that have to remain. Objects that are not consumable are
+    in none of these; ``items`` are the preconditions of each action among them.
     """
 
     asks: Sequence[Mapping[int, int]]

@@ -74,8 +74,8 @@ def fate(
 class Flow(NamedTuple):
     """The preconditions and effects of a unit on copies of items, as ids of object nodes.
 
-    Each maps object nodes to numbers of copies. A unit is applicable when there are as many copies of each node
-    as it ``asks`` for. It consumes those that it ``uses``, and makes those that it ``adds``.
+    Each maps object nodes to numbers of copies. A unit is applicable when there are as many copies of each
+    node as it ``asks`` for. It consumes those that it ``uses``, and makes those that it ``adds``.
     """
 
     asks: Mapping[int, int]
@@ -121,12 +121,12 @@ class UsedUp:
         needs: Iterable[int],
         gives: Iterable[int],
         utensils: frozenset[str],
-        amounts: UnitAmounts = UnitAmounts(),
+        amounts: UnitAmounts,
     ) -> Flow:
         """Return the preconditions and effects of a unit on copies of items.
 
-        Of an input that is also an output, only the difference is used up or made, unless it is said to be used
-        up.
+        Of an input that is also an output, only the difference is used up or made, unless it is said to be
+        used up.
 
         Parameters:
             network: The network of the unit.

@@ -290,7 +290,7 @@ class Problem:
                 Flow(dict.fromkeys(needs, 1), {}, dict.fromkeys(gives, 1))
                 for needs, gives in zip(self.needs, self.gives, strict=True)
             )
-        counted = {motion for unit in self.amounts for motion in (unit.motion,)}
+        counted = {unit.motion for unit in self.amounts}
         none = UnitAmounts()
         return tuple(
             items.flow(

@@ -1,29 +1,31 @@
 """What happens to copies of object nodes when a unit runs and items are used up, by docs/plans.md."""
 
 from collections import Counter
+from collections.abc import Mapping
 from functools import cache
 from typing import NamedTuple
 
-from foon_asp.network import FunctionalUnit, ObjectNode
-from foon_asp.problem import Problem, UsedUp, given_outputs, needed_inputs
+from foon_asp.network import FunctionalUnit, ObjectNode, UnitAmounts
+from foon_asp.problem import Fate, Problem, UsedUp, given_outputs, needed_inputs
 
 
 class Execution(NamedTuple):
-    """What running a unit once does with copies of object nodes, one copy of each.
+    """What running a unit once does with copies of object nodes, each with a number of copies.
 
-    It needs ``preconditions``, uses up those of them that it ``consumes``, and ``adds`` outputs, none of
-    which is an input.
+    It needs ``preconditions``, uses up those of them that it ``consumes``, and ``adds`` outputs; of an output
+    that is an input as well, what is more than the input.
     """
 
-    preconditions: tuple[ObjectNode, ...]
-    consumes: tuple[ObjectNode, ...]
-    adds: tuple[ObjectNode, ...]
+    preconditions: Mapping[ObjectNode, int]
+    consumes: Mapping[ObjectNode, int]
+    adds: Mapping[ObjectNode, int]
 
 
 class Executions:
     """How units run from the kitchen of a problem.
 
-    Items are used up as the problem says, or, where they last in it, by the rule of docs/plans.md.
+    Items are used up as the problem says, or, where they last in it, by the rule of docs/plans.md, and then
+    every amount is 1.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -34,14 +36,25 @@ class Executions:
         """Return preconditions, consumption and add effects of one execution of a unit."""
         problem = self._problem
         rules = problem.containers, problem.utensils, problem.network
-        preconditions = tuple(dict.fromkeys(needed_inputs(unit, *rules)))
-        stays = {node: self._items.fate(unit, node, problem.utensils).stays for node in preconditions}
-        made = dict.fromkeys(given_outputs(unit, *rules))
-        return Execution(
-            preconditions,
-            tuple(node for node in preconditions if not stays[node]),
-            tuple(node for node in made if node not in unit.inputs),
-        )
+        taken, made = UnitAmounts() if problem.items is None else problem.amounts.get(unit, UnitAmounts())
+        preconditions = {node: taken.get(node, 1) for node in needed_inputs(unit, *rules)}
+        consumed: dict[ObjectNode, int] = {}
+        for node, amount in preconditions.items():
+            fate = self._items.fate(unit, node, problem.utensils)
+            if not fate.stays:
+                consumed[node] = amount
+            elif fate is Fate.OUTPUT and amount > made.get(node, 1):
+                consumed[node] = amount - made.get(node, 1)
+        added: dict[ObjectNode, int] = {}
+        for node in given_outputs(unit, *rules):
+            more = made.get(node, 1) - (taken.get(node, 1) if node in unit.inputs else 0)
+            if more > 0:
+                added[node] = more
+        return Execution(preconditions, consumed, added)
+
+    def wanted(self) -> dict[ObjectNode, int]:
+        """Return how many copies of each goal have to be there in the end."""
+        return {node: self._items.wanted.get(node, 1) for node in self._problem.goal_nodes}
 
     def is_endless(self, node: ObjectNode) -> bool:
         """Return whether a node is not consumable: it is in the kitchen, and the stock does not count it."""

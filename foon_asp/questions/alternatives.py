@@ -21,7 +21,7 @@ from foon_asp.questions.arguments import Objectives, asked_with, at_least, chose
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Option, question
-from foon_asp.questions.options import ITEMS, TREE
+from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
@@ -203,6 +203,7 @@ class _Pool(NamedTuple):
 @question(
     *TREE,
     *ITEMS,
+    AMOUNT,
     formats=TABLES,
     help_="""
     \b

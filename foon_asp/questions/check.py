@@ -16,7 +16,7 @@ from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_fo
 from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import Kind, Option, Role, question
-from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
+from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree, posed_tree
@@ -176,6 +176,7 @@ def _simulated(tree: Tree) -> Simulation:
     GOAL_OF_PLAN,
     CONTAINERS,
     *ITEMS,
+    AMOUNT,
     pose=a_plan,
     help_="""
     \b

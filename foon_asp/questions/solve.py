@@ -12,7 +12,7 @@ from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.questions.arguments import Objectives, chosen_objectives, constraint_weights, read, whole
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, not_built, question
-from foon_asp.questions.options import ITEMS, SOFT, TREE
+from foon_asp.questions.options import AMOUNT, ITEMS, SOFT, TREE
 from foon_asp.questions.result import Result
 from foon_asp.reduce import Reduction, parse_reductions
 
@@ -54,6 +54,7 @@ def solve_or_each(
 @question(
     *TREE,
     *ITEMS,
+    AMOUNT,
     Option(
         "all_goals",
         "Solve every goal that --goal or the goals file names by itself, under each --objective by itself.",

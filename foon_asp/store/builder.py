@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from foon_asp.network import Amounts, FunctionalUnit, ObjectNode, Source
+from foon_asp.network import DataAmounts, FunctionalUnit, ObjectNode, Source
 from foon_asp.network.node_pattern import LookupKey, lookup_keys
 from foon_asp.network.starting import recipe_kitchen
 from foon_asp.store.columns import (
@@ -134,7 +134,7 @@ class StoreBuilder:
         utensils: Iterable[str] | None,
         left_out: int,
         repeated: Sequence[RepeatedNode],
-        amounts: Amounts,
+        amounts: DataAmounts,
         stated: Mapping[FunctionalUnit, Fraction],
         prices: UnitPriceList | None,
     ) -> None:
@@ -145,7 +145,8 @@ class StoreBuilder:
         ``stated`` are prices that networks have for their units, ``prices`` those of a file, if there is one.
         """
         amounts_by_id = [
-            (self.unit_id(unit), *(self._amounts(side) for side in sides)) for unit, sides in amounts.items()
+            (self.unit_id(unit), *(self._amounts(side) for side in sides))
+            for unit, sides in amounts.units.items()
         ]
         prices_by_id = [
             self._by_id(prices_of_kind) for prices_of_kind in (stated, prices.units if prices else {})
@@ -183,6 +184,7 @@ class StoreBuilder:
             "motion_prices": prices and {motion: str(price) for motion, price in prices.motions.items()},
             "repeated": [[node, *source[:3]] for node, source in repeated],
             "amounts": amounts_by_id,
+            "amounts_conflict": amounts.conflict,
             "digests": content_digests(
                 self._database,
                 prices.motions if prices else None,

@@ -9,7 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from foon_asp.garbage import uncollected
-from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source, UnitAmounts
+from foon_asp.network import (
+    DataAmounts,
+    FunctionalUnit,
+    Network,
+    NodePattern,
+    ObjectNode,
+    Source,
+    UnitAmounts,
+)
 from foon_asp.network.network import UnitKey
 from foon_asp.problem import ContainerRule, Unpriced, needed_inputs
 from foon_asp.store.columns import (
@@ -110,7 +118,7 @@ class Store:
 
     @cached_property
     @reporting_damage
-    def amounts(self) -> dict[FunctionalUnit, UnitAmounts]:
+    def amounts(self) -> DataAmounts:
         """The amounts of units."""
         amounts: dict[FunctionalUnit, UnitAmounts] = {}
         for number, inputs, outputs in self.file.about("amounts"):
@@ -118,7 +126,7 @@ class Store:
             unit = FunctionalUnit(motion, *(tuple(self.nodes(side)) for side in sides))
             counted = ({self.node(o): amount for o, amount in side} for side in (inputs, outputs))
             amounts[unit] = UnitAmounts(*counted)
-        return amounts
+        return DataAmounts(amounts, str(self.file.about("amounts_conflict")))
 
     @cached_property
     @reporting_damage

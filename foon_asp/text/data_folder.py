@@ -4,13 +4,13 @@ import re
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from pathlib import Path
-from types import MappingProxyType
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.garbage import uncollected
 from foon_asp.network import (
-    Amounts,
+    NO_AMOUNTS,
+    DataAmounts,
     FunctionalUnit,
     Network,
     Source,
@@ -81,7 +81,7 @@ class Data(NamedTuple):
     starting: bool = False
     goals_from: str = ""
     repeated: tuple[RepeatedNode, ...] = ()
-    amounts: Amounts = MappingProxyType({})
+    amounts: DataAmounts = NO_AMOUNTS
 
 
 def find_data(
@@ -239,10 +239,10 @@ def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrice
 
 def unit_amounts(
     stated: StatedAmounts, file: Path | None, network: Network, warnings: list[Diagnostic]
-) -> Amounts:
+) -> DataAmounts:
     """Return the amounts of a table and those that networks state of their units; the table takes precedence.
 
-    Appends warnings about rows that match no unit. Raises :class:`InputError` for copies that disagree.
+    Appends warnings about rows that match no unit.
     """
     settled = stated.settled(network)
     if file is None:

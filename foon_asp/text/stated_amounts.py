@@ -1,10 +1,10 @@
 """Amounts that networks state for their units, and those of a table beside them."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
-from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, UnitAmounts
-from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+from foon_asp.network import DataAmounts, FunctionalUnit, Network, ObjectNode, Source, UnitAmounts
+from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.table import Row
 
 UnitAmount = tuple[str, bool, ObjectNode]
@@ -21,13 +21,13 @@ class StatedAmounts:
         """Record the amounts of one copy, and where they are stated."""
         self._copies.setdefault(unit, {})[source] = amounts
 
-    def settled(self, network: Network | None = None) -> dict[FunctionalUnit, UnitAmounts]:
-        """Return the amounts of each unit; raises :class:`InputError` for copies that disagree.
+    def settled(self, network: Network | None = None) -> DataAmounts:
+        """Return the amounts of each unit, and the first two copies that disagree.
 
         Copies that state no amounts, which are all 1, are in the ``network``, or are not looked at.
         """
-        errors: list[Diagnostic] = []
         amounts: dict[FunctionalUnit, UnitAmounts] = {}
+        conflict = ""
         for unit, copies in self._copies.items():
             number = None if network is None else network.unit_id(unit)
             sources = tuple(copies) if network is None or number is None else network.sources[number]
@@ -35,22 +35,19 @@ class StatedAmounts:
             of_copies = [(copies.get(source, UnitAmounts()), source) for source in sources]
             amounts[unit] = of_copies[0][0]
             other = next((source for counted, source in of_copies if counted != amounts[unit]), None)
-            if other is not None:
-                message = (
-                    f"found a copy of the unit {unit.motion!r} of {first} with other amounts, expected the "
-                    "same: give one of the two another motion"
+            if other is not None and not conflict:
+                conflict = (
+                    f"{other}: found a copy of the unit {unit.motion!r} of {first} with other amounts, "
+                    "expected the same, since items used up are counted: give one of the two another name"
                 )
-                errors.append(Diagnostic(Severity.ERROR, "unit-amount", message, other))
-        if errors:
-            raise InputError(errors)
-        return amounts
+        return DataAmounts(amounts, conflict)
 
 
 def with_table(
-    stated: Mapping[FunctionalUnit, UnitAmounts], rows: Sequence[Row[UnitAmount, int]], network: Network
-) -> tuple[dict[FunctionalUnit, UnitAmounts], list[Diagnostic]]:
+    stated: DataAmounts, rows: Sequence[Row[UnitAmount, int]], network: Network
+) -> tuple[DataAmounts, list[Diagnostic]]:
     """Return amounts with those of a table in their place, and warnings about rows that match no unit."""
-    amounts = dict(stated)
+    amounts = dict(stated.units)
     used: set[UnitAmount] = set()
     motions = {row.name[0] for row in rows}
     by_name = {row.name: row.value for row in rows}
@@ -78,7 +75,8 @@ def with_table(
         for row in rows
         if row.name not in used
     ]
-    return {unit: counted for unit, counted in amounts.items() if counted}, warnings
+    counted = {unit: sides for unit, sides in amounts.items() if sides}
+    return stated._replace(units=counted), warnings
 
 
 def counted_amounts(

@@ -53,9 +53,9 @@ def flows_of(
     start: Mapping[int, int],
     targets: Sequence[int],
 ) -> Flows:
-    """Return flows in which every amount is 1."""
-    sides = ([dict.fromkeys(numbers, 1) for numbers in side] for side in (asks, uses, adds))
-    return Flows(*sides, items, start, dict.fromkeys(targets, 1))
+    """Return flows in which an object counts as often as it is listed."""
+    asked, used, added = (list(map(Counter, side)) for side in (asks, uses, adds))
+    return Flows(asked, used, added, items, start, Counter(targets))
 
 
 def random_flows(choose: Random) -> Flows:
