@@ -304,7 +304,8 @@ def _verified(certificate: Certificate, subject: verify.Subject) -> verify.Verif
 def subject_of(problem: Problem) -> verify.Subject:
     """Return the data that certificates of a problem over a whole network are about."""
     return verify.Subject(
-        *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
+        *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
+        amounts=problem.amounts,
     )
 
 

@@ -381,9 +381,21 @@ class Dataset:
             stated.pop("prices", None)
         if everything:
             data = self.data
-            return Subject(data.network, stocked.kitchen.ids, rates, self.utensils, data.unit_prices, stated)
+            kitchen, prices, trusted = stocked.kitchen.ids, data.unit_prices, ()
+            return Subject(
+                data.network, kitchen, rates, self.utensils, prices, stated, trusted, data.amounts.units
+            )
         network = source.touched()
-        return Subject(network, stocked.kitchen, rates, self.utensils, None, stated, tuple(sorted(stated)))
+        return Subject(
+            network,
+            stocked.kitchen,
+            rates,
+            self.utensils,
+            None,
+            stated,
+            tuple(sorted(stated)),
+            source.amounts.units,
+        )
 
     def named_goals(self, names: Names) -> tuple[int, ...]:
         """Find goals that Python names, by id in the whole network, each once.

@@ -22,6 +22,18 @@ class Flows(NamedTuple):
     start: Mapping[int, int]
     targets: Mapping[int, int]
 
+    def lacking(self, priced: bool) -> tuple[list[list[int]], list[int]]:
+        """Return the preconditions of each action, and the targets, that initial copies do not satisfy.
+
+        An action that is executed can be executed again in the delete relaxation, so an object that is added
+        is there as often as wanted. If ``priced``, initial copies are taken one by one, and satisfy nothing.
+        """
+
+        def lacks(copies: Mapping[int, int]) -> list[int]:
+            return [o for o, n in copies.items() if priced or n > self.start.get(o, 0)]
+
+        return list(map(lacks, self.asks)), lacks(self.targets)
+
     @property
     def achievers(self) -> dict[int, list[int]]:
         """The actions that add each object."""

@@ -27,7 +27,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
-from foon_asp.network import Network, UnitPrices, node_at_level
+from foon_asp.network import Amounts, Network, UnitPrices, node_at_level
 from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
 from foon_asp.proof.ruled import Limit, Ruled
 
@@ -77,7 +77,7 @@ class Subject(NamedTuple):
     """The data that a certificate is about; ``kitchen`` are object node ids.
 
     ``stated`` are digests by name that are not computed from the other fields; those named in ``trusted``
-    were never computed.
+    were never computed. ``amounts`` count in plans, whose certificates state them.
     """
 
     network: Network
@@ -87,6 +87,7 @@ class Subject(NamedTuple):
     prices: UnitPrices | None = None
     stated: Mapping[str, str] = MappingProxyType({})
     trusted: tuple[str, ...] = ()
+    amounts: Amounts = MappingProxyType({})
 
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
         """Return the SHA-256 digests that a certificate of it names; ids mean nothing without the network's.
@@ -141,11 +142,13 @@ class UsedUp(NamedTuple):
     """The statements about consumable items in a claim about plans.
 
     ``stock`` maps consumable kitchen items, by id, to their copies. ``stays`` maps labels, and object nodes
-    by id, to whether they stay when used, which overrides the rule.
+    by id, to whether they stay when used, which overrides the rule. ``wanted`` maps goals to the copies that
+    are wanted, where that is not one.
     """
 
     stock: Mapping[int, int]
     stays: Mapping[str | int, bool]
+    wanted: Mapping[int, int] = MappingProxyType({})
 
 
 class Verified(NamedTuple):

@@ -11,8 +11,8 @@ from foon_asp.proof.used_up_run import used_up_run
 def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
     """Return one line where items last, and the tree would not run if each were used once, or none.
 
-    Nor is there one where what is missing never was there. Where a unit of the tree has amounts, the line says
-    that they are not counted.
+    Nor is there one where what is missing never was there. Where a unit of the tree has amounts, the line
+    says that they are not counted.
     """
     units = tuple(tree)
     if problem.items is not None:
