@@ -1,14 +1,20 @@
-"""Plans with amounts by brute force: Dijkstra over multisets of copies, with a meaning of its own."""
+"""Plans with amounts by brute force: Dijkstra over multisets of copies, with a meaning of its own.
+
+``python -m tests.oracle.amounts 0 5000`` holds answers to random problems against it.
+"""
 
 import random
+import sys
 from collections import Counter
-from collections.abc import Iterator
 from fractions import Fraction
 from heapq import heappop, heappush
 from typing import NamedTuple
 
+from foon_asp.asp import Settings, Status
+from foon_asp.asp.optimum import solve
+from foon_asp.deadline import Deadline
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source, UnitAmounts, UnitPrices
-from foon_asp.problem import ContainerRule, Problem, UsedUp
+from foon_asp.problem import ContainerRule, Objective, Problem, UsedUp
 from tests.oracle.used_up import UTENSILS, stays
 
 MAX_STATES = 4_000
@@ -81,7 +87,7 @@ def craftings(problem: Problem) -> list[Crafting]:
     return found
 
 
-def least_cost(problem: Problem, objective: str) -> Fraction | None:
+def least_cost(problem: Problem, objective: Objective) -> Fraction | None:
     """Return the least cost of a plan by units, inputs, price or attempts; ``None`` where none was found.
 
     Raises :class:`OverflowError` where the search is given up.
@@ -123,23 +129,47 @@ def _state(copies: Counter[ObjectNode]) -> tuple[tuple[str, int], ...]:
     return tuple(sorted((node.label, n) for node, n in copies.items() if n))
 
 
-def _cost(problem: Problem, unit: int, objective: str) -> Fraction:
+def _cost(problem: Problem, unit: int, objective: Objective) -> Fraction:
     network = problem.network
     price = problem.prices[unit]
     assert price is not None
     return {
-        "units": Fraction(1),
-        "inputs": Fraction(len(network.inputs[unit])),
-        "price": price,
-        "attempts": 1 / RATES[network.motions[unit]],
+        Objective.UNITS: Fraction(1),
+        Objective.INPUTS: Fraction(len(network.inputs[unit])),
+        Objective.PRICE: price,
+        Objective.ATTEMPTS: 1 / RATES[network.motions[unit]],
     }[objective]
 
 
-def solvable(seeds: Iterator[int], objective: str) -> Iterator[tuple[int, Problem, Fraction | None]]:
-    """Yield the problems that the oracle can decide, with what it found."""
-    for seed in seeds:
-        problem = random_amounts(seed)
-        try:
-            yield seed, problem, least_cost(problem, objective)
-        except OverflowError:
-            continue
+OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.PRICE, Objective.ATTEMPTS)
+
+
+def outcome(seed: int, objective: Objective, seconds: float = 10) -> str:
+    """Hold our answer against the oracle: ``right``, ``wrong``, ``unknown``, or ``open`` if it gives up."""
+    problem = random_amounts(seed)
+    try:
+        least = least_cost(problem, objective)
+    except OverflowError:
+        return "open"
+    answer = solve(problem, (objective,), Settings(deadline=Deadline(seconds)))
+    if answer.status is Status.INFEASIBLE:
+        return "right" if least is None else "wrong"
+    if answer.status is not Status.OPTIMAL or answer.costs is None:
+        return "unknown"
+    return "right" if answer.costs.measure(objective) == least else "wrong"
+
+
+def main(first: int, last: int) -> Counter[str]:
+    """Count the outcomes of many problems, each by one objective."""
+    counts: Counter[str] = Counter()
+    for seed in range(first, last):
+        objective = OBJECTIVES[seed % len(OBJECTIVES)]
+        found = outcome(seed, objective)
+        counts[found] += 1
+        if found in {"wrong", "unknown"}:
+            print(f"seed {seed} by {objective}: {found}")
+    return counts
+
+
+if __name__ == "__main__":
+    print(dict(main(*map(int, sys.argv[1:]))))
