@@ -1,14 +1,14 @@
 """Loaded data: a FOON, a kitchen, and the files beside them."""
 
 import contextlib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
 from typing import Any, Self
 
 from foon_asp.dataset import Dataset, read_dataset
-from foon_asp.dataset.items import Stays, Stock, items_of
+from foon_asp.dataset.items import Stays, Stock, items_of, wanted_of
 from foon_asp.dataset.names import in_python, node_ids
 from foon_asp.dataset.paths import File, Files, files
 from foon_asp.deadline import Cancel, seconds, stoppable
@@ -44,6 +44,7 @@ def load(
     utensils: File | None = None,
     goals: File | None = None,
     unit_prices: File | None = None,
+    unit_amounts: File | None = None,
     measures: Files = (),
     level: int = 3,
     lenient: bool = False,
@@ -66,6 +67,7 @@ def load(
         utensils: The file with the labels of utensils, instead of that of the folder.
         goals: The file with goals, instead of that of the folder.
         unit_prices: The file with the prices of units, instead of that of the folder.
+        unit_amounts: The file that says how many of an object node units take and make, likewise.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by
             everything (3).
@@ -94,7 +96,8 @@ def load(
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
     side_files = [
-        None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)
+        None if file is None else Path(file)
+        for file in (kitchen, rates, utensils, goals, unit_prices, unit_amounts)
     ]
     with _limited(time_limit, cancel, "reading"):
         definitions = read_measures(measures)
@@ -325,26 +328,31 @@ class Foon:
         self,
         *goals: str | ObjectNode,
         containers: str = "strict",
-        items: str = "lasting",
+        items: str | None = None,
         stock: Stock | None = None,
         stays: Stays | None = None,
+        amounts: int | Sequence[int] = (),
     ) -> Problem:
         """Make a problem, with goals that one tree has to make.
 
         Parameters:
             goals: Object nodes, by name or as :class:`ObjectNode`; without any, the goal of the goals file.
             containers: The container rule, ``strict`` or ``implied``.
-            items: Whether items are ``lasting``, or ``used-up`` by the rule of docs/plans.md.
+            items: Whether items are ``lasting``, or ``used-up`` by the rule of docs/plans.md, which is the
+                default where several copies of a goal are wanted.
             stock: How many copies the kitchen has of some object nodes, by name, or the path of a stock
                 file; all other items of the kitchen never run out. Only for items that are used up.
             stays: What stays (``True``) or is used up (``False``) whatever the rule says, by label or object
                 node, or the path of such a file. Only for items that are used up.
+            amounts: How many copies of the goal are wanted, or of each of several goals, in their order.
 
         Raises:
             UserError: for a name that means no object node or several, with candidates; or for another rule.
         """
-        used_up = items_of(self._dataset, items, stock, stays)
-        return self._dataset.nearby(self._dataset.named_goals(goals), containers, used_up)
+        ids = self._dataset.named_goals(goals)
+        wanted = wanted_of(self._dataset, ids, [amounts] if isinstance(amounts, int) else amounts)
+        items = items or ("used-up" if wanted else "lasting")
+        return self._dataset.nearby(ids, containers, items_of(self._dataset, items, stock, stays, wanted))
 
     @typed
     def vary(

@@ -45,6 +45,9 @@ _DATA_OPTIONS = (
         "--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name: JSON, or FOON objects."
     ),
     click.option("--unit-prices", type=_PATH, metavar="FILE", help="Prices of motions and of single units."),
+    click.option(
+        "--unit-amounts", type=_PATH, metavar="FILE", help="How many of a node units take and make."
+    ),
     lenient_option,
 )
 

@@ -44,7 +44,17 @@ class Command(Protocol):
         """Stop what is read in a ``with`` block at the limits of the command."""
 
 
-DATA = ("sources", "folder", "network", "kitchen", "rates", "utensils", "goals", "unit_prices")
+DATA = (
+    "sources",
+    "folder",
+    "network",
+    "kitchen",
+    "rates",
+    "utensils",
+    "goals",
+    "unit_prices",
+    "unit_amounts",
+)
 """The options of a command that name data."""
 
 Pose = Callable[..., tuple[object, ...]]
