@@ -19,6 +19,7 @@ from foon_asp.network import (
     NetworkBuilder,
     ObjectNode,
     Source,
+    StandInTable,
     UnitPrices,
     starting_kitchen,
 )
@@ -31,6 +32,7 @@ from foon_asp.text.goal_name import GoalError
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_node
 from foon_asp.text.reading import size_of, telling
+from foon_asp.text.stated_amounts import StatedAmounts, counted_amounts
 from foon_asp.typed import typed
 from foon_asp.warning import warn
 
@@ -46,6 +48,7 @@ def load(
     unit_prices: File | None = None,
     unit_amounts: File | None = None,
     measures: Files = (),
+    stand_ins: StandInTable | bool | None = None,
     level: int = 3,
     lenient: bool = False,
     time_limit: float | None = None,
@@ -69,6 +72,8 @@ def load(
         unit_prices: The file with the prices of units, instead of that of the folder.
         unit_amounts: The file that says how many of an object node units take and make, likewise.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
+        stand_ins: Whether available nodes may be used in place of those that cannot be made, by the usual
+            table of prices or another one.
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by
             everything (3).
         lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
@@ -104,6 +109,9 @@ def load(
         named = find_data(folder, () if folder else paths, *side_files)
         with _counted(on_progress, size_of(named.network)) as tell, telling(tell):
             dataset = read_dataset(named, lenient, level).measured(definitions)
+            if stand_ins:
+                table = StandInTable.usual() if isinstance(stand_ins, bool) else stand_ins
+                dataset = dataset.standing_in(table)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
     foon = Foon(dataset, name)
     for remark in foon.warnings:
@@ -159,7 +167,8 @@ def build(
     Parameters:
         units: Units, each as motion, inputs and outputs, where object nodes are in one-line notation:
             ``("pour", ["water; hot", "cup; empty"], ["cup; contains {water}"])``; or as a dictionary with the
-            keys ``motion``, ``inputs`` and ``outputs``; or a :class:`FunctionalUnit`. Or a network, made by a
+            keys ``motion``, ``inputs`` and ``outputs``; or a :class:`FunctionalUnit`. A node that is listed
+            twice is taken or made twice where items are used up. Or a network, made by a
             :class:`NetworkBuilder`.
         kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`.
             Without it, or as ``"@starting"``, it is what makes all units run; ``()`` is nothing.
@@ -196,14 +205,15 @@ def build(
     with _limited(time_limit, cancel, "building"):
         total = len(units) if isinstance(units, Sized) else 0
         with _counted(on_progress, total) as tell:
-            network = units if isinstance(units, Network) else _network(units, tell)
+            stated = StatedAmounts()
+            network = units if isinstance(units, Network) else _network(units, stated, tell)
         making = [unit for unit, outputs in enumerate(network.outputs) if outputs]
         last = {making[-1]: Source("the units", making[-1] + 1)} if making else {}
         entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
         starting = kitchen is None or kitchen == str(STARTING)
         at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
         data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
-        data = data._replace(goals_from=LAST if goals is None else "")
+        data = data._replace(goals_from=LAST if goals is None else "", amounts=stated.settled(network))
         dataset = Dataset.of(data).remarked((), (), (), kitchen is not None).measured(read_measures(measures))
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
@@ -216,10 +226,11 @@ def build(
     return foon
 
 
-def _network(units: Iterable[PlainUnit], tell: Callable[[int], None]) -> Network:
+def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[[int], None]) -> Network:
     """Build a network of units as callers write them; the place of a unit is its number, from 1.
 
-    ``tell`` is called with the number of units added since the last call.
+    A node that is listed several times is meant several times, which ``amounts`` records. ``tell`` is called
+    with the number of units added since the last call.
     """
     builder, number = NetworkBuilder(), 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
@@ -239,7 +250,10 @@ def _network(units: Iterable[PlainUnit], tell: Callable[[int], None]) -> Network
         if not isinstance(motion, str) or not motion.strip():
             raise UserError(f"found the motion {motion!r} of unit {number}, expected a name; {_UNIT}")
         source = Source("the units", number)
-        builder.add(motion, [*_nodes(inputs, number)], [*_nodes(outputs, number)], source)
+        sides = [*_nodes(inputs, number)], [*_nodes(outputs, number)]
+        builder.add(motion, *sides, source)
+        if counted := counted_amounts(*([(node, 1) for node in side] for side in sides)):
+            amounts.add(FunctionalUnit.of(motion, *sides), counted, source)
         if number % _REPORT_EVERY == 0:
             tell(_REPORT_EVERY)
     if number % _REPORT_EVERY:

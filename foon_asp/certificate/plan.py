@@ -8,10 +8,10 @@ from fractions import Fraction
 from operator import add
 from typing import Any
 
-from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus_log
 from foon_asp.certificate.arrays import written
 from foon_asp.certificate.certificate import Certificate, Claimed, subject_of, write
 from foon_asp.certificate.coverage import NOTHING, Coverage
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus_log
 from foon_asp.network import ObjectNode
 from foon_asp.plans.conditions import Balance, Condition, Landmark, Level, Measure, Sum, SumLimit, Supply
 from foon_asp.plans.count_proof import Claim, CountProof, PlanProver, Split

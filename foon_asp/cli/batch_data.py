@@ -95,17 +95,18 @@ def digest(named: dict[str, Any], question_files: Iterable[Path]) -> str:
 
     Raises :class:`UserError` for a pipe, which the processes could not read again.
     """
-    measures = named["measures"]
-    named = {key: value for key, value in named.items() if key not in {"level", "lenient", "measures"}}
-    files = find_data(**named)
-    total = hashlib.sha256()
+    others = {"level", "lenient", "measures", "stand_ins", "stand_in_tables", "similar"}
+    files = find_data(**{key: value for key, value in named.items() if key not in others})
+    total = hashlib.sha256(b"stand-ins" if named["stand_ins"] else b"")
     if files.kitchen in {None, STARTING}:  # its answers are not those of an empty kitchen
         total.update(str(STARTING).encode())
     for file in (
         *files.network,
         *(table for table in files[1:] if table not in {None, STARTING}),
         *sorted(set(question_files)),
-        *measures,
+        *named["measures"],
+        *named["similar"],
+        *named["stand_in_tables"],
     ):
         if not file.is_file():
             raise UserError(f"{file}: expected a file, since every process reads it again")

@@ -63,6 +63,30 @@ _MEASURE_OPTION = click.option(
     help="Rules for your own objectives, cost(NAME,U,N); docs/writing-objectives.md.",
 )
 
+_STAND_IN_OPTIONS = (
+    click.option(
+        "--stand-ins",
+        is_flag=True,
+        help="Let what the kitchen has be used in place of what it lacks, as little different as possible; "
+        "docs/stand-ins.md.",
+    ),
+    click.option(
+        "--stand-in-table",
+        "stand_in_tables",
+        type=_PATH,
+        multiple=True,
+        metavar="FILE",
+        help="Prices of stand-ins that replace the usual ones; with this, --stand-ins is not needed.",
+    ),
+    click.option(
+        "--similar",
+        type=_PATH,
+        multiple=True,
+        metavar="FILE",
+        help="A lexicon: labels that stand in for others, with a price.",
+    ),
+)
+
 _LEVEL_OPTION = click.option(
     "--level",
     type=click.IntRange(1, 3),
@@ -128,8 +152,9 @@ def is_verbose() -> bool:
 
 
 def data_options(command: Command) -> Command:
-    """Add the options that name the data, the measures and the level."""
-    return network_options(_MEASURE_OPTION(_LEVEL_OPTION(command)))
+    """Add the options that name the data, the measures, the stand-ins and the level."""
+    options = (_MEASURE_OPTION, *_STAND_IN_OPTIONS, _LEVEL_OPTION)
+    return network_options(functools.reduce(lambda f, option: option(f), reversed(options), command))
 
 
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
@@ -199,6 +224,9 @@ def read_dataset(
     level: int,
     measures: Sequence[Path] = (),
     sources: Sequence[Path] = (),
+    stand_ins: bool = False,
+    stand_in_tables: Sequence[Path] = (),
+    similar: Sequence[Path] = (),
 ) -> Dataset:
     """Return the data that the options name; warnings go to stderr.
 
@@ -213,6 +241,10 @@ def read_dataset(
             from foon_asp.rules.measure import read_measures
 
             dataset = dataset.measured(read_measures(measures))
+        if stand_ins or stand_in_tables or similar:
+            from foon_asp.standins.table_file import read_stand_ins
+
+            dataset = dataset.standing_in(read_stand_ins(stand_in_tables, similar, dataset.utensils))
     context = click.get_current_context(
         silent=True
     )  # a worker of a batch has none, and never closes the data

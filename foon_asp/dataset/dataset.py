@@ -25,6 +25,7 @@ from foon_asp.network import (
     FunctionalUnit,
     Network,
     ObjectNode,
+    StandInTable,
     UnitPrices,
     counted,
     pattern_at_level,
@@ -43,6 +44,7 @@ from foon_asp.problem import (
     container_rule,
     unrated_text,
 )
+from foon_asp.standins import with_stand_ins
 from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning
 from foon_asp.text.goal_name import entry_names, find_goal, listed_goal, listed_nodes
 from foon_asp.text.object_list import ListedObject, read_object_list
@@ -92,6 +94,7 @@ class Dataset:
     without changes. ``goals_from`` says what the entries were assumed from if no file lists goals.
     ``remarks`` are the assumptions made while reading, in words, and ``brief`` is a summary of them;
     ``has_kitchen`` says that a kitchen was given, even an empty one. ``measures`` are user measures, by name.
+    ``stand_ins`` is the table of stand-ins, ``None`` where there are none.
     """
 
     source: Source
@@ -107,6 +110,7 @@ class Dataset:
     brief: tuple[str, ...] = ()
     has_kitchen: bool = True
     measures: Mapping[str, Measure] = field(default_factory=dict)
+    stand_ins: StandInTable | None = None
 
     @classmethod
     def of(cls, data: Data, seconds: float = 0.0) -> Self:
@@ -286,6 +290,10 @@ class Dataset:
         """Return the same data with other user measures."""
         return replace(self, measures=measures)
 
+    def standing_in(self, table: StandInTable | None) -> "Dataset":
+        """Return the same data with stand-ins by a table, ``None`` for none."""
+        return replace(self, stand_ins=table)
+
     def varied(
         self,
         added: Collection[int],
@@ -397,6 +405,14 @@ class Dataset:
             source.amounts.units,
         )
 
+    def subject_with_stand_ins(self, goals: Sequence[int], containers: str, everything: bool) -> "Subject":
+        """Return the subject of a certificate about a network with the stand-ins for goals."""
+        from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
+
+        problem = self.problem(goals, containers, everything)
+        values = problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
+        return Subject(problem.network, *values, stand_ins=self.stand_ins)
+
     def named_goals(self, names: Names) -> tuple[int, ...]:
         """Find goals that Python names, by id in the whole network, each once.
 
@@ -459,6 +475,9 @@ class Dataset:
         ``None`` that they last.
         """
         dataset = self.for_goals(goals)
+        if self.stand_ins is not None:
+            posed = ask(dataset.data, goals, containers, self, items)
+            return with_stand_ins(posed, self.stand_ins, everything)
         if everything:
             return ask(dataset.data, goals, containers, self, items)
         # items of the stock may run out, and then have to be made
@@ -477,7 +496,7 @@ class Dataset:
         since the items of the starting kitchen are listed.
         """
         cone = None
-        if items is None and self.has_kitchen:
+        if items is None and self.has_kitchen and self.stand_ins is None:
             kitchen = self.for_goals(goals).kitchen
             cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, first)
         if cone is None:

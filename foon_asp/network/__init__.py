@@ -16,6 +16,12 @@ from foon_asp.network.object_node import Relation as Relation
 from foon_asp.network.quoted_name import in_quotes as in_quotes
 from foon_asp.network.quoted_name import unquoted as unquoted
 from foon_asp.network.source import Source as Source
+from foon_asp.network.stand_in_table import STAND_IN as STAND_IN
+from foon_asp.network.stand_in_table import Difference as Difference
+from foon_asp.network.stand_in_table import Edit as Edit
+from foon_asp.network.stand_in_table import StandInTable as StandInTable
+from foon_asp.network.stand_in_table import spelled_alike as spelled_alike
+from foon_asp.network.stand_in_table import spelling_key as spelling_key
 from foon_asp.network.starting import StartingKitchen as StartingKitchen
 from foon_asp.network.starting import starting_kitchen as starting_kitchen
 from foon_asp.network.starting import starting_nodes as starting_nodes

@@ -14,8 +14,8 @@ from fractions import Fraction
 from functools import cached_property
 from heapq import heappop, heappush
 
-from foon_asp.bounds.cut import Cutter
-from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.hypergraph.cut import Cutter
+from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.plans.conditions import Counts, Landmark, Level, Measure, SumLimit
 from foon_asp.plans.count_model import CountModel
 from foon_asp.plans.flows import Flows

@@ -12,8 +12,8 @@ from fractions import Fraction
 from functools import cmp_to_key
 from typing import NamedTuple
 
-from foon_asp.bounds.exact_optimum import NowhereError, solve_exactly
-from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.hypergraph.exact_optimum import NowhereError, solve_exactly
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, times
 from foon_asp.plans.conditions import Condition, Landmark, Level, Measure
 from foon_asp.plans.count_bound import CountBound
 from foon_asp.plans.count_model import CountModel

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from foon_asp.bounds.highs_run import libraries, run, silent_highs
+from foon_asp.hypergraph.highs_run import libraries, run, silent_highs
 
 PARTS = (720720, 2**40)
 """Denominators of rounded weights; the first that suffices is used, as most weights are simple fractions."""

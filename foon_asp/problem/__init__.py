@@ -22,12 +22,14 @@ from foon_asp.problem.objective import Row as Row
 from foon_asp.problem.objective import levels as levels
 from foon_asp.problem.objective import multiplies as multiplies
 from foon_asp.problem.objective import parse_objectives as parse_objectives
+from foon_asp.problem.objective import with_dissimilarity as with_dissimilarity
 from foon_asp.problem.order import executable_order as executable_order
 from foon_asp.problem.problem import Changes as Changes
 from foon_asp.problem.problem import Measure as Measure
 from foon_asp.problem.problem import Names as Names
 from foon_asp.problem.problem import Origin as Origin
 from foon_asp.problem.problem import Problem as Problem
+from foon_asp.problem.problem import StandIns as StandIns
 from foon_asp.problem.problem import UnitPricesNamed as UnitPricesNamed
 from foon_asp.problem.problem import Unpriced as Unpriced
 from foon_asp.problem.problem import count_unpriced as count_unpriced

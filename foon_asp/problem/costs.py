@@ -74,6 +74,8 @@ class Costs:
             ValueError: if data are missing, as for ``success`` without rates, or for ``attempts`` with a
                 rate of 0.
         """
+        if objective not in self.measures and objective.row.needs is Known.STAND_INS:
+            return Fraction(0)  # there are none
         if objective not in self.measures:
             needs = objective.row.needs
             condition = " above 0" if needs is Known.RATES else ""
@@ -113,8 +115,25 @@ def tree_costs(
         except ZeroDivisionError:  # with a rate of 0, the expected number of attempts is infinite
             continue
         if row.multiplies:
-            measures[objective] = math.prod((figure**times for figure, times in figures), start=Fraction(1))
+            measures[objective] = _product([figure**times for figure, times in figures])
         else:
-            start = 0 if row.whole else Fraction(0)
-            measures[objective] = sum((figure * n for figure, n in figures), start=start) + items * row.item
+            totals = [figure * times for figure, times in figures]
+            total = sum(totals) if row.whole else _sum(totals)
+            measures[objective] = total + items * row.item
     return Costs(measures)
+
+
+def _product(figures: Collection[int | Fraction]) -> Fraction:
+    """Return the product of figures, reduced once: to reduce each partial product takes most of the time."""
+    numerator = math.prod(figure.numerator for figure in figures)
+    return Fraction(numerator, math.prod(figure.denominator for figure in figures))
+
+
+def _sum(figures: Iterable[int | Fraction]) -> Fraction:
+    """Return the sum of figures, of which most have one of few denominators."""
+    numerators: dict[int, int] = {}
+    for figure in figures:
+        denominator = figure.denominator
+        numerators[denominator] = numerators.get(denominator, 0) + figure.numerator
+    parts = (Fraction(numerator, denominator) for denominator, numerator in numerators.items())
+    return sum(parts, start=Fraction(0))

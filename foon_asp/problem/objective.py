@@ -16,6 +16,7 @@ class Known(StrEnum):
     RATES = "rates"
     PRICES = "prices"
     MEASURES = "measures"
+    STAND_INS = "stand-ins"
 
 
 class Measured(Protocol):
@@ -32,6 +33,10 @@ class Measured(Protocol):
     @property
     def price(self) -> Fraction:
         """The price, from 0; raises ``ValueError`` where it is not known."""
+
+    @property
+    def dissimilarity(self) -> Fraction:
+        """The dissimilarity of a stand-in, 0 of other units."""
 
     def measure(self, name: str) -> int | Fraction:
         """Return the cost by a user measure, from 0; raises ``ValueError`` for an unknown measure."""
@@ -78,7 +83,8 @@ class Objective(str, metaclass=_Listed):
     ``INPUTS_AND_INGREDIENTS``: fewest input object nodes and ingredients in them (the measure of a published
     heuristic). ``SUCCESS``: greatest product of success rates. ``KITCHEN``: fewest distinct kitchen items
     among the inputs needed. ``ATTEMPTS``: fewest expected executions of units, if a failed unit is repeated
-    until it succeeds. ``PRICE``: least sum of the prices of units.
+    until it succeeds. ``PRICE``: least sum of the prices of units. ``DISSIMILARITY``: least sum of the
+    dissimilarities of stand-ins.
 
     Iteration over the class yields these built-in objectives. :meth:`of_measure` returns the objective of a
     user measure. Each objective is a single object.
@@ -101,6 +107,7 @@ class Objective(str, metaclass=_Listed):
     KITCHEN: ClassVar["Objective"]
     ATTEMPTS: ClassVar["Objective"]
     PRICE: ClassVar["Objective"]
+    DISSIMILARITY: ClassVar["Objective"]
 
     def __new__(cls, name: str) -> "Objective":
         """Return the built-in objective of a name; raises ``ValueError`` for other names."""
@@ -189,6 +196,17 @@ _BUILT_IN = {
             "price",
             Row("price", "price", lambda unit: unit.price, needs=Known.PRICES, is_fact=True, whole=False),
         ),
+        Objective.of_row(
+            "dissimilarity",
+            Row(
+                "dissimilarity",
+                "dissimilarity of stand-ins",
+                lambda unit: unit.dissimilarity,
+                needs=Known.STAND_INS,
+                is_fact=True,
+                whole=False,
+            ),
+        ),
     )
 }
 for _objective in _BUILT_IN.values():
@@ -220,6 +238,11 @@ def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tu
             raise UserError(f"the objective {name!r} is listed twice")
         objectives.append(objective)
     return tuple(objectives)
+
+
+def with_dissimilarity(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:
+    """Return the list for a problem with stand-ins: dissimilarity is added as the first, unless listed."""
+    return objectives if Objective.DISSIMILARITY in objectives else (Objective.DISSIMILARITY, *objectives)
 
 
 def levels(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:

@@ -13,11 +13,13 @@ from typing import NamedTuple, Protocol
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import (
+    STAND_IN,
     Amounts,
     FunctionalUnit,
     Network,
     ObjectNode,
     Source,
+    StandInTable,
     TaskTree,
     UnitAmounts,
     UnitPrices,
@@ -53,6 +55,17 @@ class Unpriced(NamedTuple):
     source: Source
 
 
+class StandIns(NamedTuple):
+    """What the stand-ins of a network are made by.
+
+    ``table`` has their prices. ``nearest`` says that the network has only those that a best tree by
+    dissimilarity can have, and not every pair of nodes that the table has a price for.
+    """
+
+    table: StandInTable
+    nearest: bool
+
+
 class Measure(Protocol):
     """A user measure: rules that assign a cost to each unit."""
 
@@ -62,7 +75,7 @@ class Measure(Protocol):
 
     @property
     def text(self) -> str:
-        """The rules."""
+        """The rules; empty for costs that are known without any."""
 
     @property
     def place(self) -> str:
@@ -126,7 +139,8 @@ class Problem:
     variation needs its own. ``items`` is the model in which items are used up; ``None`` if they last.
     ``starting`` says that no kitchen is named, so that all nodes are available that no unit makes out of
     others. Rates that lack a motion of the network are ignored, and ``unrated`` is the error that lists the
-    missing ones. ``amounts`` are how many of a node units take and make; they count where items are used up.
+    missing ones. ``stand_ins`` is what the stand-ins of the network are made by, ``None`` where it has none.
+    ``amounts`` are how many of a node units take and make; they count where items are used up.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -164,6 +178,7 @@ class Problem:
     starting: bool = field(default=False, kw_only=True)
     unrated: str = field(default="", kw_only=True)
     amounts: Amounts = field(default_factory=dict, kw_only=True)
+    stand_ins: StandIns | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         if not self.goals:
@@ -189,7 +204,8 @@ class Problem:
     @cached_property
     def whole(self) -> "Problem":
         """The same problem over the whole network: of a store, all of it is read."""
-        is_part = self.origin is not None and self.network.object_numbers
+        nearest = self.stand_ins is not None and self.stand_ins.nearest
+        is_part = self.network.object_numbers or nearest
         return self.origin.posed_whole(self) if self.origin is not None and is_part else self
 
     @property
@@ -260,6 +276,7 @@ class Problem:
     def conditions(self) -> str:
         """The conditions of every claim about this problem, in words: ``strict containers``."""
         text = conditions(self.containers, self.network.level, self.starting)
+        text += "" if self.stand_ins is None else ", stand-ins"
         return text if self.items is None else f"{text}, items used up"
 
     @cached_property
@@ -384,7 +401,7 @@ class Problem:
         """All properties that are compared for equality, except the network."""
         measures = {name: measure.text for name, measure in self.measures.items()}
         rules = self.containers, self.utensils, self.items, self.starting, self.amounts
-        values = self.rates, self.own_rates, self.unit_prices, measures, self.as_seen
+        values = self.rates, self.own_rates, self.unit_prices, measures, self.as_seen, self.stand_ins
         return self.kitchen, self.goals, *rules, *values
 
     def __repr__(self) -> str:
@@ -427,6 +444,15 @@ class Problem:
         if by_prices and self.unpriced:
             raise UserError(_unpriced_text(self.unpriced))
 
+    def has_stand_ins_for(self, objectives: Sequence[Objective]) -> bool:
+        """Return whether the stand-ins that a best tree by objectives can have are in the network.
+
+        Parameters:
+            objectives: The objectives, the most important first.
+        """
+        nearest = self.stand_ins is not None and self.stand_ins.nearest
+        return not nearest or tuple(objectives[:1]) == (Objective.DISSIMILARITY,)
+
     def rate(self, unit: int) -> Fraction:
         """Return the success rate of a unit: its own, or that of its motion.
 
@@ -463,6 +489,24 @@ class Problem:
         price = self.prices[unit]
         if price is None:
             raise ValueError(f"no price of unit {unit} is known")
+        return price
+
+    def dissimilarity(self, unit: int) -> Fraction:
+        """Return the dissimilarity of a stand-in, by the table; 0 of other units.
+
+        Parameters:
+            unit: The id of the unit.
+
+        Raises:
+            ValueError: if the table has no price of the stand-in.
+        """
+        network = self.network
+        if self.stand_ins is None or network.motions[unit] != STAND_IN:
+            return Fraction(0)
+        (serving,), (served,) = network.inputs[unit], network.outputs[unit]
+        price = self.stand_ins.table.dissimilarity(network.objects[serving], network.objects[served])
+        if price is None:
+            raise ValueError(f"the table has no price of unit {unit}")
         return price
 
     def measure(self, name: str, unit: int) -> int | Fraction:
@@ -550,6 +594,8 @@ class Problem:
         available = {Known.MEASURES} | ({Known.RATES} if self.rates is not None else set())
         if self.unit_prices is not None and all(self.prices[unit] is not None for unit in counts):
             available.add(Known.PRICES)
+        if self.stand_ins is not None:
+            available.add(Known.STAND_INS)
         user_objectives = map(Objective.of_measure, self.measures)
         return tree_costs({self.measured(u): n for u, n in counts.items()}, items, available, user_objectives)
 
@@ -609,6 +655,11 @@ class _MeasuredUnit(NamedTuple):
     def price(self) -> Fraction:
         """The price."""
         return self.problem.price(self.unit)
+
+    @property
+    def dissimilarity(self) -> Fraction:
+        """The dissimilarity of a stand-in."""
+        return self.problem.dissimilarity(self.unit)
 
     def measure(self, name: str) -> int | Fraction:
         """Return the cost by a user measure."""

@@ -1,12 +1,14 @@
 """What happens to copies of object nodes when a unit runs and items are used up, by docs/plans.md."""
 
 from collections import Counter
-from collections.abc import Mapping
-from functools import cache
+from collections.abc import Callable, Mapping
+from functools import cache, lru_cache, partial
 from typing import NamedTuple
 
-from foon_asp.network import FunctionalUnit, ObjectNode, UnitAmounts
-from foon_asp.problem import Fate, Problem, UsedUp, given_outputs, needed_inputs
+from foon_asp.network import Amounts, FunctionalUnit, Network, ObjectNode, UnitAmounts
+from foon_asp.problem import ContainerRule, Fate, Problem, UsedUp, given_outputs, needed_inputs
+
+_NO_AMOUNTS = UnitAmounts()
 
 
 class Execution(NamedTuple):
@@ -30,27 +32,9 @@ class Executions:
 
     def __init__(self, problem: Problem) -> None:
         self._problem, self._items = problem, problem.items or UsedUp()
-        self.of = cache(self._of)
-
-    def _of(self, unit: FunctionalUnit) -> Execution:
-        """Return preconditions, consumption and add effects of one execution of a unit."""
-        problem = self._problem
-        rules = problem.containers, problem.utensils, problem.network
-        taken, made = UnitAmounts() if problem.items is None else problem.amounts.get(unit, UnitAmounts())
-        preconditions = {node: taken.get(node, 1) for node in needed_inputs(unit, *rules)}
-        consumed: dict[ObjectNode, int] = {}
-        for node, amount in preconditions.items():
-            fate = self._items.fate(unit, node, problem.utensils)
-            if not fate.stays:
-                consumed[node] = amount
-            elif fate is Fate.OUTPUT and amount > made.get(node, 1):
-                consumed[node] = amount - made.get(node, 1)
-        added: dict[ObjectNode, int] = {}
-        for node in given_outputs(unit, *rules):
-            more = made.get(node, 1) - (taken.get(node, 1) if node in unit.inputs else 0)
-            if more > 0:
-                added[node] = more
-        return Execution(preconditions, consumed, added)
+        network = None if problem.network.level == 3 else problem.network
+        amounts = {} if problem.items is None else problem.amounts
+        self.of = _execution_of(problem.items, problem.containers, problem.utensils, network, amounts)
 
     def wanted(self) -> dict[ObjectNode, int]:
         """Return how many copies of each goal have to be there in the end."""
@@ -63,3 +47,51 @@ class Executions:
     def stock(self) -> Counter[ObjectNode]:
         """Return the initial number of copies of each consumable node."""
         return Counter({n: count for n, count in self._items.stock.items() if self._problem.at_hand(n)})
+
+
+def _execution_of(
+    items: UsedUp | None,
+    rule: ContainerRule,
+    utensils: frozenset[str],
+    network: Network | None,
+    amounts: Amounts,
+) -> Callable[[FunctionalUnit], Execution]:
+    """Return the function from a unit to one execution of it, which remembers what it returned.
+
+    ``network`` is that of the units, where its level is below 3.
+    """
+    if items is None and network is None:
+        return _by_the_rule(rule, utensils)
+    return cache(partial(_execution, items or UsedUp(), rule, utensils, network, amounts))
+
+
+@lru_cache(maxsize=4)
+def _by_the_rule(rule: ContainerRule, utensils: frozenset[str]) -> Callable[[FunctionalUnit], Execution]:
+    """Return a function as above, the same one for all trees that are compared or checked one by one."""
+    return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None, {}))
+
+
+def _execution(
+    items: UsedUp,
+    rule: ContainerRule,
+    utensils: frozenset[str],
+    network: Network | None,
+    amounts: Amounts,
+    unit: FunctionalUnit,
+) -> Execution:
+    """Return preconditions, consumption and add effects of one execution of a unit."""
+    taken, made = amounts.get(unit, _NO_AMOUNTS)
+    preconditions = {node: taken.get(node, 1) for node in needed_inputs(unit, rule, utensils, network)}
+    consumed: dict[ObjectNode, int] = {}
+    for node, amount in preconditions.items():
+        fate = items.fate(unit, node, utensils)
+        if not fate.stays:
+            consumed[node] = amount
+        elif fate is Fate.OUTPUT and amount > made.get(node, 1):
+            consumed[node] = amount - made.get(node, 1)
+    added: dict[ObjectNode, int] = {}
+    for node in given_outputs(unit, rule, utensils, network):
+        more = made.get(node, 1) - (taken.get(node, 1) if node in unit.inputs else 0)
+        if more > 0:
+            added[node] = more
+    return Execution(preconditions, consumed, added)

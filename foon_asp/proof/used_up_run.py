@@ -7,6 +7,7 @@ for, depth first.
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode
@@ -49,21 +50,47 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     if problem.network.level < 3:
         return UsedUpRun(None, proved=False)
     executions = Executions(problem)
+    endless = cache(executions.is_endless)
 
     def finite(copies: Mapping[ObjectNode, int]) -> dict[ObjectNode, int]:
-        return {node: n for node, n in copies.items() if not executions.is_endless(node)}
+        return {node: n for node, n in copies.items() if not endless(node)}
 
     steps = [Execution(*map(finite, executions.of(unit))) for unit in tree]
-    search = _OrderSearch(steps, executions.stock(), finite(executions.wanted()))
-    listed = search.listed()
+    stock, goals = executions.stock(), finite(executions.wanted())
+    listed = _shortage_as_listed(steps, stock, goals)
     if listed is None:
         return UsedUpRun(tuple(range(len(steps))))
+    search = _OrderSearch(steps, stock, goals)
     overdrawn = search.overdrawn()
     if overdrawn is not None:
         return UsedUpRun(None, overdrawn)
     order = search.order()
     shortage = None if order else search.dead_end or listed
     return UsedUpRun(order, shortage, order is not None or search.looks_left > 0)
+
+
+def _shortage_as_listed(
+    steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
+) -> Shortage | None:
+    """Return the copy that is missing when the steps are done as listed; ``None`` where they run."""
+    copies, consumers = dict(stock), dict[ObjectNode, list[int]]()
+
+    def missing(step: int | None, asked: Mapping[ObjectNode, int]) -> Shortage | None:
+        for node, amount in asked.items():
+            if copies.get(node, 0) < amount:
+                return Shortage(step, node, tuple(consumers.get(node, ())), amount)
+        return None
+
+    for step, (preconditions, consumes, adds) in enumerate(steps):
+        shortage = missing(step, preconditions)
+        if shortage is not None:
+            return shortage
+        for node, amount in consumes.items():
+            copies[node] -= amount
+            consumers.setdefault(node, []).append(step)
+        for node, amount in adds.items():
+            copies[node] = copies.get(node, 0) + amount
+    return missing(None, goals)
 
 
 class _OrderSearch:
@@ -91,24 +118,6 @@ class _OrderSearch:
             for node, read in _reads(waiting):
                 self._readers[node] += 1
                 self._most_read[node] = max(self._most_read[node], read)
-
-    def listed(self) -> Shortage | None:
-        """Return the copy that is missing when the steps are done as listed; ``None`` where they run."""
-        copies, consumers = self._copies.copy(), dict[ObjectNode, list[int]]()
-
-        def missing(step: int | None, asked: Mapping[ObjectNode, int]) -> Shortage | None:
-            node = next((node for node, n in asked.items() if copies[node] < n), None)
-            return None if node is None else Shortage(step, node, tuple(consumers.get(node, ())), asked[node])
-
-        for step, (preconditions, consumes, adds) in enumerate(self._steps):
-            shortage = missing(step, preconditions)
-            if shortage is not None:
-                return shortage
-            copies.subtract(consumes)
-            copies.update(adds)
-            for node in consumes:
-                consumers.setdefault(node, []).append(step)
-        return missing(None, self._goals)
 
     def overdrawn(self) -> Shortage | None:
         """Return the first copy that is missing in every order, as more are used up than there ever are."""

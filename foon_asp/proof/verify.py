@@ -27,12 +27,23 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
-from foon_asp.network import Amounts, Network, UnitPrices, node_at_level
+from foon_asp.network import STAND_IN, Amounts, Network, StandInTable, UnitPrices, node_at_level
 from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
 from foon_asp.proof.ruled import Limit, Ruled
+from foon_asp.proof.stand_ins import Claim as StandInClaim
+from foon_asp.proof.stand_ins import Makes, price_of, stand_in_fault, stand_in_prices
 
 _NOTHING = "nothing"  # what a tree that is not there is measured by
-OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "attempts", "price")
+OBJECTIVES = (
+    "units",
+    "inputs",
+    "inputs+ingredients",
+    "success",
+    "kitchen",
+    "attempts",
+    "price",
+    "dissimilarity",
+)
 
 KEYS = frozenset(
     (
@@ -77,7 +88,8 @@ class Subject(NamedTuple):
     """The data that a certificate is about; ``kitchen`` are object node ids.
 
     ``stated`` are digests by name that are not computed from the other fields; those named in ``trusted``
-    were never computed. ``amounts`` count in plans, whose certificates state them.
+    were never computed. ``stand_ins`` is the table of the stand-ins that the network has, ``None`` without.
+    ``amounts`` count in plans, whose certificates state them.
     """
 
     network: Network
@@ -88,6 +100,7 @@ class Subject(NamedTuple):
     stated: Mapping[str, str] = MappingProxyType({})
     trusted: tuple[str, ...] = ()
     amounts: Amounts = MappingProxyType({})
+    stand_ins: StandInTable | None = None
 
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
         """Return the SHA-256 digests that a certificate of it names; ids mean nothing without the network's.
@@ -95,9 +108,20 @@ class Subject(NamedTuple):
         Digests in ``stated`` are not computed. The digest of sources covers only the places that the rules
         look at.
         """
+        return {
+            name: self.stated.get(name) or _digest(value()) for name, value in self._described(rules).items()
+        }
+
+    def described(self, rules: Iterable[Rule] = ()) -> str:
+        """Return the values of the digests by name, as canonical JSON: all that a certificate depends on."""
+        return canonical({name: value() for name, value in self._described(rules).items()})
+
+    def _described(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
         network, rates, prices = self.network, self.rates, self.prices
         places = [looked for rule in rules if (looked := looked_at(rule, network)) is not None]
-        values: dict[str, Callable[[], object]] = {
+        table = self.stand_ins
+        return {
+            **({} if table is None else {"stand-ins": lambda: stand_in_prices(table)}),
             "network": lambda: _described(network),
             "kitchen": lambda: sorted(self.kitchen),
             "rates": lambda: rates and sorted([motion, str(rate)] for motion, rate in rates.items()),
@@ -105,7 +129,6 @@ class Subject(NamedTuple):
             "prices": lambda: prices and _stated(prices, network.detailed or network),
             "sources": lambda: places or None,
         }
-        return {name: self.stated.get(name) or _digest(value()) for name, value in values.items()}
 
 
 class RefusedError(Exception):
@@ -292,6 +315,7 @@ class Check:
         self.goals = tuple(_goal(goal, network) for goal in read_list(certificate["goals"]))
         require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
+        self.stand_ins = subject.stand_ins
         self.rules, self.claimed = rules, 0
         each_price = cache(lambda: self._each_price(prices))
         question = Question(
@@ -316,6 +340,19 @@ class Check:
         self.cuts = [frozenset(read_numbers(cut, nodes)) for cut in read_list(certificate["cuts"])]
         self.members = [frozenset(self._members(cut)) for cut in self.cuts]
         self.met: set[int] = set()  # the cuts that the proof uses
+
+    def _check_stand_ins(self, least: Fraction | None) -> None:
+        """Check the stand-ins of the network against their table.
+
+        ``least`` is the dissimilarity that no tree is claimed to fall below, ``None`` where no tree exists.
+        """
+        if self.stand_ins is None:
+            return
+        by_dissimilarity = self.objectives[:1] in {(), ("dissimilarity",)} and not self.rules
+        claim = StandInClaim(by_dissimilarity, least if by_dissimilarity else None)
+        makes = Makes(self.kitchen, self.needs, self.gives)
+        wrong = stand_in_fault(self.network, self.stand_ins, makes, self.goals, claim)
+        require(wrong is None, f"{wrong}")
 
     def _measure(self, name: str, stated: Any) -> Trusted:
         """Read the stated costs of units by a measure."""
@@ -423,6 +460,7 @@ class Check:
             amount = bound
         else:
             raise RefusedError("expected the claim optimal, bound or infeasible")
+        self._check_stand_ins(None if claim == "infeasible" else amount.get((0, None), Fraction(0)))
         self._prove(proof, None if claim == "infeasible" else amount)
         require(len(self.met) == len(self.cuts), "a cut is not used by the proof")
         return Verified(
@@ -474,7 +512,7 @@ class Check:
                 figure = total.get((level, None), Fraction(0))
                 if max(figure.numerator, figure.denominator).bit_length() > _WRITTEN:
                     raise LimitError("what the tree costs is too long a number to be written")
-                sums = {"attempts", "price", *self.measures}
+                sums = {"attempts", "price", "dissimilarity", *self.measures}
                 costs.append(figure if objective in sums else int(figure))
         return costs
 
@@ -734,8 +772,8 @@ class Check:
             return Fraction(1)
         if objective == "attempts":
             return 1 / self.rate(member)
-        if objective == "price":
-            return self.prices[member]
+        if objective in {"price", "dissimilarity"}:
+            return self.prices[member] if objective == "price" else self._dissimilarity(member)
         if objective in self.measures:
             return self._measured(objective, member)
         require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
@@ -744,6 +782,15 @@ class Check:
         if objective == "inputs+ingredients":
             count += sum(len(network.objects[o].ingredients) for o in inputs)
         return Fraction(count)
+
+    def _dissimilarity(self, unit: int) -> Fraction:
+        """Return what a stand-in costs by the table, 0 for other units."""
+        network = self.network
+        if self.stand_ins is None or network.motions[unit] != STAND_IN:
+            return Fraction(0)
+        (serving,), (served,) = network.inputs[unit], network.outputs[unit]
+        # each has a price: they were held against the table
+        return price_of(self.stand_ins, network.objects[serving], network.objects[served]) or Fraction(0)
 
     def sign(self, amount: Amount) -> Fraction | int:
         """Return a number with the sign of an amount; the first objective that is not 0 decides."""

@@ -9,7 +9,7 @@ from foon_asp.asp.settings import Settings
 from foon_asp.dataset.items import require_contents
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
-from foon_asp.problem import ITEMS, Objective, Problem, UsedUp, parse_objectives
+from foon_asp.problem import ITEMS, Objective, Problem, UsedUp, parse_objectives, with_dissimilarity
 from foon_asp.questions.caller import caller
 from foon_asp.rules.constraint import Constraint, find_constraint, given_constraint
 
@@ -18,8 +18,13 @@ Objectives = str | Iterable[str]
 
 
 def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, ...]:
-    """Return parsed objectives; raises :class:`UserError` for one without its rates or prices."""
+    """Return parsed objectives; raises :class:`UserError` for one without its rates or prices.
+
+    With stand-ins, dissimilarity comes first, unless it is named.
+    """
     objectives = parse_objectives([names] if isinstance(names, str) else names, problem.measures)
+    if problem.stand_ins is not None:
+        objectives = with_dissimilarity(objectives)
     with reading():
         problem.require_known_for(objectives)
     return objectives
@@ -47,8 +52,14 @@ def given_constraints(constraints: Files) -> tuple[Constraint, ...]:
     return tuple(map(given_constraint, [constraints] if one else constraints))  # type: ignore[arg-type]
 
 
-def asked_with(problem: Problem, settings: Settings) -> Problem:
-    """Return the problem over all data if the settings have rules that may be about any unit."""
+def asked_with(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
+    """Return the problem over all data if the settings have rules that may be about any unit.
+
+    It then has all stand-ins, as it has unless only the best tree by ``objectives`` is asked for, and
+    dissimilarity is the first of them.
+    """
+    if not problem.has_stand_ins_for(objectives):
+        return whole(problem)
     from foon_asp.asp.assembly import need_whole_network  # noqa: PLC0415 (where there may be rules)
 
     return whole(problem) if need_whole_network(problem, settings) else problem

@@ -20,7 +20,7 @@ from foon_asp.dataset.paths import File
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof.verify import Subject
 from foon_asp.questions.answer import Answer, answered, answered_nearby
-from foon_asp.questions.arguments import reading, whole
+from foon_asp.questions.arguments import asked_with, reading, whole
 from foon_asp.questions.certificate_text import bound_text, certificate_lines, looked_at
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
@@ -43,7 +43,9 @@ def certified(
     with reading():
         subject = nearby.subject() if nearby is not None else _subject(problem) if plain else None
     if nearby is None:
-        answer = answered(whole(problem) if subject is None else problem, objectives, settings)
+        only_best = problem.stand_ins is not None and asked_with(problem, settings, objectives) is problem
+        complete = problem if only_best or subject is not None else whole(problem)
+        answer = answered(complete, objectives, settings)
         proved = answer.problem
     else:
         answer = answered_nearby(nearby, objectives, settings)

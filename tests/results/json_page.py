@@ -109,6 +109,13 @@ SECTIONS = (
             "trace plan.txt --goal ice --items used-up --format json",
         ),
     ),
+    Section(
+        "trace --state",
+        ("state",),
+        ("trace --state state.txt --goal ice --format json",),
+        files={"state.txt": "O→ice\nS→cubed\nS→in→[drinking glass]\n"},
+        depth=8,
+    ),
     Section("schedule", ("schedule", "durations"), note="[plans.md](plans.md#schedules) has an example."),
     Section(
         "view",

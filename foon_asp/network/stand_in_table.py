@@ -1,0 +1,187 @@
+"""The table of stand-ins: what it costs to use one object node in place of another."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from enum import StrEnum
+from fractions import Fraction
+from types import MappingProxyType
+from typing import NamedTuple
+
+from foon_asp.network.object_node import ObjectNode
+
+STAND_IN = "stand in"
+"""The motion of a unit that is a stand-in: its input is used in place of its output."""
+
+
+class Edit(StrEnum):
+    """A way in which a node that is used differs from the one that it serves for."""
+
+    WORD = "word"
+    """The same place or the same ingredients, by another word: ``on [plate]`` for ``in [plate]``."""
+    CONTAINER = "container"
+    """Something that it is in or on, more, fewer or another: ``in [bowl]`` for ``in [pot]``."""
+    MORE_STATE = "more state"
+    """A state that the other does not have."""
+    FEWER_STATE = "fewer state"
+    """A state that it lacks."""
+    MORE_INGREDIENT = "more ingredient"
+    """An ingredient that the other does not have."""
+    FEWER_INGREDIENT = "fewer ingredient"
+    """An ingredient that it lacks."""
+    CONTENTS = "other contents"
+    """Contents of which not more than half are in common: an empty bowl for a full one."""
+    SPELLING = "spelling"
+    """The same label in the plural, or with other blanks, hyphens or capitals: ``cherrytomatoes``."""
+    LABEL = "label"
+    """Another label, as a list of pairs has it."""
+    NODE = "node"
+    """Another object node, as a list of pairs has it."""
+
+
+class Difference(NamedTuple):
+    """One edit between two nodes: its kind, the parts of the served and of the serving node, and its price.
+
+    ``served`` and ``serving`` are texts, empty where that node lacks it.
+    """
+
+    edit: Edit
+    served: str
+    serving: str
+    price: Fraction
+
+
+Pairs = Mapping[tuple[str | ObjectNode, str | ObjectNode], Fraction | None]
+
+
+class StandInTable(NamedTuple):
+    """Prices of edits and of pairs of labels and nodes, all above 0; ``None`` stands for never.
+
+    ``edits`` has the price of each kind of edit; ``words`` those of single states and ingredients, by kind
+    and name, in place of the kind's. ``pairs`` are a label or node that serves, and one that is served. The
+    price of a pair of nodes is the whole price; that of a pair of labels is added to those of other edits.
+
+    Example:
+        >>> table = foon_asp.StandInTable.usual()
+        >>> on, in_ = map(foon_asp.parse_node, ("egg; on [plate]", "egg; in [plate]"))
+        >>> table.dissimilarity(on, in_), table.dissimilarity(on, foon_asp.parse_node("ham; on [plate]"))
+        (Fraction(1, 1), None)
+        >>> [(str(edit.edit), edit.served, edit.serving) for edit in table.differences(on, in_)]
+        [('word', 'in [plate]', 'on [plate]')]
+    """
+
+    edits: Mapping[Edit, Fraction | None]
+    words: Mapping[tuple[Edit, str], Fraction | None] = MappingProxyType({})
+    pairs: Pairs = MappingProxyType({})
+
+    @classmethod
+    def usual(cls) -> "StandInTable":
+        """Return the table that is used where no file changes it."""
+        return cls(dict(_EDITS), dict(_WORDS), {})
+
+    def dissimilarity(self, serving: ObjectNode, served: ObjectNode) -> Fraction | None:
+        """Return what it costs to use a node in place of another; ``None`` where it never stands in.
+
+        Parameters:
+            serving: The node that is used.
+            served: The node in whose place it is used, another one.
+        """
+        edits = self.differences(serving, served)
+        return None if edits is None else sum((edit.price for edit in edits), Fraction(0))
+
+    def differences(self, serving: ObjectNode, served: ObjectNode) -> tuple[Difference, ...] | None:
+        """Return the edits that add up to the dissimilarity; ``None`` where a node never stands in.
+
+        Parameters:
+            serving: The node that is used.
+            served: The node in whose place it is used, another one.
+        """
+        differences: list[Difference] = []
+        for edit, served_part, serving_part, price in self._edits(serving, served):
+            if price is None:
+                return None
+            differences.append(Difference(edit, served_part, serving_part, price))
+        return tuple(differences)
+
+    def price(self, edit: Edit, name: str) -> Fraction | None:
+        """Return the price of an edit of a single state or ingredient; ``None`` for never.
+
+        Parameters:
+            edit: The kind of the edit.
+            name: The state or ingredient.
+        """
+        word = edit, name
+        return self.words[word] if word in self.words else self.edits[edit]
+
+    def _edits(
+        self, serving: ObjectNode, served: ObjectNode
+    ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
+        if (serving, served) in self.pairs:
+            yield Edit.NODE, str(served), str(serving), self.pairs[serving, served]
+            return
+        labels = serving.label, served.label
+        if serving.label != served.label and labels not in self.pairs and spelled_alike(*labels):
+            yield Edit.SPELLING, served.label, serving.label, self.edits[Edit.SPELLING]
+        elif serving.label != served.label:
+            yield Edit.LABEL, served.label, serving.label, self.pairs.get(labels)
+        yield from self._of_contents(serving, served)
+        for state in sorted(served.states - serving.states):
+            yield Edit.FEWER_STATE, state, "", self.price(Edit.FEWER_STATE, state)
+        for state in sorted(serving.states - served.states):
+            yield Edit.MORE_STATE, "", state, self.price(Edit.MORE_STATE, state)
+        ours = sorted(served.relations - serving.relations)
+        theirs = sorted(serving.relations - served.relations)
+        for relation in list(ours):
+            other = next((same for same in theirs if same.object == relation.object), None)
+            if other is not None:
+                ours.remove(relation)
+                theirs.remove(other)
+                yield Edit.WORD, str(relation), str(other), self.edits[Edit.WORD]
+        for position in range(max(len(ours), len(theirs))):
+            texts = [str(side[position]) if position < len(side) else "" for side in (ours, theirs)]
+            yield Edit.CONTAINER, texts[0], texts[1], self.edits[Edit.CONTAINER]
+
+    def _of_contents(
+        self, serving: ObjectNode, served: ObjectNode
+    ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
+        if serving.contents == served.contents:
+            return
+        ours, theirs = Counter(served.ingredients), Counter(serving.ingredients)
+        if ours == theirs:
+            words = [" and ".join(contents.word for contents in node.contents) for node in (served, serving)]
+            yield Edit.WORD, words[0], words[1], self.edits[Edit.WORD]
+            return
+        common = (ours & theirs).total()
+        if 2 * common <= max(ours.total(), theirs.total()):
+            texts = ["; ".join(map(str, node.contents)) for node in (served, serving)]
+            yield Edit.CONTENTS, texts[0], texts[1], self.edits[Edit.CONTENTS]
+        for item in sorted((ours - theirs).elements()):
+            yield Edit.FEWER_INGREDIENT, item, "", self.price(Edit.FEWER_INGREDIENT, item)
+        for item in sorted((theirs - ours).elements()):
+            yield Edit.MORE_INGREDIENT, "", item, self.price(Edit.MORE_INGREDIENT, item)
+
+
+def spelled_alike(label: str, other: str) -> bool:
+    """Return whether two labels differ only in number, blanks, hyphens and capitals."""
+    return spelling_key(label) == spelling_key(other)
+
+
+def spelling_key(label: str) -> str:
+    """Return what labels have in common that differ only in number, blanks, hyphens and capitals."""
+    letters = label.casefold().replace(" ", "").replace("-", "").replace("_", "")
+    for plural, singular in (("ies", "y"), ("oes", "o"), ("s", "")):
+        if letters.endswith(plural) and len(letters) > len(plural) + 2 and not letters.endswith("ss"):
+            return letters.removesuffix(plural) + singular
+    return letters
+
+
+_EDITS: Mapping[Edit, Fraction | None] = {
+    Edit.SPELLING: Fraction(1),
+    Edit.WORD: Fraction(1),
+    Edit.CONTAINER: Fraction(2),
+    Edit.MORE_STATE: Fraction(3),
+    Edit.FEWER_STATE: Fraction(4),
+    Edit.MORE_INGREDIENT: Fraction(3),
+    Edit.FEWER_INGREDIENT: Fraction(5),
+    Edit.CONTENTS: None,
+}
+_WORDS: Mapping[tuple[Edit, str], Fraction | None] = {}

@@ -1,0 +1,251 @@
+"""Are the stand-ins of a network those of its table? Worked out from the table alone, for certificates.
+
+docs/stand-ins.md has the definition, and the argument why no other stand-in can be in a best tree. Nothing of
+what makes stand-ins is used here: the prices are computed once more.
+"""
+
+from collections import Counter, deque
+from collections.abc import Callable, Collection, Iterator, Sequence
+from fractions import Fraction
+from heapq import heapify, heappop, heappush
+from typing import NamedTuple
+
+from foon_asp.network import STAND_IN, Edit, Network, ObjectNode, StandInTable
+
+Sides = Callable[[int], Collection[int | None]]
+
+
+class Makes(NamedTuple):
+    """What is in the kitchen, and what each unit needs and makes, by id; ``None`` is not in the network."""
+
+    kitchen: Collection[int]
+    needs: Sides
+    gives: Sides
+
+
+class Claim(NamedTuple):
+    """What is claimed: ``by_dissimilarity`` first, and that no tree has less of it than ``bound``.
+
+    ``bound`` is ``None`` where there is no tree, or nothing is said of dissimilarity.
+    """
+
+    by_dissimilarity: bool
+    bound: Fraction | None
+
+
+def stand_in_prices(table: StandInTable) -> list[list[str]]:
+    """Return all that a claim about stand-ins depends on, in order."""
+    edits = [[str(edit), str(price)] for edit, price in table.edits.items()]
+    words = [[str(edit), word, str(price)] for (edit, word), price in table.words.items()]
+    kinds = {str: "label", ObjectNode: "node"}
+    pairs = [
+        [kinds[type(serving)], str(serving), str(served), str(price)]
+        for (serving, served), price in table.pairs.items()
+    ]
+    return sorted((*edits, *words, *pairs))
+
+
+def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fraction | None:
+    """Return the price of a stand-in, ``None`` where the table has none; all edits are priced one by one."""
+    if (serving, served) in table.pairs:
+        return table.pairs[serving, served]
+    prices: list[Fraction | None] = []
+    labels = serving.label, served.label
+    if serving.label != served.label:
+        same_word = labels not in table.pairs and _bare(serving.label) == _bare(served.label)
+        prices.append(table.edits[Edit.SPELLING] if same_word else table.pairs.get(labels))
+    items, other_items = Counter(serving.ingredients), Counter(served.ingredients)
+    if items != other_items and max(items.total(), other_items.total()) >= 2 * (items & other_items).total():
+        prices.append(table.edits[Edit.CONTENTS])
+    if serving.contents != served.contents and items == other_items:
+        prices.append(table.edits[Edit.WORD])
+    named = [
+        *((Edit.MORE_INGREDIENT, item) for item in (items - other_items).elements()),
+        *((Edit.FEWER_INGREDIENT, item) for item in (other_items - items).elements()),
+        *((Edit.MORE_STATE, state) for state in serving.states - served.states),
+        *((Edit.FEWER_STATE, state) for state in served.states - serving.states),
+    ]
+    prices += [table.words.get(word, table.edits[word[0]]) for word in named]
+    places = Counter(relation.object for relation in serving.relations - served.relations)
+    other_places = Counter(relation.object for relation in served.relations - serving.relations)
+    other_word = sum((places & other_places).values())
+    moved = max(sum((places - other_places).values()), sum((other_places - places).values()))
+    prices += [table.edits[Edit.WORD]] * other_word + [table.edits[Edit.CONTAINER]] * moved
+    stated = [price for price in prices if price is not None]
+    return sum(stated, Fraction(0)) if len(stated) == len(prices) else None
+
+
+def stand_in_fault(
+    network: Network, table: StandInTable, makes: Makes, goals: Sequence[int], claim: Claim
+) -> str | None:
+    """Return what is wrong with the stand-ins of a network; ``None`` if they are those of its table.
+
+    Each has to have a price, and to serve a node that cannot be made without stand-ins. None may be missing,
+    except, where ``claim`` is by dissimilarity, those that cost more than a free node in the same place, or
+    lead to more than ``claim.bound``.
+    """
+    objects = network.objects
+    listed: set[tuple[int, int]] = set()
+    for unit, motion in enumerate(network.motions):
+        if motion == STAND_IN:
+            (serving,), (served,) = network.inputs[unit], network.outputs[unit]
+            listed.add((serving, served))
+    free = _made(network, makes)
+    for serving, served in listed:
+        price = price_of(table, objects[serving], objects[served])
+        if price is None or price <= 0:
+            return f"{objects[serving]} does not stand in for {objects[served]} by the table"
+        if served in free:
+            return f"a stand-in serves {objects[served]}, which can be made"
+    servers = _Servers(network, table, free, claim.by_dissimilarity)
+    if claim.by_dissimilarity:
+        lacking = _needed(network, goals, free, makes)
+        least = _least(network, servers, goals, makes)
+    else:
+        lacking, least = set(range(len(objects))) - free, {}
+    for served in lacking:
+        for serving, price in servers.of(served).items():
+            if (serving, served) in listed:
+                continue
+            before = Fraction(0) if serving in free or claim.bound is None else least.get(serving)
+            if before is not None and (claim.bound is None or price + before <= claim.bound):
+                return f"a stand-in is missing: {objects[serving]} for {objects[served]}"
+    return None
+
+
+def _bare(label: str) -> str:
+    """Return a label as a single word in the singular."""
+    word = "".join(letter for letter in label.casefold() if letter not in " -_")
+    if len(word) > 5 and word[-3:] in {"ies", "oes"}:
+        return word[:-3] + {"i": "y", "o": "o"}[word[-3]]
+    plural = word[-1:] == "s" and word[-2:] != "ss"
+    return word[:-1] if plural and len(word) > 3 else word
+
+
+class _Servers:
+    """The nodes that serve for other ones; of the ``nearest``, those that cost no more than a free one."""
+
+    def __init__(self, network: Network, table: StandInTable, free: Collection[int], nearest: bool) -> None:
+        self.free, self.nearest = free, nearest
+        self._network, self._table = network, table
+        self._by_label: dict[str, list[int]] = {}
+        for o, node in enumerate(network.objects):
+            self._by_label.setdefault(node.label, []).append(o)
+        self._spelled: dict[str, list[int]] = {}
+        for label, nodes in self._by_label.items():
+            self._spelled.setdefault(_bare(label), []).extend(nodes)
+        self._of: dict[int, dict[int, Fraction]] = {}
+
+    def of(self, served: int) -> dict[int, Fraction]:
+        """Return the serving nodes, by id, with their prices."""
+        if served not in self._of:
+            objects = self._network.objects
+            node = objects[served]
+            priced = {
+                serving: price
+                for serving in self._candidates(node)
+                if serving != served and (price := price_of(self._table, objects[serving], node)) is not None
+            }
+            cheapest = min((price for o, price in priced.items() if o in self.free), default=None)
+            if cheapest is not None and self.nearest:
+                priced = {o: price for o, price in priced.items() if price <= cheapest}
+            self._of[served] = priced
+        return self._of[served]
+
+    def _candidates(self, node: ObjectNode) -> Iterator[int]:
+        yield from self._spelled[_bare(node.label)]
+        for serving, served in self._table.pairs:
+            if served == node.label and isinstance(serving, str):
+                yield from self._by_label.get(serving, ())
+            elif served == node and isinstance(serving, ObjectNode):
+                number = self._network.object_id(serving)
+                if number is not None:
+                    yield number
+
+
+def _least(network: Network, servers: _Servers, goals: Sequence[int], makes: Makes) -> dict[int, Fraction]:
+    """Return a lower bound on the dissimilarity of what makes each node that is not free; others have none.
+
+    A unit is at least as dear as the dearest of its inputs, a stand-in adds its price.
+    """
+    makers: dict[int, list[set[int]]] = {}
+    stack = [goal for goal in goals if goal not in servers.free]
+    while stack:
+        made = stack.pop()
+        if made in makers:
+            continue
+        makers[made] = [
+            {o for o in makes.needs(unit) if o is not None} - {*servers.free}
+            for unit in network.producers[made]
+            if network.motions[unit] != STAND_IN and made in makes.gives(unit)
+        ]
+        stack += (o for inputs in makers[made] for o in inputs)
+        stack += (o for o in servers.of(made) if o not in servers.free)
+    served_by: dict[int, list[tuple[int, Fraction]]] = {}
+    waiting: dict[int, list[tuple[int, set[int]]]] = {}
+    heap: list[tuple[Fraction, int]] = []
+    for made, units in makers.items():
+        for serving, price in servers.of(made).items():
+            if serving in servers.free:
+                heap.append((price, made))
+            else:
+                served_by.setdefault(serving, []).append((made, price))
+        for inputs in units:
+            for o in tuple(inputs):
+                waiting.setdefault(o, []).append((made, inputs))
+    heapify(heap)
+    least: dict[int, Fraction] = {}
+    while heap:
+        cost, o = heappop(heap)
+        if o in least:
+            continue
+        least[o] = cost
+        for made, price in served_by.get(o, ()):
+            heappush(heap, (cost + price, made))
+        for made, inputs in waiting.get(o, ()):
+            inputs.discard(o)
+            if not inputs:
+                heappush(heap, (cost, made))
+    return least
+
+
+def _made(network: Network, makes: Makes) -> set[int]:
+    """Return the nodes that can be made from the kitchen without stand-ins."""
+    units = [unit for unit, motion in enumerate(network.motions) if motion != STAND_IN]
+    needs, gives = makes.needs, makes.gives
+    waiting = {unit: {o for o in needs(unit) if o is not None} for unit in units}
+    consumers: dict[int, list[int]] = {}
+    for unit, inputs in waiting.items():
+        for o in inputs:
+            consumers.setdefault(o, []).append(unit)
+    made: set[int] = set()
+    queue = deque(makes.kitchen)
+    for unit, inputs in waiting.items():
+        if not inputs:
+            queue.extend(o for o in gives(unit) if o is not None)
+    while queue:
+        o = queue.popleft()
+        if o in made:
+            continue
+        made.add(o)
+        for unit in consumers.get(o, ()):
+            waiting[unit].discard(o)
+            if not waiting[unit]:
+                queue.extend(output for output in gives(unit) if output is not None)
+    return made
+
+
+def _needed(network: Network, goals: Sequence[int], free: Collection[int], makes: Makes) -> set[int]:
+    """Return the nodes that a tree can need although they cannot be made without stand-ins."""
+    needed = {goal for goal in goals if goal not in free}
+    stack = list(needed)
+    while stack:
+        served = stack.pop()
+        for unit in network.producers[served]:
+            if served not in makes.gives(unit):
+                continue
+            for o in makes.needs(unit):
+                if o is not None and o not in free and o not in needed:
+                    needed.add(o)
+                    stack.append(o)
+    return needed

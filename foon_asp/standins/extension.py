@@ -1,0 +1,186 @@
+"""A problem with stand-ins: units that use an available object node in place of one that nothing makes."""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from heapq import heappop, heappush
+from typing import NamedTuple
+
+from foon_asp.errors import UserError
+from foon_asp.network import STAND_IN, Network, Source, StandInTable, UnitPrices
+from foon_asp.problem import Problem, StandIns, reach
+from foon_asp.standins.node_prices import NodePrices
+
+_SOURCE = Source("stand-ins", 1)
+
+Pair = tuple[int, int]  # a served and a serving node, by id
+
+
+def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = False) -> Problem:
+    """Return a problem whose network also has stand-ins, each a unit with one input and one output.
+
+    A stand-in uses one node in place of another that cannot be made from the kitchen. With ``everything``,
+    each pair of nodes is there that the table has a price for, and otherwise those that a best tree by
+    dissimilarity can have (docs/stand-ins.md has the argument).
+
+    Raises:
+        UserError: below level 3, where items are used up, or if a unit has the motion of stand-ins.
+    """
+    network = problem.network
+    if network.level < 3:
+        raise UserError(f"found level {network.level}, expected level 3: stand-ins compare whole nodes")
+    if problem.items is not None:
+        raise UserError("stand-ins are not built for items that are used up (--items used-up)")
+    if STAND_IN in network.different_motions:
+        raise UserError(f"a unit has the motion {STAND_IN!r}, which is that of stand-ins: rename it")
+    prices, available = NodePrices(network, table), reach(problem).available
+    if everything:
+        lacking = (o for o in range(len(network.objects)) if not available[o])
+        pairs = [(served, serving) for served in lacking for serving in prices.of(served)]
+    else:
+        pairs = _Nearest(problem, prices, available).pairs()
+    unit_prices = problem.unit_prices
+    if unit_prices is not None:
+        unit_prices = UnitPrices({**unit_prices.motions, STAND_IN: Fraction(0)}, unit_prices.units)
+    return replace(
+        problem,
+        network=_extended(network, sorted(pairs)),
+        rates=None if problem.rates is None else {**problem.rates, STAND_IN: Fraction(1)},
+        unit_prices=unit_prices,
+        stand_ins=StandIns(table, nearest=not everything),
+    )
+
+
+def _extended(network: Network, pairs: Sequence[Pair]) -> Network:
+    """Return a network with a unit after all others for each pair of a served and a serving node."""
+    keys = {
+        (STAND_IN, frozenset((serving,)), frozenset((served,))): unit
+        for unit, (served, serving) in enumerate(pairs, len(network))
+    }
+    return replace(
+        network,
+        motions=(*network.motions, *(STAND_IN for _ in pairs)),
+        inputs=(*network.inputs, *((serving,) for _, serving in pairs)),
+        outputs=(*network.outputs, *((served,) for served, _ in pairs)),
+        sources=(*network.sources, *((_SOURCE,) for _ in pairs)),
+        _unit_ids={**network._unit_ids, **keys},
+    )
+
+
+class _Nearest:
+    """The stand-ins that a best tree by dissimilarity can have.
+
+    ``available`` has a 1 for each node that can be made without stand-ins, by id.
+    """
+
+    def __init__(self, problem: Problem, prices: NodePrices, available: bytearray) -> None:
+        self._problem, self._prices, self._available = problem, prices, available
+        self._servers: dict[int, dict[int, int]] = {}
+
+    def pairs(self) -> list[Pair]:
+        """Return the pairs; without a tree, enough of them to show that there is none."""
+        goals = [goal for goal in self._problem.goals if not self._available[goal]]
+        needed = self._needed(goals)
+        steps = self._cheapest(needed, sum)
+        if steps.keys() >= {*goals}:
+            bound, least = self._dissimilarity(goals, steps), self._cheapest(needed, max)
+            for served in needed:
+                self._servers[served] = {
+                    serving: price
+                    for serving, price in self._servers[served].items()
+                    if self._available[serving] or (serving in least and least[serving].cost + price <= bound)
+                }
+            needed = self._needed(goals)
+        return [(served, serving) for served in needed for serving in self._servers[served]]
+
+    def _of(self, served: int) -> dict[int, int]:
+        """Return the nodes that serve for no more than the cheapest of the available ones."""
+        servers = self._servers.get(served)
+        if servers is None:
+            priced = self._prices.of(served)
+            least = min((price for o, price in priced.items() if self._available[o]), default=None)
+            servers = {o: price for o, price in priced.items() if least is None or price <= least}
+            self._servers[served] = servers
+        return servers
+
+    def _ways(self, served: int) -> Iterator[tuple[int, ...]]:
+        """Yield for each unit that makes a node what it needs that is not available."""
+        problem, available = self._problem, self._available
+        for unit in problem.makers[served]:
+            yield tuple([o for o in problem.needs[unit] if not available[o]])
+
+    def _needed(self, goals: Iterable[int]) -> set[int]:
+        """Return the nodes that a tree can need although they cannot be made without stand-ins."""
+        needed = set(goals)
+        stack = list(needed)
+        while stack:
+            served = stack.pop()
+            lacking = {o for o in self._of(served) if not self._available[o]}
+            lacking.update(o for way in self._ways(served) for o in way)
+            lacking -= needed
+            needed |= lacking
+            stack.extend(lacking)
+        return needed
+
+    def _cheapest(
+        self, needed: Iterable[int], combined: Callable[[Iterable[int]], int]
+    ) -> "dict[int, _Step]":
+        """Return the cheapest last step to each node, where a unit costs what its inputs do, combined.
+
+        By their ``max`` this is a lower bound on the dissimilarity of what makes a node (h_max; Bonet and
+        Geffner 2001), by their ``sum`` it leads to a good tree (h_add). Dijkstra's algorithm for such costs
+        is Knuth's (Information Processing Letters 6, 1977).
+        """
+        served_by: defaultdict[int, list[tuple[int, int]]] = defaultdict(list)
+        consumers: defaultdict[int, list[int]] = defaultdict(list)
+        ways: list[tuple[int, tuple[int, ...]]] = []  # what is made, and out of what
+        heap: list[tuple[int, int, tuple[int, ...], int]] = []
+        for served in needed:
+            for serving, price in self._of(served).items():
+                if self._available[serving]:
+                    heappush(heap, (price, served, (), price))
+                else:
+                    served_by[serving].append((served, price))
+            for way in self._ways(served):
+                for o in way:
+                    consumers[o].append(len(ways))
+                ways.append((served, way))
+        missing = [len(way) for _, way in ways]
+        steps: dict[int, _Step] = {}
+        while heap:
+            cost, made, made_of, price = heappop(heap)
+            if made in steps:
+                continue
+            steps[made] = _Step(cost, made_of, price)
+            for served, price in served_by[made]:
+                heappush(heap, (cost + price, served, (made,), price))
+            for number in consumers[made]:
+                missing[number] -= 1
+                if not missing[number]:
+                    served, way = ways[number]
+                    heappush(heap, (combined(steps[o].cost for o in way), served, way, 0))
+        return steps
+
+    def _dissimilarity(self, goals: Iterable[int], steps: "Mapping[int, _Step]") -> int:
+        """Return the dissimilarity of the tree that steps lead to, where each stand-in counts once."""
+        total, met = 0, set(goals)
+        stack = list(met)
+        while stack:
+            step = steps[stack.pop()]
+            total += step.price
+            stack.extend(o for o in step.made_of if o not in met)
+            met.update(step.made_of)
+        return total
+
+
+class _Step(NamedTuple):
+    """The last step to a node: a unit, or a stand-in of a ``price``.
+
+    ``cost`` is that of the step with all before it; ``made_of`` are the nodes it needs that are not
+    available.
+    """
+
+    cost: int
+    made_of: tuple[int, ...]
+    price: int

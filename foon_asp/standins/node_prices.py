@@ -1,0 +1,136 @@
+"""Prices of many stand-ins: as the table has them, but by integers and without what explains them."""
+
+import math
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from fractions import Fraction
+
+from foon_asp.network import Edit, Network, ObjectNode, Relation, StandInTable, spelled_alike, spelling_key
+
+
+class NodePrices:
+    """The nodes of a network that may stand in for others by a table, with their prices.
+
+    Prices are whole numbers; ``scale`` of them are 1.
+    """
+
+    def __init__(self, network: Network, table: StandInTable) -> None:
+        prices = (*table.edits.values(), *table.words.values(), *table.pairs.values())
+        self.scale = math.lcm(*(price.denominator for price in prices if price is not None))
+        self._objects, self._by_label = network.objects, network.by_label
+        self._edits = {edit: self._scaled(price) for edit, price in table.edits.items()}
+        self._words = {word: self._scaled(price) for word, price in table.words.items()}
+        self._pairs = {pair: self._scaled(price) for pair, price in table.pairs.items()}
+        self._labels: defaultdict[str, list[str]] = defaultdict(list)  # that serve a label
+        self._nodes: defaultdict[ObjectNode, list[int]] = defaultdict(list)  # that serve a node
+        for serving, served in table.pairs:
+            if isinstance(served, str) and isinstance(serving, str):
+                self._labels[served].append(serving)
+            elif isinstance(served, ObjectNode) and isinstance(serving, ObjectNode):
+                number = network.object_id(serving)
+                if number is not None:
+                    self._nodes[served].append(number)
+        self._spelled: defaultdict[str, list[str]] = defaultdict(list)  # labels that are spelled alike
+        for label in network.by_label:
+            self._spelled[spelling_key(label)].append(label)
+        self._of: dict[int, dict[int, int]] = {}
+
+    def _scaled(self, price: Fraction | None) -> int | None:
+        return None if price is None else int(price * self.scale)
+
+    def of(self, served: int) -> dict[int, int]:
+        """Return the nodes that may serve in place of one, by id, with their prices."""
+        servers = self._of.get(served)
+        if servers is None:
+            servers = self._of[served] = dict(self._priced(served))
+        return servers
+
+    def _priced(self, served: int) -> Iterator[tuple[int, int]]:
+        objects, by_label = self._objects, self._by_label
+        node = objects[served]
+        labels = (*self._spelled[spelling_key(node.label)], *self._labels.get(node.label, ()))
+        nodes = dict.fromkeys(o for label in labels for o in by_label.get(label, ()))
+        nodes |= dict.fromkeys(self._nodes.get(node, ()))
+        for serving in nodes:
+            if serving != served:
+                price = self.between(objects[serving], node)
+                if price is not None:
+                    yield serving, price
+
+    def between(self, serving: ObjectNode, served: ObjectNode) -> int | None:
+        """Return the price of using one node in place of another, ``None`` where it never stands in."""
+        if self._pairs and (serving, served) in self._pairs:
+            return self._pairs[serving, served]
+        total = 0
+        label, states, relations, contents = serving
+        served_label, served_states, served_relations, served_contents = served
+        if label != served_label:
+            listed = (label, served_label) in self._pairs or not spelled_alike(label, served_label)
+            price = self._pairs.get((label, served_label)) if listed else self._edits[Edit.SPELLING]
+            if price is None:
+                return None
+            total += price
+        if contents != served_contents:
+            price = self._of_contents(serving.ingredients, served.ingredients)
+            if price is None:
+                return None
+            total += price
+        if states != served_states:
+            for edit, names in (
+                (Edit.FEWER_STATE, served_states - states),
+                (Edit.MORE_STATE, states - served_states),
+            ):
+                for name in names:
+                    price = self._word(edit, name)
+                    if price is None:
+                        return None
+                    total += price
+        if relations != served_relations:
+            price = self._of_relations(relations, served_relations)
+            if price is None:
+                return None
+            total += price
+        return total
+
+    def _word(self, edit: Edit, name: str) -> int | None:
+        price = self._words.get((edit, name), -1)
+        return self._edits[edit] if price == -1 else price
+
+    def _of_contents(self, ours: tuple[str, ...], theirs: tuple[str, ...]) -> int | None:
+        """Return the price of ingredients of the serving and of the served node, which differ somehow."""
+        if ours == theirs:
+            return self._edits[Edit.WORD]
+        total = 0
+        larger = max(len(ours), len(theirs))
+        if 2 * min(len(ours), len(theirs)) <= larger:
+            price = self._edits[Edit.CONTENTS]
+            if price is None:
+                return None
+            total = price
+        surplus, lacking = Counter(ours), Counter(theirs)
+        common = surplus & lacking
+        if not total and 2 * common.total() <= larger:
+            price = self._edits[Edit.CONTENTS]
+            if price is None:
+                return None
+            total = price
+        for edit, items in (
+            (Edit.MORE_INGREDIENT, surplus - common),
+            (Edit.FEWER_INGREDIENT, lacking - common),
+        ):
+            for name, count in items.items():
+                price = self._word(edit, name)
+                if price is None:
+                    return None
+                total += price * count
+        return total
+
+    def _of_relations(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
+        surplus = Counter(relation.object for relation in ours - theirs)
+        lacking = Counter(relation.object for relation in theirs - ours)
+        same = (surplus & lacking).total()
+        moved = max(surplus.total(), lacking.total()) - same
+        word, container = self._edits[Edit.WORD], self._edits[Edit.CONTAINER]
+        if (same and word is None) or (moved and container is None):
+            return None
+        return same * (word or 0) + moved * (container or 0)

@@ -1,0 +1,89 @@
+"""Files of stand-ins: prices of edits, and of pairs of labels or object nodes."""
+
+import re
+from collections.abc import Collection, Iterable, Sequence
+from fractions import Fraction
+from pathlib import Path
+
+from foon_asp.network import Edit, ObjectNode, StandInTable
+from foon_asp.text.line import LineError, NameKind
+from foon_asp.text.table import Row, Table
+from foon_asp.text.tables import stated_name
+
+_NEVER = "never"
+_NUMBER = re.compile(r"\d{1,6}(\.\d{1,3})?", re.ASCII)
+_NAMED = (Edit.MORE_STATE, Edit.FEWER_STATE, Edit.MORE_INGREDIENT, Edit.FEWER_INGREDIENT)
+_KINDS = (Edit.SPELLING, Edit.WORD, Edit.CONTAINER, *_NAMED, Edit.CONTENTS)
+
+# a pair that serves and is served, an edit, or an edit of one state or ingredient
+Entry = tuple[str | ObjectNode, str | ObjectNode] | Edit | tuple[Edit, str]
+
+
+def read_stand_ins(
+    files: Iterable[Path], similar: Iterable[Path] = (), utensils: Collection[str] = ()
+) -> StandInTable:
+    """Return the usual table with the changes of files; a later file takes precedence.
+
+    The lexicons ``similar`` come before all ``files``; what they list of the labels of ``utensils`` is left
+    out, since a tool or vessel stands in only where a file of stand-ins says so. Raises :class:`InputError`.
+    """
+    table = StandInTable.usual()
+    for file in similar:
+        pairs = (row for row in STAND_INS.rows(file) if isinstance(row.name, tuple))
+        table = _changed(table, [row for row in pairs if not _has_utensil(row.name, utensils)])
+    for file in files:
+        table = _changed(table, STAND_INS.rows(file))
+    return table
+
+
+def _has_utensil(entry: Entry, utensils: Collection[str]) -> bool:
+    labels = {name.label if isinstance(name, ObjectNode) else name for name in entry}
+    return not labels.isdisjoint(utensils)
+
+
+def _changed(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -> StandInTable:
+    edits, words, pairs = dict(table.edits), dict(table.words), dict(table.pairs)
+    for name, price, _ in rows:
+        if isinstance(name, Edit):
+            edits[name] = price
+        elif isinstance(name[0], Edit):
+            words[name[0], str(name[1])] = price
+        else:
+            pairs[name[0], name[1]] = price
+    return StandInTable(edits, words, pairs)
+
+
+def _row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
+    served, tab, written = value.rpartition("\t")
+    price = _price(written.strip(), column + len(value) - len(written))
+    if not tab:
+        return _edit(name), price
+    serving_name, served_name = stated_name(name), stated_name(served)
+    if isinstance(serving_name, str) is not isinstance(served_name, str):
+        raise LineError(column, "a label and an object node", ("two labels", "two object nodes"))
+    if serving_name == served_name:
+        raise LineError(column, "one name twice", ("the name of what it is used for",))
+    return (serving_name, served_name), price
+
+
+def _edit(name: str) -> Edit | tuple[Edit, str]:
+    kind, colon, word = (text.strip() for text in name.partition(":"))
+    if kind not in (_NAMED if colon else _KINDS) or (colon and not word):
+        kinds = ", ".join(_KINDS)
+        raise LineError(1, repr(name), (f"two names and a price between tabs, or a kind of edit ({kinds})",))
+    return (Edit(kind), word) if colon else Edit(kind)
+
+
+def _price(written: str, column: int) -> Fraction | None:
+    if written == _NEVER:
+        return None
+    price = Fraction(written) if _NUMBER.fullmatch(written) else Fraction(0)
+    if not price:
+        raise LineError(column, repr(written[:40]), ("a number above 0, such as 2 or 0.5", _NEVER))
+    return price
+
+
+STAND_INS: Table[Entry, Fraction | None] = Table(
+    "stand-in", NameKind.OBJECT, "a number or never", _row, "a second price for {name!r}"
+)
+"""``USED⇥FOR⇥2`` of two labels or nodes; ``word⇥1`` of an edit, ``more state: dirty⇥never`` of a state."""
