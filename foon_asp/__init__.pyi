@@ -61,6 +61,8 @@ from foon_asp.questions.regret import Regrets as Regrets
 from foon_asp.questions.regret import regret as regret
 from foon_asp.questions.relax import Relaxed as Relaxed
 from foon_asp.questions.relax import relax as relax
+from foon_asp.questions.repair import Repaired as Repaired
+from foon_asp.questions.repair import repair as repair
 from foon_asp.questions.schedule import Schedule as Schedule
 from foon_asp.questions.schedule import schedule as schedule
 from foon_asp.questions.search import Retrieved as Retrieved
