@@ -220,6 +220,7 @@ def read_dataset(
     utensils: Path | None,
     goals: Path | None,
     unit_prices: Path | None,
+    unit_amounts: Path | None,
     lenient: bool,
     level: int,
     measures: Sequence[Path] = (),
@@ -234,7 +235,7 @@ def read_dataset(
     """
     folder, network = with_sources(sources, folder, network)
     with reading():
-        files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
+        files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices, unit_amounts)
     with bytes_bar("reading", files.network), reading():
         dataset = read_data(files, lenient, level)
         if measures:

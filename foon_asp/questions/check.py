@@ -167,7 +167,7 @@ def _simulated(tree: Tree) -> Simulation:
     shortage = replay_for(tree.problem, tree).shortage
     if shortage is None:
         return Simulation(Verdict.AS_LISTED, tuple(range(len(tree))), None, None)
-    stop = Obstacle(shortage.step, shortage.node, used_up_by=shortage.consumers)
+    stop = Obstacle(shortage.step, shortage.node, used_up_by=shortage.consumers, amount=shortage.amount)
     return Simulation(Verdict.NEVER, (), stop, None)
 
 

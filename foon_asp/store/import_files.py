@@ -57,6 +57,11 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     goals = read_object_list(files.goals, warnings) if files.goals else []
     rates = RATES.read(files.rates) if files.rates else None
     utensils = read_utensils(files.utensils) if files.utensils else None
+    if files.unit_amounts:
+        raise UserError(
+            f"{files.unit_amounts}: a table of amounts is not built for stores; give the units their amounts "
+            "in neutral lines or JSON"
+        )
     prices = read_unit_prices(files.unit_prices) if files.unit_prices else None
     earlier_warnings = len(warnings)
     last_units: dict[int, Source] = {}

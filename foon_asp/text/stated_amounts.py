@@ -12,10 +12,13 @@ UnitAmount = tuple[str, bool, ObjectNode]
 
 
 class StatedAmounts:
-    """A collection of amounts of copies of units."""
+    """A collection of amounts of copies of units; ``len`` counts the units."""
 
     def __init__(self) -> None:
         self._copies: dict[FunctionalUnit, dict[Source, UnitAmounts]] = {}
+
+    def __len__(self) -> int:
+        return len(self._copies)
 
     def add(self, unit: FunctionalUnit, amounts: UnitAmounts, source: Source) -> None:
         """Record the amounts of one copy, and where they are stated."""
