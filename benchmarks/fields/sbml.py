@@ -15,7 +15,30 @@ from foon_asp.text.neutral_writer import write_neutral_unit
 
 COFACTORS = tuple(
     f"M_{name}_c"
-    for name in ["atp", "adp", "amp", "nad", "nadh", "nadp", "nadph", "coa", "accoa", "ACP", "q8", "q8h2", "mqn8", "mql8", "trdrd", "grxrd", "iscu", "iscs", "moadcoo", "trnaglu", "udcpdp", "octdp"]
+    for name in [
+        "atp",
+        "adp",
+        "amp",
+        "nad",
+        "nadh",
+        "nadp",
+        "nadph",
+        "coa",
+        "accoa",
+        "ACP",
+        "q8",
+        "q8h2",
+        "mqn8",
+        "mql8",
+        "trdrd",
+        "grxrd",
+        "iscu",
+        "iscs",
+        "moadcoo",
+        "trnaglu",
+        "udcpdp",
+        "octdp",
+    ]
 )
 _SBML = "{http://www.sbml.org/sbml/level3/version1/core}"
 _FLUX = "{http://www.sbml.org/sbml/level3/version1/fbc/version2}"

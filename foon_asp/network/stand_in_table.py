@@ -184,4 +184,35 @@ _EDITS: Mapping[Edit, Fraction | None] = {
     Edit.FEWER_INGREDIENT: Fraction(5),
     Edit.CONTENTS: None,
 }
-_WORDS: Mapping[tuple[Edit, str], Fraction | None] = {}
+# What somebody has to do first is not made up for by a price.
+_DONE = (
+    *(
+        "cooked",
+        "baked",
+        "fried",
+        "boiled",
+        "grilled",
+        "roasted",
+        "steamed",
+        "sauteed",
+        "toasted",
+        "hardboiled",
+    ),
+    *(
+        "chopped",
+        "sliced",
+        "diced",
+        "cubed",
+        "minced",
+        "grated",
+        "shredded",
+        "halved",
+        "quartered",
+        "crushed",
+    ),
+    *("peeled", "mashed", "ground", "melted", "beaten", "whipped", "kneaded", "washed"),
+)
+_WORDS: Mapping[tuple[Edit, str], Fraction | None] = {
+    **{(Edit.FEWER_STATE, state): None for state in _DONE},
+    **{(Edit.MORE_STATE, state): None for state in ("dirty", "burnt", "rotten")},
+}
