@@ -8,6 +8,7 @@
 # make lint   style, types, and names and docstrings that hide a meaning
 # make bench  the benchmarks, in a few minutes, into docs/dev/performance.md; make bench-full the large ones, which
 #             take about an hour and a half (with DATA=DIR also on the network in a folder)
+# make verified  the checker of certificates that is proved in Coq (docs/proofs.md), where Coq and OCaml are installed
 # Each makes .venv and installs what it needs when run first. With PYTHON=python3.13 VENV=.venv-3.13 it is another
 # Python in a folder of its own.
 
@@ -20,7 +21,7 @@ PAGE := --page docs/dev/performance.md
 # hundreds of processes are started by the tests: each would compile everything anew
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: demo docs man test test-slow test-nightly test-lowest coverage mutants lint bench bench-full clean
+.PHONY: demo docs man test test-slow test-nightly test-lowest coverage mutants verified lint bench bench-full clean
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -56,6 +57,9 @@ mutants: $(VENV)/installed-dev
 test-lowest:
 	PYTHON="$(PYTHON)" .ci/lowest $(CORES)
 
+verified:
+	@$(MAKE) --no-print-directory -C verified
+
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -79,7 +83,7 @@ bench-full: $(VENV)/installed-bench
 	rm -f recipe-like.jsonl deep.jsonl large.jsonl
 
 clean:
-	rm -rf .venv .venv-* site build .mypy_cache .pytest_cache .ruff_cache .hypothesis dist
+	rm -rf .venv .venv-* site build verified/build .mypy_cache .pytest_cache .ruff_cache .hypothesis dist
 
 $(VENV)/bin/python:
 	@test -n "$(PYTHON)" || { echo "foon-asp needs Python 3.11 or newer"; exit 1; }

@@ -18,10 +18,10 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 from foon_asp.asp import solve
-from foon_asp.bounds.relaxation import Covering
 from foon_asp.certificate import certify
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.comparison.many import makeable
+from foon_asp.hypergraph.covering import Covering
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import read_certificate, verify
 from foon_asp.text.data_folder import find_data, read_data

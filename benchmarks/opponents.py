@@ -46,9 +46,9 @@ from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.comparison.many import makeable
 from foon_asp.deadline import Deadline
 from foon_asp.engines import EngineAnswer, agree
+from foon_asp.hypergraph import reduce
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, executable_order, levels
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.reduce import reduce
 from foon_asp.text.data_folder import Data, find_data, read_data
 from foon_asp.text.goal_name import find_goal
 

@@ -23,8 +23,8 @@ from statistics import median
 
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.deadline import Deadline
+from foon_asp.hypergraph import ALL, NONE, reduce
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
-from foon_asp.reduce import ALL, NONE, reduce
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.goal_name import listed_nodes
 

@@ -18,9 +18,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from foon_asp.asp import Settings, Status, assembly, solve
+from foon_asp.hypergraph import NONE
 from foon_asp.problem import Objective, Problem
-from foon_asp.reduce import NONE
-from tests.reduce.test_reductions import LISTS, posed
+from tests.hypergraph.test_reductions import LISTS, posed
 from tests.rules.test_restricted_answers import CLASSES, Rule
 
 _AT_ONCE = 100  # networks between two lines

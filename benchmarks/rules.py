@@ -41,11 +41,11 @@ from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.assembly import assemble
 from foon_asp.dataset.reading_store import read_stored
 from foon_asp.deadline import Deadline
+from foon_asp.hypergraph import NONE
 from foon_asp.network import Network, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, levels, reach
 from foon_asp.processes.python_process import _end_all
 from foon_asp.questions.answer import answered_under
-from foon_asp.reduce import NONE
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles, find_data, read_data
 from foon_asp.text.goal_name import listed_nodes

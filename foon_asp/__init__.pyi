@@ -18,6 +18,8 @@ from foon_asp.network import ObjectNode as ObjectNode
 from foon_asp.network import Source as Source
 from foon_asp.network import TaskTree as TaskTree
 from foon_asp.network.stand_in_table import StandInTable as StandInTable
+from foon_asp.planning.py_trees_root import Execution as Execution
+from foon_asp.planning.py_trees_root import py_trees_root as py_trees_root
 from foon_asp.planning.unified import register_engine as register_engine
 from foon_asp.problem import ContainerRule as ContainerRule
 from foon_asp.problem import Costs as Costs
@@ -77,10 +79,14 @@ from foon_asp.questions.stats import stats as stats
 from foon_asp.questions.trace import Traced as Traced
 from foon_asp.questions.trace import trace as trace
 from foon_asp.questions.tree import Tree as Tree
+from foon_asp.questions.unit_union import UnitUnion as UnitUnion
+from foon_asp.questions.unit_union import unit_union as unit_union
 from foon_asp.questions.verify import VerifiedCertificate as VerifiedCertificate
 from foon_asp.questions.verify import verify as verify
 from foon_asp.questions.view import View as View
 from foon_asp.questions.view import view as view
+from foon_asp.questions.ways_on import WaysOn as WaysOn
+from foon_asp.questions.ways_on import ways_on as ways_on
 from foon_asp.questions.why_not import Explanation as Explanation
 from foon_asp.questions.why_not import why_not as why_not
 from foon_asp.results.timed_step import TimedStep as TimedStep

@@ -6,7 +6,7 @@ from typing import Any
 
 from contest.elimination import ordered
 from contest.instance import Instance, cuts
-from foon_asp.bounds.highs_run import silent_highs
+from foon_asp.hypergraph.highs_run import silent_highs
 
 
 def ready() -> None:

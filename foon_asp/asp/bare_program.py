@@ -10,12 +10,12 @@ from foon_asp.asp.outcome import Outcome
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
-from foon_asp.asp.used_up import executions_as_good, most_executions
 from foon_asp.encoding.facts import write_facts, write_least_penalty, write_objectives, write_times
 from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.grounding.number_checks import CHECKS_FILE
 from foon_asp.grounding.stated import Stated
+from foon_asp.plans.most_executions import executions_as_good, most_executions
 from foon_asp.problem import Objective, Problem, levels, reach, relevant
 from foon_asp.rules.constraint import Constraint
 
@@ -59,6 +59,7 @@ def bare_program(
         penalty = write_least_penalty(len(levels(tuple(objectives))) + 1)
     program = assemble(settings, lambda _: None, used_up=problem.items is not None)
     if problem.items is not None:
+        _require_no_amounts(problem)
         if soft:
             raise UserError("soft constraints are not built for items that are used up")
         executions = most_executions(problem, objectives, settings)
@@ -105,6 +106,12 @@ def bare_plans(
     number = problem.network.unit_number
     caps = {unit: (number(unit), cap) for unit, cap in executions.items()}
     return _written(program, facts + write_objectives(objectives)), caps
+
+
+def _require_no_amounts(problem: Problem) -> None:
+    """Raise :class:`UserError` where amounts are counted: in the encodings each execution has one copy."""
+    if problem.counts_amounts:
+        raise UserError("amounts are not built for bare clingo, whose encodings have one copy of each output")
 
 
 def _written(program: Program, facts: str) -> BareProgram:

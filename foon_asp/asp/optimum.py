@@ -19,10 +19,10 @@ def solve(
     """Find the best tree or plan under a lexicographic list of objectives, and prove it.
 
     ``units`` decides last. Stops at the limits with the best so far. Raises :class:`UserError` as
-    :func:`foon_asp.asp.solver.solve` and :func:`foon_asp.asp.used_up.solve_used_up` do.
+    :func:`foon_asp.asp.solver.solve` and :func:`foon_asp.plans.plan_search.solve_used_up` do.
     """
     if problem.items is None:
         return solver.solve(problem, objectives, settings, reporter, mattered)
-    from foon_asp.asp.used_up import solve_used_up  # noqa: PLC0415 (numpy and HiGHS)
+    from foon_asp.plans.plan_search import solve_used_up  # noqa: PLC0415 (numpy and HiGHS)
 
     return solve_used_up(problem, objectives, settings, reporter)

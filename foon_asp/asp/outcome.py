@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from foon_asp.problem import Costs, Objective, Problem
 
 if TYPE_CHECKING:  # few questions need it
-    from foon_asp.bounds.lower_bound import Cases
+    from foon_asp.hypergraph.optimality_proof import Cases
 
 
 class Status(StrEnum):
@@ -53,7 +53,7 @@ class Outcome(NamedTuple):
     ``encodings`` is the folder that replaced the built-in encodings, if any: they then define what is best.
     ``certified`` are the objectives, from the first on, by which a certificate proves the tree the best.
     ``left`` counts the units that were left for the search, 0 if it was not needed. ``cuts`` are the sets of
-    object nodes whose landmarks the reductions used for bounds; see :mod:`foon_asp.bounds`. ``stopped``
+    object nodes whose landmarks the reductions used for bounds; see :mod:`foon_asp.hypergraph`. ``stopped``
     names the limit that stopped an unproved answer, and what was being done. ``cases`` are those that a proof
     by cuts tells apart, if one alone was not enough: a unit, then the cases without it and those with it.
 

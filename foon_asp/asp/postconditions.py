@@ -9,10 +9,10 @@ from functools import partial
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.settings import Settings
 from foon_asp.errors import BugError, UserError
+from foon_asp.hypergraph import ExactCosts, Reduced
 from foon_asp.problem import Costs, Objective, Problem, executable_order, multiplies
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.proof.used_up_run import used_up_run
-from foon_asp.reduce import ExactCosts, Reduced
 from foon_asp.rules.constraint import RuleText
 
 

@@ -9,9 +9,9 @@ from foon_asp.deadline import Deadline
 from foon_asp.encoding.own_encodings import ENCODING_FILES, is_own
 from foon_asp.grounding.run import asks_for_statistics
 from foon_asp.grounding.stated import Loaded
+from foon_asp.hypergraph.reductions import ALL, Reduction
 from foon_asp.network import Source
 from foon_asp.problem import Objective
-from foon_asp.reduce.reductions import ALL, Reduction
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import Constraint
 

@@ -13,11 +13,11 @@ from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
-from foon_asp.bounds.landmark_cuts import Cuts
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
+from foon_asp.hypergraph import ExactCosts, Listener, Reduced, Reduction, Subproblem
+from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
-from foon_asp.reduce import ExactCosts, Listener, Reduced, Reduction, Wide
 
 if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
     from foon_asp.encoding.scales import Scales
@@ -166,8 +166,8 @@ class _Solver:
             if not prepared.contradicted:
                 self.holds.no_tree()
             return self._outcome(Status.INFEASIBLE, None, {})
-        if prepared.unsettled and prepared.reduced and prepared.reduced.wide:
-            return self._solve_unsettled(prepared.reduced, prepared.reduced.wide, prepared.tree)
+        if prepared.unsettled and prepared.reduced and prepared.reduced.subproblem:
+            return self._solve_unsettled(prepared.reduced, prepared.reduced.subproblem, prepared.tree)
         incumbent = self._initial_incumbent
         if incumbent is None:  # user rules or bounds may exclude the tree of the cut
             run = self._run(self.levels, opt_mode="ignore")
@@ -180,7 +180,7 @@ class _Solver:
         # at a limit, not even what clingo would be given is written
         return self._limited(incumbent, ()) if self.deadline.passed else self._search(incumbent)
 
-    def _solve_unsettled(self, reduced: Reduced, subproblem: Wide, tree: Units) -> Outcome:
+    def _solve_unsettled(self, reduced: Reduced, subproblem: Subproblem, tree: Units) -> Outcome:
         """Find the best tree under rules that the reductions ignored.
 
         If the best tree without these rules keeps to them, it is optimal.
@@ -193,12 +193,11 @@ class _Solver:
             if reduced.settled:
                 return self._optimal(tree)
         self.prepared = replace(self.prepared, reduced=reduced._replace(settled=False))
-        outcome = self._case_split(reduced, subproblem)
-        if outcome is None and keeps:
-            outcome = self._gap_bounded(subproblem, tree, None)
-        return outcome or self._solve_violated(subproblem, tree)
+        if keeps:
+            return self._gap_bounded(subproblem, tree, None)
+        return self._solve_violated(subproblem, tree)
 
-    def _solve_violated(self, subproblem: Wide, tree: Units) -> Outcome:
+    def _solve_violated(self, subproblem: Subproblem, tree: Units) -> Outcome:
         """Find the best tree under rules that the given tree breaks.
 
         Searches trees with open preconditions first, and then ever larger neighbourhoods of the goals.
@@ -222,33 +221,9 @@ class _Solver:
             return self._limited(run.units, ())
         return self._gap_bounded(subproblem, self._best_reported(run.units), run)
 
-    def _case_split(self, reduced: Reduced, subproblem: Wide) -> Outcome | None:
-        """Find the best tree under ready-made constraints by case split; ``None`` if undecided."""
-        rules, settings = self.program.ready_made, self.prepared.settings
-        if rules is None or Reduction.BOUNDS not in settings.reductions:
-            return None
-        from foon_asp.reduce.cases import best_kept  # noqa: PLC0415 (of use with few rules)
-
-        try:
-            with self.deadline.watched("cutting the network", late=True):
-                result = best_kept(
-                    self.problem, self.levels, subproblem, reduced, rules, lambda: self.deadline.passed
-                )
-        except KeyboardInterrupt:
-            self.deadline.interrupt()
-            if self.listener.incumbent is None:
-                return self._outcome(Status.UNKNOWN, None, {})
-            return self._limited(self.listener.incumbent[0], ())
-        if result is None:
-            return None
-        if result.tree is None:
-            return self._outcome(Status.INFEASIBLE, None, {})
-        self.listener.tree(result.tree)
-        return self._optimal(self._best_reported(result.tree))
-
-    def _with_priced_limit(self, subproblem: Wide, tree: Units) -> Outcome | None:
+    def _with_priced_limit(self, subproblem: Subproblem, tree: Units) -> Outcome | None:
         """Find the best tree by a Lagrangian price on a limited sum; ``None`` where no price decides."""
-        from foon_asp.reduce.within_limit import limited  # noqa: PLC0415 (of use with few rules)
+        from foon_asp.hypergraph.priced_limit import limited  # noqa: PLC0415 (of use with few rules)
 
         program = self.prepared.full_program
         assert program is not None
@@ -276,7 +251,7 @@ class _Solver:
                 return self._gap_bounded(subproblem, result.tree, None)
         return None
 
-    def _near_goals(self, subproblem: Wide, tree: Units) -> "Run":
+    def _near_goals(self, subproblem: Subproblem, tree: Units) -> "Run":
         """Search ever larger neighbourhoods of the goals for the best tree; return the last run."""
         everything, size = subproblem.everything(), _NEAREST_UNITS
         while True:
@@ -287,7 +262,7 @@ class _Solver:
             if run.units is not None or not run.exhausted or among >= everything:
                 return run
 
-    def _gap_bounded(self, subproblem: Wide, tree: Units, run: "Run | None") -> Outcome:
+    def _gap_bounded(self, subproblem: Subproblem, tree: Units, run: "Run | None") -> Outcome:
         """Search the gap-bounded subproblem: all units that trees up to the cost of a tree can have.
 
         ``run`` is the search that found the tree, ``None`` where none did.
@@ -302,7 +277,7 @@ class _Solver:
         self._restrict_to(candidates)
         return self._search(tree)
 
-    def _with_open_preconditions(self, subproblem: Wide, tree: Units) -> "Run | None":
+    def _with_open_preconditions(self, subproblem: Subproblem, tree: Units) -> "Run | None":
         """Search the relaxation in which units outside ``explored`` have open preconditions.
 
         Every tree that keeps to the rules has a part that is feasible there. So an infeasible relaxation
@@ -728,7 +703,7 @@ def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
     best = _few_objects(reduced.cuts)
     if reduced.shared:
         best = [objects for objects, _ in reduced.shared.cuts]
-    first = _few_objects(reduced.wide.cuts if reduced.wide else None)
+    first = _few_objects(reduced.subproblem.cuts if reduced.subproblem else None)
     return [*dict.fromkeys([*best, *first, *reduced.tight])]
 
 

@@ -5,11 +5,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import cache, cached_property
 
-from foon_asp.bounds.exact_optimum import Limit
-from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.lexicographic import Lexicographic, Vector
-from foon_asp.bounds.lower_bound import Cases
 from foon_asp.certificate.coverage import Coverage
+from foon_asp.hypergraph.exact_optimum import Limit
+from foon_asp.hypergraph.hypergraph import Hypergraph
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector
+from foon_asp.hypergraph.optimality_proof import Cases
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.proof import ruled, verify
 

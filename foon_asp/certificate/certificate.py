@@ -9,10 +9,13 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from foon_asp.bounds.branching import branched
-from foon_asp.bounds.cut import Cut
-from foon_asp.bounds.lexicographic import Vector
-from foon_asp.bounds.lower_bound import (
+from foon_asp.certificate.arrays import Arrays, written
+from foon_asp.certificate.coverage import NOTHING, Coverage, needed
+from foon_asp.errors import BugError
+from foon_asp.hypergraph.branch_and_bound import branched
+from foon_asp.hypergraph.cut import Cut
+from foon_asp.hypergraph.lexicographic import Vector
+from foon_asp.hypergraph.optimality_proof import (
     Broken,
     Cases,
     CheaperError,
@@ -22,9 +25,6 @@ from foon_asp.bounds.lower_bound import (
     Proof,
     Prover,
 )
-from foon_asp.certificate.arrays import Arrays, written
-from foon_asp.certificate.coverage import NOTHING, Coverage, needed
-from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Known, Objective, Problem
 from foon_asp.proof import verify
 from foon_asp.proof.verify_plan import verify_any
@@ -305,6 +305,7 @@ def subject_of(problem: Problem) -> verify.Subject:
     """Return the data that certificates of a problem over a whole network are about."""
     return verify.Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
+        amounts=problem.amounts,
         stand_ins=problem.stand_ins.table if problem.stand_ins else None,
     )
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from foon_asp.asp import Settings
-from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.encoding.encoding_file import string_constant
 from foon_asp.encoding.own_encodings import is_own
+from foon_asp.hypergraph.exact_optimum import Limit
 from foon_asp.problem import Problem
 from foon_asp.proof.constraint import LIBRARY, OWN, Rule, meaning
 from foon_asp.proof.ruled import Ruled

@@ -7,12 +7,12 @@ from operator import sub
 from typing import Any
 
 from foon_asp.asp import Outcome, Proof, Settings, Status
-from foon_asp.bounds.lexicographic import Vector
 from foon_asp.certificate.arrays import Arrays
 from foon_asp.certificate.certificate import Certificate, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.coverage import Coverage, coverage
 from foon_asp.certificate.plan import certify_no_plan, certify_plan, covered_for_plans
 from foon_asp.errors import BugError
+from foon_asp.hypergraph.lexicographic import Vector
 from foon_asp.problem import Problem, levels, multiplies
 from foon_asp.proof.verify import Subject, trusted
 

@@ -91,6 +91,7 @@ def click_option(option: Option) -> Callable[[Command], Command]:
             type=kinds[option.kind],
             nargs=-1 if option.many else 1,
             metavar=option.metavar,
+            required=not (option.optional or option.many),
             callback=_options_alone if option.kind is Kind.OPTIONS else None,
         )
     words = option.flags or ("--" + option.name.replace("_", "-"),)

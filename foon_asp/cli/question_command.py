@@ -25,12 +25,14 @@ from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Question, Role, not_built
 from foon_asp.questions.index import INDEX
 from foon_asp.questions.posing import no_data
-from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
+from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result, format_method
 
 _EXIT_CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
 _LIMITS = frozenset({"time_limit", "memory_limit"})
 _NOT_FOR_TERMINALS = {"png": "PNG", "pdf": "PDF", "html": "a page of HTML"}
-_ESCAPED = frozenset({"text", "json", "csv", "markdown", "steps"})  # other formats are written unchanged
+_ESCAPED = frozenset(
+    {"text", "json", "csv", "markdown", "steps", "steps-csv"}
+)  # other formats are written unchanged
 
 
 def question_command(verb: str) -> click.Command:
@@ -153,13 +155,11 @@ def _show(result: Result, format_: str) -> None:
     """Write the result to standard output, and its remark, which the format cannot hold, to stderr."""
     if format_ == "text":
         write_parts(result.show())
-    elif format_ == "json":
-        click.echo(result.json_text(), nl=False)
     elif format_ in _ESCAPED:
-        click.echo(getattr(result, format_)(), nl=False)
+        click.echo(getattr(result, format_method(format_))(), nl=False)
     else:
         with contextlib.suppress(NothingToDrawError):  # the remark has the reason
-            write_data(getattr(result, format_)())
+            write_data(getattr(result, format_method(format_))())
     remark = result.remark(format_)
     if remark and format_ != "text":
         click.echo(remark, err=True)

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from msgspec import UNSET, UnsetType, field
 
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.asp.used_up import order_that_runs
 from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError
 from foon_asp.network import TaskTree
+from foon_asp.plans.counting import order_that_runs
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_for

@@ -9,8 +9,8 @@ from foon_asp.asp.assembly import hold_for_parts, leave_unsettled, program_of
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.deadline import Deadline
+from foon_asp.hypergraph import ALL
 from foon_asp.problem import Costs, Objective, Problem, executable_order, follow, levels, multiplies, reach
-from foon_asp.reduce import ALL
 
 if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.dataset.nearby import Nearby

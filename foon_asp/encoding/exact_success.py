@@ -11,8 +11,8 @@ from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.bounds.coprime_base import coprime_base, powers
 from foon_asp.errors import UserError
+from foon_asp.hypergraph.coprime_base import coprime_base, powers
 from foon_asp.problem import Problem
 
 _MAX_NUMBER = 2**31 - 1

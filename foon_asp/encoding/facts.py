@@ -430,6 +430,16 @@ def write_avoided(number: int, units: Iterable[int]) -> str:
     return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
 
 
+def write_unseen(units: Iterable[int]) -> str:
+    """Return facts that ask for a tree with one of some units, by their numbers."""
+    return "".join(f"_unseen({_check(unit)}).\n" for unit in units)
+
+
+def write_in_all(units: Iterable[int]) -> str:
+    """Return facts that ask for a tree without one of some units, by their numbers."""
+    return "".join(f"_in_all({_check(unit)}).\n" for unit in units)
+
+
 def write_beside(plans: Sequence[Mapping[int, int]]) -> str:
     """Return facts that exclude plans with at least the executions of known ones, by unit number."""
     return "".join(

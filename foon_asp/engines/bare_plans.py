@@ -8,10 +8,10 @@ from itertools import takewhile
 
 from foon_asp.asp import Status
 from foon_asp.asp.bare_program import bare_plans
-from foon_asp.asp.used_up import order_that_runs
 from foon_asp.encoding.facts import write_times
 from foon_asp.engines.bare_clingo import NAME, Clingo
 from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError
+from foon_asp.plans.counting import order_that_runs
 from foon_asp.problem import Objective, levels
 from foon_asp.proof.replay import replay_for
 
@@ -25,6 +25,8 @@ def check_plan_with_bare_clingo(claim: Asked, seconds: float) -> tuple[Objective
     outcome, problem = claim.outcome, claim.outcome.problem
     if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:
         raise NotCheckedError("without a plan, nothing says how often units can be executed")
+    if problem.counts_amounts:
+        raise NotCheckedError("amounts are not built for bare clingo")
     objectives = levels(outcome.objectives)
     whole = tuple(takewhile(lambda objective: objective.row.whole, objectives))
     if not whole:

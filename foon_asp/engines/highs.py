@@ -9,9 +9,9 @@ preconditions of its achiever, so that no node supports itself.
 import time
 from typing import Any, Final
 
-from foon_asp.bounds.highs_run import libraries, silent_highs
 from foon_asp.engines.engine import EngineAnswer, cost, kitchen_items, scope_of
 from foon_asp.errors import BugError
+from foon_asp.hypergraph.highs_run import libraries, silent_highs
 from foon_asp.problem import Objective, Problem
 
 NAME: Final = "HiGHS"

@@ -95,12 +95,12 @@ class Costs:
 
 
 def tree_costs(
-    units: Collection[Measured],
+    units: Mapping[Measured, int],
     items: int,
     available: Collection[Known],
     user_objectives: Iterable[Objective] = (),
 ) -> Costs:
-    """Return the costs of units that need a number of distinct kitchen ``items``.
+    """Return the costs of units, each with its number of executions, that need distinct kitchen ``items``.
 
     Objectives that need data which are not ``available`` for all units are left out, and ``attempts`` where a
     rate is 0. ``user_objectives`` are measured besides the built-in ones.
@@ -111,12 +111,29 @@ def tree_costs(
         if row.needs is not None and row.needs not in available:
             continue
         try:
-            figures = list(map(row.unit, units))
+            figures = [(row.unit(unit), times) for unit, times in units.items()]
         except ZeroDivisionError:  # with a rate of 0, the expected number of attempts is infinite
             continue
         if row.multiplies:
-            measures[objective] = math.prod(figures, start=Fraction(1))
+            measures[objective] = _product([figure**times for figure, times in figures])
         else:
-            start = 0 if row.whole else Fraction(0)
-            measures[objective] = sum(figures, start=start) + items * row.item
+            totals = [figure * times for figure, times in figures]
+            total = sum(totals) if row.whole else _sum(totals)
+            measures[objective] = total + items * row.item
     return Costs(measures)
+
+
+def _product(figures: Collection[int | Fraction]) -> Fraction:
+    """Return the product of figures, reduced once: to reduce each partial product takes most of the time."""
+    numerator = math.prod(figure.numerator for figure in figures)
+    return Fraction(numerator, math.prod(figure.denominator for figure in figures))
+
+
+def _sum(figures: Iterable[int | Fraction]) -> Fraction:
+    """Return the sum of figures, of which most have one of few denominators."""
+    numerators: dict[int, int] = {}
+    for figure in figures:
+        denominator = figure.denominator
+        numerators[denominator] = numerators.get(denominator, 0) + figure.numerator
+    parts = (Fraction(numerator, denominator) for denominator, numerator in numerators.items())
+    return sum(parts, start=Fraction(0))

@@ -1,47 +1,44 @@
 """What happens to copies of object nodes when a unit runs and items are used up, by docs/plans.md."""
 
 from collections import Counter
-from functools import cache
+from collections.abc import Callable, Mapping
+from functools import cache, lru_cache, partial
 from typing import NamedTuple
 
-from foon_asp.network import FunctionalUnit, ObjectNode
-from foon_asp.problem import Problem, UsedUp, given_outputs, needed_inputs
+from foon_asp.network import Amounts, FunctionalUnit, Network, ObjectNode, UnitAmounts
+from foon_asp.problem import ContainerRule, Fate, Problem, UsedUp, given_outputs, needed_inputs
+
+_NO_AMOUNTS = UnitAmounts()
 
 
 class Execution(NamedTuple):
-    """What running a unit once does with copies of object nodes, one copy of each.
+    """What running a unit once does with copies of object nodes, each with a number of copies.
 
-    It needs ``preconditions``, uses up those of them that it ``consumes``, and ``adds`` outputs, none of
-    which is an input.
+    It needs ``preconditions``, uses up those of them that it ``consumes``, and ``adds`` outputs; of an output
+    that is an input as well, what is more than the input.
     """
 
-    preconditions: tuple[ObjectNode, ...]
-    consumes: tuple[ObjectNode, ...]
-    adds: tuple[ObjectNode, ...]
+    preconditions: Mapping[ObjectNode, int]
+    consumes: Mapping[ObjectNode, int]
+    adds: Mapping[ObjectNode, int]
 
 
 class Executions:
     """How units run from the kitchen of a problem.
 
-    Items are used up as the problem says, or, where they last in it, by the rule of docs/plans.md.
+    Items are used up as the problem says, or, where they last in it, by the rule of docs/plans.md, and then
+    every amount is 1.
     """
 
     def __init__(self, problem: Problem) -> None:
         self._problem, self._items = problem, problem.items or UsedUp()
-        self.of = cache(self._of)
+        network = None if problem.network.level == 3 else problem.network
+        amounts = {} if problem.items is None else problem.amounts
+        self.of = _execution_of(problem.items, problem.containers, problem.utensils, network, amounts)
 
-    def _of(self, unit: FunctionalUnit) -> Execution:
-        """Return preconditions, consumption and add effects of one execution of a unit."""
-        problem = self._problem
-        rules = problem.containers, problem.utensils, problem.network
-        preconditions = tuple(dict.fromkeys(needed_inputs(unit, *rules)))
-        stays = {node: self._items.fate(unit, node, problem.utensils).stays for node in preconditions}
-        made = dict.fromkeys(given_outputs(unit, *rules))
-        return Execution(
-            preconditions,
-            tuple(node for node in preconditions if not stays[node]),
-            tuple(node for node in made if node not in unit.inputs),
-        )
+    def wanted(self) -> dict[ObjectNode, int]:
+        """Return how many copies of each goal have to be there in the end."""
+        return {node: self._items.wanted.get(node, 1) for node in self._problem.goal_nodes}
 
     def is_endless(self, node: ObjectNode) -> bool:
         """Return whether a node is not consumable: it is in the kitchen, and the stock does not count it."""
@@ -50,3 +47,51 @@ class Executions:
     def stock(self) -> Counter[ObjectNode]:
         """Return the initial number of copies of each consumable node."""
         return Counter({n: count for n, count in self._items.stock.items() if self._problem.at_hand(n)})
+
+
+def _execution_of(
+    items: UsedUp | None,
+    rule: ContainerRule,
+    utensils: frozenset[str],
+    network: Network | None,
+    amounts: Amounts,
+) -> Callable[[FunctionalUnit], Execution]:
+    """Return the function from a unit to one execution of it, which remembers what it returned.
+
+    ``network`` is that of the units, where its level is below 3.
+    """
+    if items is None and network is None:
+        return _by_the_rule(rule, utensils)
+    return cache(partial(_execution, items or UsedUp(), rule, utensils, network, amounts))
+
+
+@lru_cache(maxsize=4)
+def _by_the_rule(rule: ContainerRule, utensils: frozenset[str]) -> Callable[[FunctionalUnit], Execution]:
+    """Return a function as above, the same one for all trees that are compared or checked one by one."""
+    return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None, {}))
+
+
+def _execution(
+    items: UsedUp,
+    rule: ContainerRule,
+    utensils: frozenset[str],
+    network: Network | None,
+    amounts: Amounts,
+    unit: FunctionalUnit,
+) -> Execution:
+    """Return preconditions, consumption and add effects of one execution of a unit."""
+    taken, made = amounts.get(unit, _NO_AMOUNTS)
+    preconditions = {node: taken.get(node, 1) for node in needed_inputs(unit, rule, utensils, network)}
+    consumed: dict[ObjectNode, int] = {}
+    for node, amount in preconditions.items():
+        fate = items.fate(unit, node, utensils)
+        if not fate.stays:
+            consumed[node] = amount
+        elif fate is Fate.OUTPUT and amount > made.get(node, 1):
+            consumed[node] = amount - made.get(node, 1)
+    added: dict[ObjectNode, int] = {}
+    for node in given_outputs(unit, rule, utensils, network):
+        more = made.get(node, 1) - (taken.get(node, 1) if node in unit.inputs else 0)
+        if more > 0:
+            added[node] = more
+    return Execution(preconditions, consumed, added)

@@ -7,9 +7,7 @@ from typing import Annotated, NamedTuple, Unpack
 
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import CLINGO_OPTIONS
-from foon_asp.asp.ranked_plans import RankedPlans
 from foon_asp.asp.ranking import Ranked
-from foon_asp.asp.used_up import best_plans
 from foon_asp.encoding.facts import write_distances
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.encoding.search import run
@@ -17,12 +15,13 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.network import counted
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.pictures.notebook import page_bundle
+from foon_asp.plans.ranked_plans import RankedPlans, best_plans
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.arguments import Objectives, asked_with, at_least, chosen_objectives
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import TABLES, Option, question
-from foon_asp.questions.options import ITEMS, TREE
+from foon_asp.questions.contract import TABLES, Kind, Option, question
+from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
@@ -201,15 +200,48 @@ class _Pool(NamedTuple):
     unproved: int
 
 
+def alternatives_or_union(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    union: bool = False,
+    best: int | None = None,
+    different: int | None = None,
+    within: int = 0,
+    limit: int = 100,
+    **options: Unpack[CommonOptions],
+) -> Result:
+    """List trees as ``foon-asp alternatives`` does, or the units of every tree and of some."""
+    if not union:
+        return alternatives(
+            problem, objectives, best=best, different=different, within=within, limit=limit, **options
+        )
+    from foon_asp.questions.unit_union import unit_union  # noqa: PLC0415
+
+    if best is not None or different is not None:
+        raise UserError("--union lists units of all trees: leave out --best and --different")
+    return unit_union(problem, objectives, within=within, **options)
+
+
 @question(
     *TREE,
     *ITEMS,
+    AMOUNT,
+    Option(
+        "union",
+        "List the units of every optimal tree, and of some, proved without a list of the trees.",
+        Kind.FLAG,
+        default=False,
+    ),
     formats=TABLES,
+    command=alternatives_or_union,
     help_="""
     \b
     foon-asp alternatives --goal macaroni             every optimal tree, and what all of them have
     foon-asp alternatives --goal macaroni --best 5
     foon-asp alternatives --goal macaroni --different 3 --within 20
+    foon-asp alternatives --goal macaroni --union     units of all optimal trees, and of some
+    foon-asp alternatives --goal macaroni --union --within 10
 
     A tree that contains all units of another listed tree is not listed. Trees are
     found one by one in order of their costs, which are compared exactly. With --items used-up, plans differ
@@ -237,8 +269,8 @@ def alternatives(
     Parameters:
         best: Find this many of the best trees, in order.
         different: Find this many trees that differ most from each other.
-        within: Among ``different`` trees, how much worse by the first objective a tree may be, in percent. 10
-            allows 11 units if 10 are best, or 0.9 times the best success.
+        within: Among ``different`` trees (and with ``--union``), how much worse by the first objective a tree
+            may be, in percent. 10 allows 11 units if 10 are best, or 0.9 times the best success.
         limit: The greatest number of trees to look at.
 
     Returns:

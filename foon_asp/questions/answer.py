@@ -1,6 +1,7 @@
 """The best tree for a problem, and its proof."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -13,6 +14,7 @@ from foon_asp.asp.optimum import solve as find
 from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels
+from foon_asp.problem.dead_ends import Cause
 from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
@@ -22,15 +24,17 @@ from foon_asp.questions.why_infeasible import why_infeasible
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import bound_text, costs_text, figure_text
 from foon_asp.results.table import Block
-from foon_asp.results.values import Figure, ListedConstraint, Node, Step, UsedUpRun, Value
+from foon_asp.results.values import CostedTree, Figure, ListedConstraint, Node, Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
 from foon_asp.text.json_value import schema_name
+from foon_asp.text.tables import Duration
 from foon_asp.text.writer import write_units
 
 if TYPE_CHECKING:  # slow to import, and not needed to print an answer
     from foon_asp.certificate import Certificate
     from foon_asp.dataset.nearby import Nearby
     from foon_asp.pictures.drawing import Drawing
+    from foon_asp.questions.robot_plan import RobotPlan
     from foon_asp.questions.tree import Tree
 
 
@@ -84,6 +88,28 @@ class Serving(Value, frozen=True):
     goals: tuple[Node, ...]
 
 
+class SkippedGoal(Value, frozen=True):
+    """A goal that cannot be made, and was left out.
+
+    Attributes:
+        cause: missing: an object node is not in the kitchen, and no unit makes it. cycle: one can only be
+            made from itself, by way of others.
+        object: That object node, the first on the easiest way to the goal.
+        cycle_size: How many object nodes can only be made from each other; 0 for the cause missing.
+    """
+
+    goal: Node
+    cause: Cause
+    object: Node
+    cycle_size: int
+
+    def __str__(self) -> str:
+        if self.cause is Cause.CYCLE:
+            return f"{self.goal}: {self.object} can only be made from itself ({self.cycle_size} in the cycle)"
+        what = "it" if self.object == self.goal else self.object
+        return f"{self.goal}: {what} is not in the kitchen, and no unit makes it"
+
+
 class EngineCheck(Value, frozen=True):
     """The check of an answer by another engine.
 
@@ -102,6 +128,55 @@ class EngineCheck(Value, frozen=True):
     disagrees: str | None
     reason: str | None
     seconds: float
+
+
+class PolicyTree(Value, frozen=True):
+    """A tree that a policy follows, and how long.
+
+    Attributes:
+        failures: After how many failed executions the policy goes on with the next tree, or ends.
+    """
+
+    failures: int
+    tree: CostedTree
+
+
+class RetryPolicy(Value, frozen=True):
+    """Trees to follow one after the other, with what is there by then, and the chance that one is completed.
+
+    An execution succeeds with the rate of its unit, whatever happened before; a failed one changes nothing.
+
+    Attributes:
+        retries: How many executions may fail in a run that succeeds.
+        chance: The chance that the goals are made, by this policy.
+        bound: No policy over the units of the trees considered has a greater chance.
+        is_exact: Whether the bound is the chance of the best of these policies. If not, it is the chance that
+            the units which all of them need fail no more often than is allowed.
+        considered: The number of trees considered: the best one, and the best by success.
+    """
+
+    retries: int
+    chance: Fraction
+    bound: Fraction
+    is_exact: bool
+    considered: int
+    branches: tuple[PolicyTree, ...]
+
+    def lines(self) -> Iterator[str]:
+        """Return lines with the chance and what is proved of it, and with each tree."""
+        success = figure_text(Objective.SUCCESS, self.chance)
+        trees = counted(self.considered, "tree")
+        if self.chance == self.bound:
+            claim = f"proved that no policy over the units of {trees} has more"
+        else:
+            bound = figure_text(Objective.SUCCESS, self.bound)
+            claim = f"a policy over the units of {trees} has at most {bound}"
+            claim += ", which one has that chooses anew at every step" * self.is_exact
+        retries = f"{self.retries} retr{'y' if self.retries == 1 else 'ies'}"
+        yield f"with {retries}: success {success}; {claim}"
+        for number, branch in enumerate(self.branches, 1):
+            then = "until" if number == 1 else "then until"
+            yield f"  {then} {counted(branch.failures, 'failure')}: {costs_text(branch.tree.costs)}"
 
 
 class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
@@ -123,11 +198,13 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         seconds: The time of each phase.
         penalty: Under soft constraints, the sum of weight times ways over them; null without a tree.
         soft_constraints: Every constraint that may be broken; empty without a tree.
+        skipped: The goals that cannot be made and were left out, if that was asked for.
         goals_alone: Of several goals, the best tree for each by itself.
         sum_of_goals_alone: What these cost by the first objective, added up (success: multiplied); null
             if one has no tree.
         serves: Of several goals, those that each unit is needed for.
         cross_check: The checks by other engines, where they are requested.
+        policy: With ``--retries``, the trees to follow, and their chance; null without a tree.
         stand_ins: Of a problem with stand-ins, what is used in place of what; empty without a tree.
 
     Example:
@@ -160,10 +237,12 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     seconds: dict[str, float]
     penalty: int | UnsetType | None = UNSET
     soft_constraints: tuple[SoftConstraint, ...] | UnsetType = UNSET
+    skipped: tuple[SkippedGoal, ...] | UnsetType = UNSET
     goals_alone: tuple[Alone, ...] | UnsetType = UNSET
     sum_of_goals_alone: Figure | UnsetType | None = UNSET
     serves: tuple[Serving, ...] | UnsetType = UNSET
     cross_check: tuple[EngineCheck, ...] | UnsetType = UNSET
+    policy: RetryPolicy | UnsetType | None = UNSET
     stand_ins: tuple[StandIn, ...] | UnsetType = UNSET
 
     @classmethod
@@ -285,9 +364,15 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             yield from why_infeasible(self.problem, caller().deadline)
 
     def remarks(self) -> Iterator[str]:
-        """Return lines on units shared between goals, on soft constraints, and on stand-ins."""
+        """Return lines on goals left out, on shared units, soft constraints, retries and stand-ins."""
+        if isinstance(self.skipped, tuple) and self.skipped:
+            be = "is" if len(self.skipped) == 1 else "are"
+            yield f"{counted(len(self.skipped), 'goal')} cannot be made and {be} left out:"
+            yield from (f"  {skipped}" for skipped in self.skipped)
         yield from self._sharing()
         yield from self._penalty()
+        if isinstance(self.policy, RetryPolicy):
+            yield from self.policy.lines()
         if isinstance(self.stand_ins, tuple) and self.units is not None:
             yield from stand_in_lines(self.stand_ins)
 
@@ -330,21 +415,28 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         comments = [f"Task tree for: {' + '.join(map(str, self.goals))}", *self.headlines()]
         return write_units(map(self.problem.network.unit, self.ids), comments)
 
-    def steps(self) -> str:
-        """Return the plan for a robot's program, as JSON; empty without a tree."""
+    durations = Unserialized[Mapping[str, Duration]]({})
+    """How long motions take, as far as that was stated."""
+
+    def robot_plan(self) -> "RobotPlan | None":
+        """Return the plan for a robot's program; ``None`` without a tree."""
         if self.ids is None:
-            return ""
+            return None
         from foon_asp.questions.robot_plan import RobotPlan  # noqa: PLC0415
 
-        return RobotPlan.of(self.problem, self.objectives, self.ids).json_text()
+        policy = None
+        if isinstance(self.policy, RetryPolicy):
+            ids = self.problem.network.units_of_numbers
+            policy = [(ids(branch.tree.ids), branch.failures) for branch in self.policy.branches]
+        return RobotPlan.of(self.problem, self.objectives, self.ids, self.durations, policy)
 
     def remark(self, format_: str) -> str:
         """Return the claim where that is not the best tree, and the notes, which JSON needs not."""
         claim, *note = self.headlines()
         note += self.remarks()
         claimed = [] if self.status is Status.OPTIMAL and self.penalty is UNSET else [claim]
-        if format_ == "steps" and self.units and not self.problem.utensils:
-            note.append("note: no utensils are known (--utensils), so no step has tools: all is acted on")
+        if format_ in {"steps", "steps-csv", "behaviour-tree"} and self.units and not self.problem.utensils:
+            note.append("note: no utensils are known (--utensils): tools are what a step leaves as it is")
         return "\n".join([*claimed, *([] if format_ == "json" else note), *self.notes])
 
     def drawing(self) -> "Drawing | None":

@@ -61,11 +61,11 @@ class Option(NamedTuple):
     default, and the first sentence of its entry in the docstring the help, where the option has none.
 
     ``name`` is the parameter. ``flags`` are the flags of the command line, by default ``--name`` with dashes
-    for underscores. A ``positional`` option has no flag and must be given, unless it is ``many``: it
-    may be repeated. ``help`` describes the option on the command line and in Python; ``python`` adds what
-    only Python accepts. ``choices`` are the values allowed, or a function that lists them, if other packages
-    may add some. ``least`` is the smallest number allowed, ``metavar`` the word for the
-    value in help, by default that of its type, and ``FILE`` for a file.
+    for underscores. A ``positional`` option has no flag and must be given, unless it is ``optional``, or
+    ``many``: then it may be repeated. ``help`` describes the option on the command line and in Python;
+    ``python`` adds what only Python accepts. ``choices`` are the values allowed, or a function that lists
+    them, if other packages may add some. ``least`` is the smallest number allowed, ``metavar`` the word for
+    the value in help, by default that of its type, and ``FILE`` for a file.
     """
 
     name: str = ""
@@ -79,6 +79,7 @@ class Option(NamedTuple):
     choices: tuple[str, ...] | Callable[[], tuple[str, ...]] = ()
     least: int | None = None
     positional: bool = False
+    optional: bool = False
     python: str = ""
 
 

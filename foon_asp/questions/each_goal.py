@@ -1,7 +1,7 @@
 """One question asked of several goals, one after the other."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, NoReturn
 
 from msgspec import Meta
 
@@ -69,7 +69,7 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         """Return one tree after the other."""
         return "".join(answer.foon() for answer in self.answers)
 
-    def steps(self) -> str:
+    def robot_plan(self) -> NoReturn:
         """Raise :class:`UserError`: a robot's plan is for one goal."""
         raise UserError("these are steps for several goals: name one with --goal")
 

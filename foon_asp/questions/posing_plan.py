@@ -2,15 +2,16 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.items import items_of, wanted_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, counted, unit_at_level
 from foon_asp.problem import Problem, UsedUp
 from foon_asp.questions.caller import caller
-from foon_asp.questions.posing import Command
+from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.tree import Tree, read_answer
 from foon_asp.text.answer_file import ListedTree
 
@@ -22,6 +23,7 @@ def a_plan(
     items: str,
     stock: File | None,
     stays: File | None,
+    amounts: Sequence[int] = (),
     **named: Path,
 ) -> tuple[Problem, Tree]:
     """Pose what a plan is for, as an answer says it where the command does not, and read the plan.
@@ -35,9 +37,25 @@ def a_plan(
         containers = answer.containers or containers
     dataset = command.dataset
     with command.reading():
-        used_up = items_of(dataset, items, stock, stays)
+        wanted = wanted_of(dataset, dataset.goals(goals_named), amounts) if amounts else {}
+        used_up = items_of(dataset, items, stock, stays, wanted)
         tree = listed_tree(dataset, plan, answer, goals_named, containers, used_up)
     return tree.problem, tree
+
+
+def a_plan_or_state(
+    command: Command, goals_named: Sequence[str], state: Path | None, plan: Path | None, **options: Any
+) -> tuple[Problem, Tree | None]:
+    """Pose a plan; or with a state, its goals, where the file of a plan is one more network."""
+    if state is None:
+        if plan is None:
+            raise UserError("found no plan: name a file with one, or a state with --state")
+        return a_plan(command, goals_named, plan=plan, **options)
+    if command.given("items") and options["items"] != "lasting":
+        raise UserError("trace --state is not built for items that are used up (--items used-up)")
+    if plan is not None:
+        command.add_sources((plan,))
+    return *one_problem(command, goals_named, options["containers"]), None
 
 
 def listed_tree(

@@ -11,6 +11,7 @@ from foon_asp.results.document import Document
 
 if TYPE_CHECKING:
     from foon_asp.pictures.drawing import Drawing
+    from foon_asp.questions.robot_plan import RobotPlan
 
 
 ENDINGS = {
@@ -68,13 +69,37 @@ class Result(Document, frozen=True, kw_only=True):
         """
         raise UserError("this is no tree, which FOON text could hold")
 
-    def steps(self) -> str:
-        """Return the plan for a robot's program, as JSON: each step with its objects by role.
+    def robot_plan(self) -> "RobotPlan | None":
+        """Return the plan for a robot's program; ``None`` without a tree.
 
         Raises:
             UserError: for a result that is no tree.
         """
         raise UserError("this is no tree, whose steps could be listed")
+
+    def steps(self) -> str:
+        """Return the plan for a robot's program as JSON: each step with its objects by role.
+
+        Raises:
+            UserError: for a result that is no tree.
+        """
+        return "" if (plan := self.robot_plan()) is None else plan.json_text()
+
+    def steps_csv(self) -> str:
+        """Return the plan for a robot's program as CSV, a row for each step.
+
+        Raises:
+            UserError: for a result that is no tree.
+        """
+        return "" if (plan := self.robot_plan()) is None else plan.csv()
+
+    def behaviour_tree(self) -> str:
+        """Return the plan as a behaviour tree: XML of BehaviorTree.CPP 4.
+
+        Raises:
+            UserError: for a result that is no tree.
+        """
+        return "" if (plan := self.robot_plan()) is None else plan.behaviour_tree()
 
     def remark(self, format_: str) -> str:
         """Return the remarks that a format other than text cannot express; empty without any.
@@ -97,7 +122,9 @@ class Result(Document, frozen=True, kw_only=True):
         """
         from foon_asp.whole_file import utf_8, write_whole  # noqa: PLC0415 (most results are printed)
 
-        formats = {suffix: form for suffix, form in self.SUFFIXES.items() if hasattr(self, _method(form))}
+        formats = {
+            suffix: form for suffix, form in self.SUFFIXES.items() if hasattr(self, format_method(form))
+        }
         form = format_ or formats.get(Path(file).suffix.lower())
         if form is None:
             raise UserError(f"{file}: the name says no format: end it in {' '.join(formats)}")
@@ -105,7 +132,7 @@ class Result(Document, frozen=True, kw_only=True):
             raise UserError(
                 f"found the format {form!r}, expected one of {', '.join(dict.fromkeys(formats.values()))}"
             )
-        content: str | bytes = getattr(self, _method(form))()
+        content: str | bytes = getattr(self, format_method(form))()
         write_whole(Path(file), utf_8(content) if isinstance(content, str) else content)
 
     def write_chart(self, file: File) -> None:
@@ -161,6 +188,6 @@ class Result(Document, frozen=True, kw_only=True):
         return page_bundle(self, pictures)
 
 
-def _method(form: str) -> str:
+def format_method(form: str) -> str:
     """Return the name of the method that gives a format."""
-    return "json_text" if form == "json" else form
+    return "json_text" if form == "json" else form.replace("-", "_")

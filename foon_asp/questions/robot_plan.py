@@ -1,37 +1,21 @@
 """Plans for a robot's program: each step with its objects by role, and the steps that it waits for."""
 
-from collections.abc import Collection, Iterable
-from fractions import Fraction
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import Self
 
-from msgspec import field
+from msgspec import UNSET, UnsetType, field
 
-from foon_asp.network import ObjectNode
+from foon_asp.planning.behaviour_tree import Branch, behaviour_tree_text
+from foon_asp.planning.robot_step import RobotStep, robot_steps
 from foon_asp.problem import Objective, Problem
-from foon_asp.proof.replay import replay_for, replayable, waits
+from foon_asp.questions.caller import caller
 from foon_asp.results.document import AboutGoals
-from foon_asp.results.values import Node, NumberedStep, UsedUpRun
-from foon_asp.results.values_of import head_of, mention_of, named_node, used_up_of
+from foon_asp.results.values import UsedUpRun
+from foon_asp.results.values_of import head_of, used_up_of
+from foon_asp.text.clip_times import ListedClips, listed_clips
 from foon_asp.text.json_value import schema_name
-
-
-class RobotStep(NumberedStep, frozen=True, kw_only=True):
-    """A step with its objects by role, as far as the FOON tells.
-
-    Attributes:
-        tools: Utensils that nothing comes from or goes to.
-        origins: Labels of what the inputs are in, on or at.
-        destinations: Labels of what the outputs are in, on or at.
-        after: The steps that have to be done before.
-    """
-
-    acted_on: tuple[Node, ...]
-    tools: tuple[Node, ...]
-    origins: tuple[str, ...] = field(name="from")
-    destinations: tuple[str, ...] = field(name="to")
-    makes: tuple[Node, ...]
-    after: tuple[int, ...]
-    rate: Fraction | None
+from foon_asp.text.tables import Duration
 
 
 class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps")):
@@ -40,47 +24,61 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
     Attributes:
         used_up: Whether the steps, each done once, run where items are used up; null where items are used
             up anyway.
+        tools_inferred: Whether no utensils are known, so that tools are inferred from what stays the same.
         robot_steps: The steps, in an order that executes.
+        branches: With ``--retries``: the trees to follow, one after the other.
     """
 
+    ROWS = "robot_steps"
+
     used_up: UsedUpRun | None
+    tools_inferred: bool
     robot_steps: tuple[RobotStep, ...] = field(name="steps")
+    branches: tuple[Branch, ...] | UnsetType = UNSET
 
     @classmethod
-    def of(cls, problem: Problem, objectives: Iterable[Objective], plan: Collection[int]) -> Self:
-        """Return the plan that units, by id, are in an order that executes."""
-        network, tree = problem.network, problem.tree(plan)
-        replay = replay_for(replayable(problem, tree), tree)
-        steps = []
-        for number, (done, after, id_) in enumerate(zip(replay.steps, waits(replay), plan, strict=True), 1):
-            mention, unit = mention_of(network, id_), done.unit
-            origins, destinations = _places(unit.inputs), _places(unit.outputs)
-            others = [node for node in unit.inputs if node.label not in {*origins, *destinations}]
-            tools, acted_on = (
-                tuple(
-                    named_node(network, node) for node in others if (node.label in problem.utensils) is tool
-                )
-                for tool in (True, False)
-            )
-            steps.append(
-                RobotStep(
-                    number,
-                    mention.id,
-                    mention.motion,
-                    mention.source,
-                    acted_on=acted_on,
-                    tools=tools,
-                    origins=origins,
-                    destinations=destinations,
-                    makes=tuple(named_node(network, copy.node) for copy in done.came),
-                    after=tuple(earlier + 1 for earlier in sorted(after)),
-                    rate=None if problem.rates is None else Fraction(problem.rate(id_)),
-                )
-            )
-        used_up = used_up_of(problem, tree)
-        return cls(**head_of(problem, objectives), used_up=used_up, robot_steps=tuple(steps))
+    def of(
+        cls,
+        problem: Problem,
+        objectives: Iterable[Objective],
+        plan: Collection[int],
+        durations: Mapping[str, Duration],
+        policy: Iterable[tuple[Collection[int], int]] | None = None,
+    ) -> Self:
+        """Return the plan that units, by id, are in an order that executes.
+
+        Parameters:
+            problem: The problem.
+            objectives: What the plan is best by.
+            plan: The units by id.
+            durations: How long motions take, as far as that is known.
+            policy: With ``--retries``, the trees to follow: units by id, and how many failures end each.
+        """
+        clips = tuple(_clips(problem, plan))
+
+        def steps(units: Collection[int]) -> tuple[RobotStep, ...]:
+            return tuple(robot_steps(problem, units, durations, clips))
+
+        return cls(
+            **head_of(problem, objectives),
+            used_up=used_up_of(problem, problem.tree(plan)),
+            tools_inferred=not problem.utensils,
+            robot_steps=steps(plan),
+            branches=UNSET
+            if policy is None
+            else tuple(Branch(failures, steps(units)) for units, failures in policy),
+        )
+
+    def behaviour_tree(self) -> str:
+        """Return the plan as a behaviour tree: XML of BehaviorTree.CPP 4."""
+        endless = self.objectives[:1] == (Objective.ATTEMPTS,)
+        branches = self.branches or (Branch(-1 if endless else 1, self.robot_steps),)
+        name = " + ".join(map(str, self.goals))
+        return behaviour_tree_text(name, branches, is_used_up=self.items == "used-up")
 
 
-def _places(nodes: Iterable[ObjectNode]) -> tuple[str, ...]:
-    """Return the labels of the objects that nodes are in, on or at."""
-    return tuple(sorted({relation.object for node in nodes for relation in node.relations}))
+def _clips(problem: Problem, plan: Collection[int]) -> Iterator[ListedClips]:
+    """Return the clips in the files of a plan that are still there."""
+    places = (source for unit in plan for source in problem.network.sources[unit])
+    files = dict.fromkeys(Path(source.file) for source in places)
+    return listed_clips((file for file in files if file.is_file()), caller().lenient)

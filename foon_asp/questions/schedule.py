@@ -16,7 +16,7 @@ from foon_asp.network import FunctionalUnit, counted
 from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
 from foon_asp.planning.scheduling import BestSchedule, shortest, timed_steps
-from foon_asp.problem import Number, Problem, exact
+from foon_asp.problem import Number, Problem
 from foon_asp.proof.replay import Shortage, replay_for, replayable, waits
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.proof.timetable import Means, ToolName, timetable_fault
@@ -27,7 +27,8 @@ from foon_asp.questions.arguments import at_least, read_as
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
-from foon_asp.questions.options import CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
+from foon_asp.questions.durations import Durations, duration_of, stated_durations
+from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
@@ -40,7 +41,6 @@ from foon_asp.text.clip_times import median_clips
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.line import LineError
 from foon_asp.text.tables import (
-    DURATIONS,
     TOOLS,
     Duration,
     read_default_duration,
@@ -49,7 +49,6 @@ from foon_asp.text.tables import (
 )
 from foon_asp.whole_file import utf_8, write_whole
 
-Durations = str | PathLike[str] | Mapping[str, Number | Duration]
 Tools = str | PathLike[str] | Mapping[ToolName, int | None]
 
 
@@ -218,6 +217,7 @@ def _schedule_or_template(
     GOAL_OF_PLAN,
     CONTAINERS,
     *PLAN_ITEMS,
+    AMOUNT,
     CHART._replace(help="A file for a Gantt chart (.svg or .png)."),
     pose=a_plan,
     command=_schedule_or_template,
@@ -410,10 +410,7 @@ def _known_durations(
     tree: Tree, stated: Durations | None, from_video: bool, default: Number | None
 ) -> dict[str, Duration]:
     """Return the known durations by motion: stated, of clips, or the default; warnings name the last two."""
-    if isinstance(stated, str | PathLike):
-        durations = dict(DURATIONS.read(Path(stated)))
-    else:
-        durations = {motion: _duration(duration, motion) for motion, duration in (stated or {}).items()}
+    durations = stated_durations(stated)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
     if from_video:
         problem = tree.problem.whole
@@ -430,7 +427,7 @@ def _known_durations(
         duration = (
             Duration(read_default_duration(default))
             if isinstance(default, str)
-            else _duration(default, "default")
+            else duration_of(default, "default")
         )
         others = [motion for motion in motions if motion not in durations]
         if others:
@@ -439,14 +436,6 @@ def _known_durations(
             caller().reporter.warning(f"warning: these motions count as {time} each: {motions_named}")
         durations |= dict.fromkeys(others, duration)
     return durations
-
-
-def _duration(stated: Number | Duration, motion: str) -> Duration:
-    number, passive = stated if isinstance(stated, Duration) else (stated, False)
-    seconds = exact(number, f"the duration of {motion!r}")
-    if seconds <= 0:
-        raise UserError(f"found the duration {stated} of {motion!r}, expected one above 0")
-    return Duration(seconds, passive)
 
 
 def _tools(stated: Tools | None) -> dict[ToolName, int | None]:

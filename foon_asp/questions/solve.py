@@ -7,14 +7,23 @@ from foon_asp.asp import Reporter
 from foon_asp.dataset.nearby import shown
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.hypergraph import Reduction, parse_reductions
 from foon_asp.problem import Problem
-from foon_asp.questions.answer import Answer, answered_under
-from foon_asp.questions.arguments import Objectives, chosen_objectives, constraint_weights, read, whole
+from foon_asp.questions.answer import Answer, SkippedGoal, answered_under
+from foon_asp.questions.arguments import (
+    Objectives,
+    asked_with,
+    at_least,
+    chosen_objectives,
+    constraint_weights,
+    read,
+    whole,
+)
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, not_built, question
-from foon_asp.questions.options import ITEMS, SOFT, TREE
+from foon_asp.questions.durations import Durations, stated_durations
+from foon_asp.questions.options import AMOUNT, ITEMS, SOFT, TREE
 from foon_asp.questions.result import Result
-from foon_asp.reduce import Reduction, parse_reductions
 
 
 def solve_or_each(
@@ -25,7 +34,10 @@ def solve_or_each(
     reductions: str = "all",
     certificate: File | None = None,
     cross_check: bool = False,
+    skip_unreachable: bool = False,
     clingo_options: Sequence[str] = (),
+    durations: Durations | None = None,
+    retries: int | None = None,
     all_goals: bool = False,
     **options: Unpack[CommonOptions],
 ) -> Result:
@@ -38,15 +50,20 @@ def solve_or_each(
             reductions=reductions,
             certificate=certificate,
             cross_check=cross_check,
+            skip_unreachable=skip_unreachable,
             clingo_options=clingo_options,
+            durations=durations,
+            retries=retries,
             **options,
         )
     from foon_asp.questions.all_goals import solve_all_goals  # noqa: PLC0415
 
-    if soft or certificate is not None or cross_check:
+    if skip_unreachable:
+        raise UserError("--all-goals says of each goal whether it can be made: leave out --skip-unreachable")
+    if soft or certificate is not None or cross_check or retries is not None:
         raise UserError(
-            "--all-goals lists what each goal costs: ask for soft constraints, a certificate or a "
-            "cross-check of one goal (--goal)"
+            "--all-goals lists what each goal costs: ask for soft constraints, a certificate, a "
+            "cross-check or retries of one goal (--goal)"
         )
     return solve_all_goals(problem, objectives, **options)
 
@@ -54,6 +71,7 @@ def solve_or_each(
 @question(
     *TREE,
     *ITEMS,
+    AMOUNT,
     Option(
         "all_goals",
         "Solve every goal that --goal or the goals file names by itself, under each --objective by itself.",
@@ -61,7 +79,7 @@ def solve_or_each(
         Role.PROBLEM | Role.QUESTION,
         default=False,
     ),
-    formats=(*TABLES, "foon", "steps"),
+    formats=(*TABLES, "foon", "steps", "steps-csv", "behaviour-tree"),
     command=solve_or_each,
     help_="""
     \b
@@ -70,6 +88,7 @@ def solve_or_each(
     foon-asp solve --goal ice --constraint forbid_motion -c forbidden_motion=crush
     foon-asp solve --goal 'greek salad' --certificate proof.json
     foon-asp solve --goal ice --soft forbid_motion.lp=3 -c forbidden_motion=crush
+    foon-asp solve --goal ice --goal omelet --skip-unreachable
     foon-asp solve --all-goals --objective units --objective success
 
     Rules without a head (:- ...) in a --soft file may be broken: each way to break one, with other values of
@@ -97,6 +116,7 @@ def solve(
         File | None, Option(help="Also write a proof, which `foon-asp verify` checks.", kind=Kind.WRITTEN)
     ] = None,
     cross_check: Annotated[bool, Option()] = False,
+    skip_unreachable: Annotated[bool, Option()] = False,
     clingo_options: Annotated[
         Sequence[str],
         Option(
@@ -107,6 +127,11 @@ def solve(
             positional=True,
         ),
     ] = (),
+    durations: Annotated[
+        Durations | None,
+        Option(help="How long motions take, for the formats for robots.", kind=Kind.FILE, metavar="FILE"),
+    ] = None,
+    retries: Annotated[int | None, Option(metavar="N", least=0)] = None,
     reporter: Reporter | None = None,
     **options: Unpack[CommonOptions],
 ) -> Answer:
@@ -125,7 +150,13 @@ def solve(
             that cost, or of more: then it claims a ``bound``.
         cross_check: Also ask other engines: bare clingo, HiGHS, Fast Downward and those of packages, if
             installed. Each has its part of what is left of the ``time_limit``, or a minute without one.
+        skip_unreachable: Leave out goals that cannot be made from the kitchen, and list each with its cause.
+            Constraints are not looked at for that. If no goal can be made, none is left out.
         clingo_options: Options to pass to clingo, for example ``["--opt-strategy=bb"]``.
+        durations: How long motions take, for the formats for robots: a file as for :func:`schedule`, or
+            seconds by motion.
+        retries: Find which trees to follow if this many executions may fail, by their chance of success. The
+            answer has the ``policy``; a behaviour tree has a branch for each tree.
         reporter: Receives trees, bounds and warnings during the search. Without it, a warning about a
             constraint is a :class:`FoonWarning`.
 
@@ -151,8 +182,13 @@ def solve(
         reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
     )
     weights = constraint_weights(soft or {})
+    seconds = stated_durations(durations)
     if soft is not None and problem.items is not None:
         raise not_built("solve --soft")
+    if retries is not None and problem.items is not None:
+        raise not_built("solve --retries")
+    if retries is not None and soft is not None:
+        raise UserError("retries are about the best trees; leave the soft constraints out")
     if soft is not None and certificate is not None:
         raise UserError("soft constraints have no certificates; leave one of them out")
     if cross_check:  # what only some answers need is imported for these
@@ -160,6 +196,11 @@ def solve(
         from foon_asp.questions.cross_check import cross_checked  # noqa: PLC0415
 
         problem, engines = whole(problem), find_engines()
+    skipped: tuple[SkippedGoal, ...] = ()
+    if skip_unreachable:
+        from foon_asp.questions.unreachable_goals import without_unreachable  # noqa: PLC0415
+
+        problem, skipped = without_unreachable(asked_with(problem, settings))
     # without reading more of a large store
     has_several_goals = soft is None and len(shown(problem).goals) > 1
     if soft is not None:
@@ -176,4 +217,11 @@ def solve(
         from foon_asp.questions.several_goals import with_goals_apart  # noqa: PLC0415
 
         answer = with_goals_apart(answer, settings, problem)
-    return cross_checked(answer, settings, weights, engines) if cross_check else answer
+    if skip_unreachable:
+        answer = answer.having(skipped=skipped)
+    answer = cross_checked(answer, settings, weights, engines) if cross_check else answer
+    if retries is not None:
+        from foon_asp.questions.retry_policy import with_policy  # noqa: PLC0415
+
+        answer = with_policy(answer, at_least(retries, 0, "retries"), settings, **options)
+    return answer.knowing(durations=seconds)

@@ -18,8 +18,8 @@ from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Objectives, chosen_objectives, read_as
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
-from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
-from foon_asp.questions.posing_plan import a_plan
+from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
+from foon_asp.questions.posing_plan import a_plan_or_state
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
 from foon_asp.results.document import AboutGoals, Unserialized
@@ -177,16 +177,27 @@ def _states(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]
 
 def _trace_and_write(
     problem: Problem,
-    plan: Tree,
+    plan: Tree | None,
     objectives: Objectives = "units",
     *,
     failed: int | None = None,
     after: int | None = None,
     kitchen_file: Path | None = None,
     stock_file: Path | None = None,
+    state: Path | None = None,
     **options: Any,
-) -> Traced:
+) -> Result:
     """Trace as ``foon-asp trace`` does, and write the kitchen and the stock of a step."""
+    if state is not None:
+        from foon_asp.questions.ways_on import ways_on  # noqa: PLC0415 (most traces are of plans)
+
+        if any(value is not None for value in (failed, after, kitchen_file, stock_file)):
+            raise UserError(
+                "--state is a question without a plan: leave --failed, --after, -o and --stock-out out"
+            )
+        options.pop("items", None)
+        return ways_on(problem, state, objectives, **options)
+    assert plan is not None
     if after is not None and failed is not None and after != failed - 1:
         raise UserError(f"if step {failed} failed, {failed - 1} steps were done: leave --after out")
     traced = trace(problem, plan, objectives, failed=failed, **options)
@@ -205,8 +216,16 @@ def _trace_and_write(
         "The plan: FOON text, or an answer in JSON.",
         Kind.FILE,
         Role.PROBLEM,
-        metavar="PLAN",
+        metavar="[PLAN]",
         positional=True,
+        optional=True,
+    ),
+    Option(
+        "state",
+        "In place of a plan, a file with what is there: which units lead to the goals, and what lacks?",
+        Kind.FILE,
+        Role.PROBLEM | Role.QUESTION,
+        metavar="FILE",
     ),
     GOAL_OF_PLAN,
     Option(
@@ -225,7 +244,8 @@ def _trace_and_write(
     OBJECTIVES,
     CONTAINERS,
     *PLAN_ITEMS,
-    pose=a_plan,
+    AMOUNT,
+    pose=a_plan_or_state,
     formats=TABLES,
     command=_trace_and_write,
     help_="""
@@ -233,12 +253,17 @@ def _trace_and_write(
     foon-asp trace plan.txt --goal 'greek salad'
     foon-asp trace plan.txt --goal macaroni --after 3 -o state.txt --stock-out stock.txt
     foon-asp trace plan.txt --goal macaroni --failed 4
+    foon-asp trace --state state.txt --goal macaroni --format json
 
     What goes and what comes at each step, counted from 1, and what is there in the end. Each item is used
     once; with --items lasting, what is there can be used again. With --failed, the best plan from what is
     there before that step, by --objective, and how it differs from what was left of the old one.
 
-    Exits with 0 when the plan runs, with 1 when it does not; with --failed as `solve` does.
+    With --state, which units lead from what is there to the goals, those that can run now first, and with
+    which inputs lacking; and the fewest things without which no tree exists. What is there can be used again.
+
+    Exits with 0 when the plan runs, with 1 when it does not; with --failed as `solve` does; with --state 0
+    when there is a tree, 1 when something lacks.
     """,
 )
 def trace(

@@ -15,6 +15,7 @@ from foon_asp.escapes import escaped
 from foon_asp.foon import Foon
 from foon_asp.network import Network, counted
 from foon_asp.problem import ContainerRule, Problem, kitchen_needed, parse_objectives
+from foon_asp.proof import proved_checker
 from foon_asp.proof import verify as proof
 from foon_asp.proof.constraint import OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
@@ -72,6 +73,8 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         proved_by: How many cuts the proof has, and of plans the balance of how many nodes.
         used_up: What the claim says in words of items that are used up, beside the rule; null where items
             last.
+        proved_checker: What the checker proved in Coq says: accepted, or why it has not checked the
+            certificate; null where it was not asked.
 
     Example:
         >>> import pathlib, tempfile
@@ -94,6 +97,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
     tree: tuple[int, ...] | None
     proved_by: str
     used_up: tuple[str, ...] | None
+    proved_checker: str | None
 
     @classmethod
     def of(
@@ -104,6 +108,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         with_clingo: bool = False,
         starting: Sequence[int] | None = None,
         stated: Sequence[str] = (),
+        by_proved_checker: str | None = None,
     ) -> Self:
         """Return the verified claim of a certificate about a network.
 
@@ -114,6 +119,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
             with_clingo: Whether clingo checked what is otherwise taken on trust.
             starting: The object nodes that can be needed, by id, where no kitchen was given.
             stated: The digests that were not computed, because a store states them.
+            by_proved_checker: The answer of the proved checker, if it was asked.
         """
         user_rules, items = proof.trusted(content), verified.used_up
         claims = [] if user_rules is None else [trusted_text(user_rules, verified.tree is not None)]
@@ -143,7 +149,13 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
             tree=verified.tree,
             proved_by=looked_at(content),
             used_up=None if items is None else tuple(_items_lines(items, network)),
+            proved_checker=by_proved_checker,
         )
+
+    @property
+    def ending(self) -> Ending:
+        """The certificate is right; where the proved checker was asked, it has to accept it, too."""
+        return Ending.DONE if self.proved_checker in (None, proved_checker.ACCEPTED) else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
         """Return the goals, the claim, and its assumptions."""
@@ -165,6 +177,8 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         yield from (f"taken on trust: {claim}" for claim in self.trusted)
         yield from (f"checked with clingo: {claim}" for claim in self.checked)
         yield f"proof: {self.proved_by}, checked without a solver"
+        if self.proved_checker is not None:
+            yield f"proved checker: {self.proved_checker}"
 
 
 class Refused(Result, frozen=True, kw_only=True, tag=schema_name("refused")):
@@ -192,6 +206,8 @@ def _items_lines(used_up: proof.UsedUp, network: Network) -> Iterator[str]:
     nodes = network.objects
     if used_up.stock:
         yield "in stock: " + ", ".join(f"{copies} x {nodes[o]}" for o, copies in used_up.stock.items())
+    if used_up.wanted:
+        yield "wanted: " + ", ".join(f"{copies} x {nodes[o]}" for o, copies in used_up.wanted.items())
     for stays, verb in ((True, "stay"), (False, "be used up")):
         named = [name for name, name_stays in used_up.stays.items() if name_stays is stays]
         if named:
@@ -242,6 +258,7 @@ def verify_or_refuse(
     *,
     with_clingo: bool = False,
     full: bool = False,
+    proved: bool = False,
     **limits: Unpack[Limits],
 ) -> VerifiedCertificate | Refused:
     """Check a certificate as ``foon-asp verify`` does.
@@ -250,7 +267,7 @@ def verify_or_refuse(
         UserError: for one of other data, with what to name.
     """
     try:
-        return verify(data, certificate, with_clingo=with_clingo, full=full, **limits)
+        return verify(data, certificate, with_clingo=with_clingo, full=full, proved=proved, **limits)
     except OtherDataError as other:
         raise UserError(
             f"{certificate} is about other data ({other}): add {_NAMED_BY[other.differing]}"
@@ -286,8 +303,10 @@ def verify_or_refuse(
     The data has to be the same: --data and the other options name it as they do for solve. What units cost by
     a measure of your own, and what rules of your own say, is taken on trust, unless --with-clingo checks it;
     with --measure, the rules have to be those of the certificate. Of a store, what the certificate speaks of
-    is read, and the digests are those that the store states, unless --full computes them. Exits with 0 when
-    the certificate is right, with 1 when it is refused, and with 2 when it is about other data.
+    is read, and the digests are those that the store states, unless --full computes them. With --proved, the
+    checker that is proved in Coq has to accept the certificate as well. Exits with 0 when the certificate is
+    right, with 1 when it is refused, with 2 when it is about other data, and with 3 when --proved cannot
+    check it or is not built.
     """,
 )
 def verify(
@@ -296,6 +315,7 @@ def verify(
     *,
     with_clingo: Annotated[bool, Option()] = False,
     full: Annotated[bool, Option()] = False,
+    proved: Annotated[bool, Option()] = False,
     **limits: Unpack[Limits],
 ) -> VerifiedCertificate:
     """Check a certificate against the data it is about, without any solver.
@@ -309,6 +329,7 @@ def verify(
         with_clingo: Check with clingo what is otherwise taken on trust: costs by measures, and rules of your
             own.
         full: Read all of a store, and compute the digests that are otherwise taken as the store states them.
+        proved: Also ask the checker that is proved in Coq, which `make verified` builds.
 
     Returns:
         What the certificate proves.
@@ -338,10 +359,11 @@ def verify(
             f"found a certificate of type {type(certificate).__name__}, expected a path or that of an answer"
         )
     with begin(limits).watched("checking the certificate"):
-        return _verified(data if isinstance(data, Foon) else Foon.of(data), content, with_clingo, full)
+        foon = data if isinstance(data, Foon) else Foon.of(data)
+        return _verified(foon, content, with_clingo, full or proved, proved)
 
 
-def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool) -> VerifiedCertificate:
+def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool, proved: bool) -> VerifiedCertificate:
     """Return the claim that a certificate proves about data."""
     dataset = foon.dataset
     subject = _subject(dataset, content, full)
@@ -364,10 +386,13 @@ def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool) -> Verifi
             from foon_asp.certificate.own_rules import check_with_clingo  # noqa: PLC0415 (the solver)
 
             check_with_clingo(content, user_rules, problem, Deadline(_SECONDS))
+    by_proved_checker = proved_checker.ask(content, subject) if proved else None
     starting = None
     if not subject.trusted and dataset.data.starting:
         starting = kitchen_needed(dataset.problem(verified.goals, verified.containers, everything=True))
-    return VerifiedCertificate.of(verified, subject.network, content, with_clingo, starting, subject.trusted)
+    return VerifiedCertificate.of(
+        verified, subject.network, content, with_clingo, starting, subject.trusted, by_proved_checker
+    )
 
 
 def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:

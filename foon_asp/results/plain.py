@@ -80,9 +80,11 @@ def read_plain(kind: type[T], value: Json) -> T:
     return msgspec.convert(value, kind, dec_hook=_exact)
 
 
-def _exact(_: type, value: Any) -> Objective | Fraction | int:
+def _exact(kind: type, value: Any) -> Objective | Fraction | int:
     if isinstance(value, Objective) or type(value) is int:
         return value
+    if kind is Objective:
+        return Objective(value)
     return Fraction(*map(int, value["exact"].split("/")))  # without exponents: those stand for many digits
 
 
@@ -129,12 +131,16 @@ def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _word(value: Any) -> Any:
-    """Return a node, a place or a constant in one-line notation; other values as they are."""
+    """Return a node, its change, a place or a constant in one-line notation; other values as they are."""
     if isinstance(value, dict):
         if "node" in value and "label" in value:
             return value["node"]
         if value.keys() >= {"file", "line"} and "motion" not in value:
             return f"{value['file']}:{value['line']}"
+        if value.keys() == {"object", "before", "after"}:
+            return " → ".join(
+                "" if node is None else node["node"] for node in (value["before"], value["after"])
+            )
         if value.keys() >= {"name", "example"}:
             return f"{value['name']}={value['example']}"
     return value

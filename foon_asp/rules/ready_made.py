@@ -7,8 +7,6 @@ question. The meaning of these constraints is the one that certificates are chec
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from fractions import Fraction
-from itertools import accumulate
 from pathlib import Path
 from typing import Any, Final
 
@@ -16,8 +14,8 @@ from foon_asp.encoding.facts import hundredths
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
 from foon_asp.grounding.exact import LARGEST
-from foon_asp.problem import Contradiction, Problem, Restriction, follow
-from foon_asp.proof.constraint import LIBRARY, Meaning, Question, Rule, Units, meaning
+from foon_asp.problem import Contradiction, Problem, Restriction
+from foon_asp.proof.constraint import LIBRARY, Meaning, Question, Rule, meaning
 from foon_asp.proof.ruled import Ruled
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
@@ -99,32 +97,6 @@ class ReadyMade:
                 amounts = {unit: int(amount) for units, amount in rule_meaning.things for unit in units}
                 yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(rule_meaning.max_sum)  # type: ignore[misc]
 
-    def conflict(self, problem: Problem, units: Units) -> Sequence[Units] | None:
-        """Return sets that a tree hits, but no tree hits all of that keeps to unsettled constraints.
-
-        ``None`` where the tree keeps to these; it keeps to all others.
-        """
-        for rule, rule_meaning in zip(self.rules, self._meanings(problem)[0], strict=True):
-            if rule_meaning.max_sum is not None:
-                used = [thing for thing in rule_meaning.things if not units.isdisjoint(thing[0])]
-                used.sort(key=lambda thing: -thing[1])
-                sums = accumulate((amount for _, amount in used), initial=Fraction())
-                over = next(
-                    (position for position, total in enumerate(sums) if total > rule_meaning.max_sum), None
-                )
-                if over is not None:
-                    return [members for members, _ in used[:over]]
-            if rule_meaning.barred is not None and (early := _too_early(problem, rule, units)):
-                return [Units({unit}) for unit in sorted(early)]
-        return None
-
-    def barred(self, problem: Problem, without: Units) -> Units:
-        """Return units that are in no tree that keeps to all constraints and has no unit of ``without``."""
-        meanings, _ = self._meanings(problem)
-        return Units().union(
-            *(rule_meaning.barred(Units(), without) for rule_meaning in meanings if rule_meaning.barred)
-        )
-
     def keeps(self, problem: Problem, units: Collection[int]) -> bool:
         """Whether a tree keeps to all of them."""
         _, ruled = self._meanings(problem)
@@ -195,27 +167,6 @@ def _values(
             (value, sorted(facts[value])) for value, k in LIBRARY[rule["rule"]].values.items() if k is list
         )
     return (rules, constants) if shared.keys() <= used_names else None
-
-
-def _too_early(problem: Problem, rule: Rule, units: Units) -> Units:
-    """Return a unit with the later motion that can execute without the earlier one, and all units it needs.
-
-    Empty where the tree has no such unit.
-    """
-    motions, needs, gives, kitchen = problem.network.motions, problem.needs, problem.gives, problem.kitchen
-    maker: dict[int, int] = {}
-    waiting = [unit for unit in sorted(units) if motions[unit] != rule["earlier_motion"]]
-    while ready := [unit for unit in waiting if all(o in maker or o in kitchen for o in needs[unit])]:
-        for unit in ready:
-            if motions[unit] == rule["later_motion"]:
-                built_upon = follow(needs[unit], maker, needs, kitchen)
-                assert built_upon is not None
-                return Units(built_upon | {unit})
-        for unit in ready:
-            for o in gives[unit]:
-                maker.setdefault(o, unit)
-        waiting = [unit for unit in waiting if unit not in ready]
-    return Units()
 
 
 def question_of(problem: Problem) -> Question:

@@ -13,6 +13,7 @@ from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.soft import solve_soft
 from foon_asp.errors import BugError
+from foon_asp.hypergraph import ALL, NONE, reduce
 from foon_asp.network import ObjectNode
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels, parse_objectives
 from foon_asp.questions.assist import assist
@@ -20,7 +21,6 @@ from foon_asp.questions.help_search import PricedHelp
 from foon_asp.questions.pareto import pareto
 from foon_asp.questions.regret import regret
 from foon_asp.questions.solve import solve as solve_goals
-from foon_asp.reduce import ALL, NONE, reduce
 from foon_asp.resources import bundled_kitchen, encodings_folder
 from foon_asp.text.reader import FoonReader
 from tests.conftest import Cli

@@ -17,9 +17,9 @@ from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.grounded import Grounded
 from foon_asp.grounding.run import Run
+from foon_asp.hypergraph import ALL, NONE
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import Costs, Objective, Problem, levels
-from foon_asp.reduce import ALL, NONE
 from foon_asp.resources import encodings_folder
 from tests.support.gap_problem import gap_problem
 from tests.support.ways_problem import GOAL, ways

@@ -17,9 +17,9 @@ from contest.engines import ENGINES, Engine
 from contest.instance import Instance, cuts, raw_units
 from contest.trial import End, attempt
 
+from foon_asp.hypergraph import reduce
 from foon_asp.network import Network
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
-from foon_asp.reduce import reduce
 from tests.oracle import task_trees
 from tests.support.gap_problem import gap_problem
 from tests.support.random_problems import random_problem

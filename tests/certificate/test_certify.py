@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 
 from foon_asp.asp import Outcome, Proof, Settings, Status
-from foon_asp.bounds.lower_bound import Packing
 from foon_asp.certificate import (
     Certificate,
     Coverage,
@@ -20,6 +19,7 @@ from foon_asp.certificate import (
     certify_outcome,
 )
 from foon_asp.errors import BugError
+from foon_asp.hypergraph.optimality_proof import Packing
 from foon_asp.problem import Objective, Problem
 from foon_asp.proof import verify
 from tests.proof.by_hand import recipe

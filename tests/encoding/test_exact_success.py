@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.encoding.exact_success import RateScale, problem_scale, rate_scale
 from foon_asp.errors import UserError
+from foon_asp.hypergraph import NONE
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
 from foon_asp.questions.alternatives import alternatives
 from foon_asp.questions.assist import assist
-from foon_asp.reduce import NONE
 from tests.conftest import Cli
 
 

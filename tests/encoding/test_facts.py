@@ -11,9 +11,9 @@ import pytest
 
 from foon_asp.asp import Settings, solve
 from foon_asp.asp.bare_program import bare_program
+from foon_asp.hypergraph import ALL, NONE
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.reduce import ALL, NONE
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import RuleText
 from tests.conftest import Cli

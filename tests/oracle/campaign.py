@@ -24,9 +24,9 @@ from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.soft import solve_soft
 from foon_asp.engines import Asked, DisagreementError, cross_check
 from foon_asp.errors import UserError
+from foon_asp.hypergraph import parse_reductions
 from foon_asp.network import FunctionalUnit, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.reduce import parse_reductions
 from foon_asp.rules.constraint import Constraint
 from tests.oracle import constraints, task_trees
 from tests.oracle.constraints import random_rule, settings_of

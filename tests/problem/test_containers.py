@@ -18,6 +18,7 @@ from foon_asp import why_not
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.certificate import certify, certify_infeasible
 from foon_asp.errors import UserError
+from foon_asp.hypergraph import ALL, NONE
 from foon_asp.network import (
     LEVELS,
     Network,
@@ -32,7 +33,6 @@ from foon_asp.network import (
 from foon_asp.problem import ContainerRule, Objective, Problem, executable_order, first_tree, reach, relevant
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.proof.verify import TREE, RefusedError, seal
-from foon_asp.reduce import ALL, NONE
 from tests.conftest import Cli
 from tests.oracle import task_trees
 from tests.support.handmade_certificate import check

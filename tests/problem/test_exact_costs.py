@@ -7,9 +7,9 @@ from fractions import Fraction
 
 import pytest
 
-from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut
+from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineError
+from foon_asp.hypergraph.landmark_cuts import Cuts, WeightedCut
 from foon_asp.problem import ContainerRule, Objective, levels
-from foon_asp.reduce.exact_costs import CoarseCosts, ExactCosts, TooFineError
 from tests.oracle import task_trees
 from tests.support.random_problems import random_objectives, random_problem
 from tests.support.ways_problem import ways

@@ -13,6 +13,7 @@ from foon_asp.encoding.facts import write_facts, write_objectives
 from foon_asp.encoding.scales import Scales
 from foon_asp.engines import Asked, DisagreementError, cross_check
 from foon_asp.errors import BugError
+from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.network import UnitPrices
 from foon_asp.problem import (
     ContainerRule,
@@ -25,7 +26,6 @@ from foon_asp.problem import (
     multiplies,
 )
 from foon_asp.proof import verify
-from foon_asp.reduce import ALL, NONE, Reduction
 from foon_asp.resources import encodings_folder
 from tests.encoding.test_exact_success import two_ways
 from tests.oracle import task_trees

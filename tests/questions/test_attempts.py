@@ -9,9 +9,9 @@ from foon_asp.asp import Settings, Status, solve
 from foon_asp.certificate import certify
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.errors import UserError
+from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.proof import verify
-from foon_asp.reduce import ALL, NONE, Reduction
 from tests.conftest import Cli
 from tests.oracle import task_trees
 from tests.support.random_problems import random_problem

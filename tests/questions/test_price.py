@@ -15,11 +15,11 @@ from foon_asp.certificate import certify
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.engines import Asked, cross_check
 from foon_asp.errors import UserError
+from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.network import FunctionalUnit, Network, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof import verify
 from foon_asp.questions.pareto import pareto
-from foon_asp.reduce import ALL, NONE, Reduction
 from tests.oracle import task_trees
 from tests.oracle.test_optimum import assert_agrees
 from tests.questions.test_pareto import assert_agrees as assert_front_agrees

@@ -62,6 +62,12 @@ SECTIONS = (
     ),
     Section("solve --format steps", ("steps",), ("solve --goal ice --format steps",), depth=10),
     Section("alternatives", ("alternatives",), ("alternatives --goal ice --best 2 --format json",)),
+    Section(
+        "alternatives --union",
+        ("unit-union",),
+        ("alternatives --goal ice --union --within 50 --format json",),
+        depth=8,
+    ),
     Section("pareto", ("pareto",), ("pareto --goal ice --format json",)),
     Section("regret", ("regret",), ("regret --goal ice --format json",), depth=8),
     Section("sensitivity", ("sensitivity",), ("sensitivity --goal ice --format json",), depth=8),
@@ -108,6 +114,13 @@ SECTIONS = (
             "solve --goal ice --items used-up --format foon > plan.txt",
             "trace plan.txt --goal ice --items used-up --format json",
         ),
+    ),
+    Section(
+        "trace --state",
+        ("state",),
+        ("trace --state state.txt --goal ice --format json",),
+        files={"state.txt": "O→ice\nS→cubed\nS→in→[drinking glass]\n"},
+        depth=8,
     ),
     Section("schedule", ("schedule", "durations"), note="[plans.md](plans.md#schedules) has an example."),
     Section(

@@ -20,10 +20,10 @@ from foon_asp.asp import Settings, Status, solve
 from foon_asp.certificate import certify
 from foon_asp.engines import Asked, cross_check
 from foon_asp.errors import UserError
+from foon_asp.hypergraph import ALL, NONE
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem, needed_inputs, parse_objectives, reach
 from foon_asp.proof import verify
-from foon_asp.reduce import ALL, NONE
 from foon_asp.results.figure_text import figure_text
 from foon_asp.rules.measure import read_measures
 from foon_asp.text.diagnostics import InputError

@@ -15,9 +15,9 @@ from foon_asp.asp.assembly import ready_made
 from foon_asp.asp.breaking import Breaking
 from foon_asp.asp.ranking import Ranked
 from foon_asp.errors import UserError
+from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.network import UnitPrices
 from foon_asp.problem import Objective, Problem
-from foon_asp.reduce import ALL, NONE, Reduction
 from foon_asp.rules.constraint import given_constraint
 from foon_asp.rules.ready_made import ReadyMade
 from tests.conftest import ROOT, Cli

@@ -16,7 +16,7 @@ from foon_asp.problem import Problem
 from foon_asp.questions.result import Ending
 from foon_asp.resources import encodings_folder
 from tests.conftest import ROOT, Cli, valid
-from tests.reduce.test_reductions import posed
+from tests.hypergraph.test_reductions import posed
 from tests.rules.test_restricted_answers import CLASSES, rules
 
 KITCHEN = ROOT / "data" / "kitchen"

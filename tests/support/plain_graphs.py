@@ -4,18 +4,18 @@ import random
 from collections.abc import Collection, Iterable, Sequence
 from fractions import Fraction
 
+from foon_asp.hypergraph.goal_graph import GoalGraph
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Problem
-from foon_asp.reduce.graph import Graph
 
 Action = tuple[Sequence[int], Sequence[int]]  # what it needs, what it gives
 
 
-def plain(actions: Sequence[Action], goals: Iterable[int], start: Iterable[int] = ()) -> Graph:
+def plain(actions: Sequence[Action], goals: Iterable[int], start: Iterable[int] = ()) -> GoalGraph:
     """Give the graph of some actions, each by what it needs and what it gives."""
     needs, gives = [need for need, _ in actions], [give for _, give in actions]
     named = {*goals, *start}.union(*needs, *gives)
-    return Graph(
+    return GoalGraph(
         1 + max(named, default=0),
         needs,
         gives,
@@ -56,7 +56,7 @@ def _thing(number: int, *states: str) -> ObjectNode:
     return ObjectNode.of(f"thing {number}", states)
 
 
-def random_graph(seed: int, actions: int = 9, objects: int = 8) -> Graph:
+def random_graph(seed: int, actions: int = 9, objects: int = 8) -> GoalGraph:
     """Give a graph of which much can be made, with circles in it; object 0 is there from the start."""
     rng = random.Random(f"plain {seed}")
     made = []
@@ -66,7 +66,7 @@ def random_graph(seed: int, actions: int = 9, objects: int = 8) -> Graph:
     return plain(made, rng.sample(range(1, objects), rng.choice((1, 1, 2))), [0])
 
 
-def executes(graph: Graph, actions: Collection[int]) -> bool:
+def executes(graph: GoalGraph, actions: Collection[int]) -> bool:
     """Whether all of the actions can run, one after the other, and make the goals."""
     made, waiting = set(graph.start), set(actions)
     while ready := {a for a in waiting if made.issuperset(graph.needs[a])}:

@@ -1,0 +1,190 @@
+"""Units of some tree and of every tree up to a cost, without a list of the trees."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.outcome import Outcome, Status
+from foon_asp.asp.prepared import Prepared, prepare
+from foon_asp.asp.reporter import Reporter
+from foon_asp.asp.settings import Settings
+from foon_asp.asp.solver import solve
+from foon_asp.encoding.facts import write_avoided, write_in_all, write_objectives, write_unseen
+from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.errors import UserError
+from foon_asp.hypergraph.reduction import at_costs, reduce_under_rules
+from foon_asp.problem import Costs, Objective, Problem, multiplies, reach
+from foon_asp.problem.restriction import Restriction
+
+_JUST_ABOVE = Fraction(1, 10**30)  # a cost that is this much above a limit is above it, at every scale
+
+
+class TreeUnion(NamedTuple):
+    """The units of some and of every tree.
+
+    ``some`` are units that some tree has, ``every`` those that every tree has, by id. ``undecided`` are units
+    of which it is not known, because a limit came first: whether some tree has one that is not in ``some``,
+    and whether every tree has one that is in ``some``.
+    """
+
+    best: Outcome
+    some: frozenset[int]
+    every: frozenset[int]
+    undecided: frozenset[int]
+
+
+def tree_union(
+    problem: Problem,
+    objectives: tuple[Objective, ...],
+    settings: Settings,
+    reporter: Reporter,
+    worse: Fraction = Fraction(0),
+) -> TreeUnion:
+    """Find the units of some and of every tree up to a cost, as brave and cautious consequences.
+
+    With ``worse`` 0, these are the optimal trees; else all trees without redundant units whose first
+    objective is worse than the best value by at most this share of it. Each search finds a tree that adds a
+    unit to those of some tree, or takes one from those of every tree; the last one proves that there is none.
+    Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for rules with ``worse``.
+    """
+    best = solve(problem, objectives, settings, reporter)
+    if best.status is not Status.OPTIMAL or best.units is None or best.costs is None:
+        undecided = frozenset(best.units or ())
+        return TreeUnion(best, undecided, frozenset(), undecided)
+    program = assemble(settings, Reporter().warning, problem=problem)
+    if worse and not program.own:
+        raise UserError(
+            "with rules or encodings of yours, --union is about the optimal trees only: leave out --within"
+        )
+    search = _Union(prepare(problem, objectives, settings, program), best, worse)
+    return search.run()
+
+
+class _Union:
+    """The search: the units seen so far, and the facts that avoid trees that do not count."""
+
+    def __init__(self, prepared: Prepared, best: Outcome, worse: Fraction) -> None:
+        assert best.units is not None
+        assert best.costs is not None
+        self._prepared, self._costs, self._worse = prepared, best.costs, worse
+        self._best = best
+        self._some, self._every = set(best.units), set(best.units)
+        self._number = prepared.problem.network.unit_number
+        self._settled = "" if not worse else "_without_spare(1).\n"
+        self._avoided = 0
+
+    def run(self) -> TreeUnion:
+        """Search until nothing is undecided, or until a limit."""
+        candidates = self._candidates()
+        self._prepared = replace(self._prepared, units=candidates)
+        undecided = set[int]()
+        while unseen := set(candidates) - self._some:
+            found = self._next(write_unseen(map(self._number, sorted(unseen))))
+            if not found:
+                undecided |= unseen if found is None else set()
+                break
+        while self._every:
+            found = self._next(write_in_all(map(self._number, sorted(self._every))))
+            if not found:
+                undecided |= self._every if found is None else set()
+                break
+        some, every = frozenset(self._some), frozenset(self._every - undecided)
+        return TreeUnion(self._best, some, every, frozenset(undecided))
+
+    def _candidates(self) -> tuple[int, ...]:
+        """Return the units that a tree up to the limit can have, with more of them where rules are added."""
+        prepared, deadline = self._prepared, self._prepared.deadline
+        if not prepared.program.own or prepared.unsettled or not prepared.settings.reductions:
+            return prepared.units
+        problem, by = prepared.kept or prepared.problem, prepared.levels
+        try:
+            reduced = reduce_under_rules(
+                problem, by, expired=lambda: deadline.passed, redundant=prepared.redundant
+            )
+            subproblem, costs = reduced.subproblem, reduced.costs
+            if subproblem is None or costs is None:
+                return prepared.units
+            if self._worse:
+                none = dict.fromkeys(by, Fraction(0)) | {o: Fraction(1) for o in by if multiplies(o)}
+                limit = costs.of(Costs({**none, by[0]: self._limit()}))
+            else:
+                limit = subproblem.total(self._some) + costs.doubt
+            with deadline.watched("cutting the network"):
+                kept = at_costs(
+                    subproblem, by, costs, lambda: deadline.passed, self._some, below=limit + 1
+                ).units
+        except KeyboardInterrupt:
+            deadline.interrupt()
+            return prepared.units
+        return tuple(sorted({*kept, *self._some}))
+
+    def _limit(self) -> Fraction:
+        """Return a value of the first objective that is worse than all that count, by almost nothing."""
+        first = self._prepared.levels[0]
+        best = Fraction(self._costs.measure(first))
+        if multiplies(first):
+            return best * (1 - self._worse) * (1 - _JUST_ABOVE)
+        return best * (1 + self._worse) + _JUST_ABOVE
+
+    def _next(self, question: str) -> bool | None:
+        """Take in another tree that answers a question; ``False`` if none does, ``None`` at a limit."""
+        problem, by = self._prepared.problem, self._prepared.levels
+        while True:
+            text = write_objectives(by) + question + self._settled
+            ended = self._prepared.run(text, encodings=(question_encoding("union.lp"),))
+            if not ended.exhausted:
+                return None
+            if ended.units is None:
+                return False
+            units = {problem.network.unit_of_number(number) for number in ended.units}
+            order = self._prepared.holds.tree([unit for unit in units if unit is not None])
+            self._prepared.require_kept(order)
+            if self._is_beyond(order):
+                return False
+            tree = self._without_spare(order) if self._worse else frozenset(order)
+            counts = self._counts(tree)
+            if counts:
+                before = len(self._some), len(self._every)
+                self._some |= tree
+                self._every &= tree
+            if not counts or (len(self._some), len(self._every)) == before:
+                self._settled += write_avoided(self._avoided, map(self._number, sorted(tree)))
+                self._avoided += 1
+                continue
+            return True
+
+    def _is_beyond(self, tree: Sequence[int]) -> bool:
+        """Whether all trees that are left cost more than those that count, by the weights of this one."""
+        prepared, costs = self._prepared, self._prepared.problem.costs(tree)
+        scales = prepared.scales
+        for objective in prepared.levels[:1] if self._worse else prepared.levels:
+            figure: int | Fraction = costs.measure(objective)
+            best = self._limit() if self._worse else self._costs.measure(objective)
+            if objective is scales.rounded:
+                figure = scales.bound(objective, scales.weight(objective, tree))
+            if figure != best:
+                return figure < best if multiplies(objective) else figure > best
+            if objective is scales.rounded:
+                return False
+        return False
+
+    def _counts(self, tree: Collection[int]) -> bool:
+        """Whether a tree is one of those in question, by its exact costs."""
+        by, costs = self._prepared.levels, self._prepared.problem.costs(tree)
+        if not self._worse:
+            return costs.key(by) == self._costs.key(by)
+        figure, limit = costs.measure(by[0]), self._limit()
+        return figure > limit if multiplies(by[0]) else figure < limit
+
+    def _without_spare(self, tree: Sequence[int]) -> frozenset[int]:
+        """Return a part of a tree that is a tree, without redundant units."""
+        problem, kept = self._prepared.problem, set(tree)
+        for unit in reversed(tree):
+            restriction = Restriction(lambda u, kept=kept, unit=unit: u == unit or u not in kept)  # type: ignore[misc]
+            fewer = replace(problem, restriction=restriction)
+            reached = reach(fewer)
+            if all(reached.available[goal] for goal in problem.goals):
+                kept = set(reached.units)
+        return frozenset(kept)

@@ -1,0 +1,346 @@
+"""Branch and cut for the cheapest derivation, over the linear relaxation of hitting all landmarks.
+
+At each node, some actions are used and some are forbidden. The preconditions of the used ones are targets,
+too, and the used ones cost nothing any more. Cuts are separated by an LP solution as in
+:mod:`foon_asp.hypergraph.cost_partition`. A cut holds at every node that has a target in it, so cuts are kept
+from node to node. A node is closed only by whole numbers: by a cost partition that is rounded so that no
+action carries more than its cost, or by a cut that no action crosses. The floats of HiGHS decide only where
+to look.
+"""
+
+import math
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from heapq import heappop, heappush
+from typing import Any
+
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.cost_partition import stalled
+from foon_asp.hypergraph.covering import UnsolvedError
+from foon_asp.hypergraph.cut import Cut, Cutter
+from foon_asp.hypergraph.hypergraph import Hypergraph
+from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
+from foon_asp.hypergraph.optimality_proof import Branch, Cases, CostFixing, Hopeless, Packing, Proof
+
+_WHOLE = 1e-6  # integrality tolerance of LP values
+
+_PACKING_LENGTH = 5000  # of these, counted for each cost partition: limits the depth of the branching
+
+Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
+
+
+class TooLongError(Exception):
+    """A proof takes too much time or lists too many objects and actions."""
+
+
+@dataclass(slots=True, eq=False)
+class _Node:
+    """A node of the search tree: the used and the forbidden actions, and a bound on its derivations.
+
+    No derivation of the node costs less than ``bound``, in parts, by the ``weights`` of rows. A node is
+    either closed, or has two children, and no derivation with an action of ``above_cutoff`` beats the
+    incumbent.
+    """
+
+    used: frozenset[int]
+    forbidden: frozenset[int]
+    bound: int
+    weights: list[tuple[int, int]]
+    hopeless: Cut | None = None
+    above_cutoff: frozenset[int] = frozenset()
+    action: int | None = None
+    without: "_Node | None" = None
+    using: "_Node | None" = None
+
+
+class Branching:
+    """Branch and cut for derivations of the targets that cost less than ``total``.
+
+    All of the actions can run, and each costs more than 0. ``cuts`` are sets of objects of cuts to begin
+    with. ``guess`` is the primal heuristic: it proposes derivations from the LP values of the actions and
+    from the forbidden ones. ``incumbent`` is the best derivation found, if any; no derivation costs less than
+    ``bound`` and it. ``closed`` is true where it is proved that none costs less than the incumbent, or than
+    ``total`` without one. ``effort`` is what remains of the budget of a search, in actions looked at.
+    """
+
+    def __init__(
+        self,
+        graph: Hypergraph,
+        targets: Iterable[int],
+        actions: Collection[int],
+        cost: Callable[[int], int],
+        cuts: Iterable[Collection[int]],
+        total: int,
+        guess: Guess,
+    ) -> None:
+        import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
+
+        self._np = np
+        self._relaxation = LandmarkRelaxation(graph, targets, actions, cost)
+        self._actions, self._costs = self._relaxation.actions, self._relaxation.costs
+        self._graph, self._targets = self._relaxation.graph, self._relaxation.targets
+        self._relative, self._covering = self._relaxation.relative, self._relaxation.covering
+        self._unit = math.gcd(*self._costs) or 1  # costs of derivations are multiples of it
+        self._parts = self._relaxation.in_parts()
+        self._total, self._guess = total, guess
+        self.incumbent: frozenset[int] | None = None
+        self.bound, self.closed = 0, False
+        self._active: dict[int, bool] = {}  # by row, whether its cut has a target at the current node
+        self._relaxed_at: tuple[frozenset[int], frozenset[int]] = frozenset(), frozenset()
+        self.effort = 0
+        self._length_budget: float = math.inf  # objects and actions that the proof may still list
+        self._expired: Callable[[], bool] = lambda: False
+        self._root = _Node(frozenset(), frozenset(), 0, [])
+        self._relaxation.add_known(cuts)
+
+    def search(self, effort: int, expired: Callable[[], bool]) -> Iterator[None]:
+        """Branch, best bound first, until no node is open or ``effort`` actions were looked at.
+
+        Yields after each new incumbent or bound, and at the end.
+        """
+        self.effort = effort
+        waiting = [(0, 0, 0, self._root)]
+        number = 0
+        try:
+            while waiting:
+                bound, depth, _, node = waiting[0]
+                before = self.bound, self._total
+                self.bound = max(self.bound, min(-(-bound // PARTS), self._total))
+                stopped = self._stopped(expired)
+                if not stopped and not self._closes(bound):
+                    stopped = not self._solve(node, number, expired)
+                if (self.bound, self._total) != before:
+                    yield
+                if stopped:
+                    return
+                heappop(waiting)
+                for child in (node.using, node.without):
+                    if child is not None:
+                        number += 1
+                        heappush(waiting, (child.bound, depth - 1, number, child))
+        except UnsolvedError:
+            return
+        self.closed = True
+        yield
+
+    def proof(self, max_length: float = math.inf, expired: Callable[[], bool] = lambda: False) -> Proof:
+        """Return the proof of a search that closed all nodes.
+
+        Raises :class:`TooLongError` where time is up, and where the proof would list more than ``max_length``
+        objects and landmark actions.
+        """
+        self._length_budget, self._expired = max_length, expired
+        return self._proof(self._root)[0]
+
+    def cases(self) -> Cases:
+        """Return the tree of actions branched on, without the actions fixed by reduced cost."""
+        return self._cases(self._root)
+
+    def _cases(self, node: _Node) -> Cases:
+        if node.hopeless or node.without is None or node.using is None or node.action is None:
+            return None
+        return self._actions[node.action], self._cases(node.without), self._cases(node.using)
+
+    def _stopped(self, expired: Callable[[], bool]) -> bool:
+        return self.effort <= 0 or expired()
+
+    def _closes(self, bound: int) -> bool:
+        """Return whether no derivation of a node with this bound is better than the incumbent."""
+        return bound > self._below() * PARTS
+
+    def _below(self) -> int:
+        """Return the greatest cost of a derivation that is better than the incumbent: the cutoff."""
+        return (self._total - 1) // self._unit * self._unit
+
+    def _go_to(self, node: _Node, targets: set[int]) -> None:
+        """Change the bounds and rows of the relaxation to those of a node."""
+        used, forbidden = self._relaxed_at
+        for action in (used ^ node.used) | (forbidden ^ node.forbidden):
+            upper = 0.0 if action in node.forbidden else 1.0 if action in node.used else math.inf
+            self._covering.bound(action, float(action in node.used), upper)
+        self._relaxed_at = node.used, node.forbidden
+        for row, cut in enumerate(self._relaxation.cuts):
+            active = not cut.isdisjoint(targets)
+            if active != self._active.get(row, True):
+                self._active[row] = active
+                self._covering.demand(row, float(active))
+
+    def _solve(self, node: _Node, number: int, expired: Callable[[], bool]) -> bool:
+        """Close a node or branch on it; return whether there was time for that."""
+        targets = set(self._targets).union(*(self._graph.needs[a] for a in node.used))
+        self.effort -= len(self._actions)
+        cutter = Cutter(self._graph, targets, node.forbidden)
+        if cutter.hopeless is not None:
+            node.hopeless = cutter.hopeless
+            return True
+        self._go_to(node, targets)
+        free = self._np.ones(len(self._actions), dtype=bool)
+        free[list(node.used | node.forbidden)] = False
+        values: list[float] = []
+        while True:
+            relaxed = self._covering.solve(expired)
+            shares = self._np.array(relaxed.x)
+            values.append(relaxed.value)
+            self._weigh(node)
+            if self._closes(node.bound):
+                return True
+            if self._stopped(expired):
+                return False
+            halves = self._np.flatnonzero(free & (shares > _WHOLE) & (shares < 1 - _WHOLE))
+            if not len(halves):
+                chosen = self._rounded_derivation(cutter, shares, node)
+                if not chosen:
+                    continue
+                if self._closes(node.bound):
+                    return True
+                halves = self._np.array(
+                    sorted(chosen - node.used)
+                )  # rounding left a gap that floats do not close
+                break
+            if number:
+                ends = len(values) > tuning.RELAXATION.node_rounds
+            else:
+                ends = stalled(values, self._total / self._relaxation.dearest - relaxed.value)
+            if ends or not self._separate(cutter, shares, node, expired):
+                break
+        if number % tuning.RELAXATION.guess_interval == 0:
+            self._try_guesses(shares, node)
+            if self._closes(node.bound):
+                return True
+        reduced_costs = self._reduced_costs(node)
+        gap = self._below() * PARTS - node.bound
+        above_cutoff = self._np.flatnonzero(reduced_costs > gap).tolist()
+        node.above_cutoff = frozenset(above_cutoff) - node.used - node.forbidden
+        scores = self._np.minimum(shares, 1.001 - shares)[halves] * (self._relative[halves] + 0.05)
+        action = int(halves[scores.argmax()])
+        node.above_cutoff -= {action}
+        node.action = action
+        forbidden = node.forbidden | node.above_cutoff
+        node.without = _Node(node.used, forbidden | {action}, node.bound, node.weights)
+        paid = node.bound + int(reduced_costs[action])
+        node.using = _Node(node.used | {action}, forbidden, paid, node.weights)
+        return True
+
+    def _rounded_derivation(self, cutter: Cutter, shares: Any, node: _Node) -> set[int]:
+        """Return the actions of the rounded LP solution; none, and add a cut, if they miss a target."""
+        chosen = node.used.union(self._np.flatnonzero(shares > 0.5).tolist()) - node.forbidden
+        self.effort -= len(cutter.actions)
+        cut = cutter.cut(chosen, cutter.actions)
+        if cut is not None:
+            self._relaxation.add(frozenset(cut.objects))
+            return set()
+        self._record({self._actions[a] for a in chosen})
+        return set(chosen)
+
+    def _record(self, actions: set[int]) -> None:
+        total = sum(self._costs[i] for i, a in enumerate(self._actions) if a in actions)
+        if total < self._total:
+            self._total, self.incumbent = total, frozenset(actions)
+
+    def _try_guesses(self, shares: Any, node: _Node) -> None:
+        self.effort -= 2 * len(self._actions)
+        solution = dict(zip(self._actions, shares.tolist(), strict=True))
+        for derivation in self._guess(solution, {self._actions[a] for a in node.forbidden}):
+            if set(derivation) <= solution.keys():
+                self._record(set(derivation))
+
+    def _separate(self, cutter: Cutter, shares: Any, node: _Node, expired: Callable[[], bool]) -> bool:
+        """Add disjoint cuts that an LP solution violates; return whether there are any."""
+        budget = min(self.effort, tuning.RELAXATION.cuts * len(cutter.actions))
+        added, looks = self._relaxation.separate([cutter], node.used, shares.copy(), budget, expired)
+        self.effort -= looks
+        return added > 0
+
+    def _weigh(self, node: _Node) -> None:
+        """Raise the bound of a node to that of the rounded dual solution, if it is greater."""
+        reduced_costs = self._parts.copy()
+        paid = sum(self._costs[a] for a in node.used) * PARTS
+        reduced_costs[list(node.used)] = 0
+        reduced_costs[list(node.forbidden)] = sum(self._costs) * PARTS  # more than cuts can take
+        dual_values = (
+            (row, w) for row, w in enumerate(self._covering.weights()) if self._active.get(row, True)
+        )
+        weights = self._relaxation.shared_out(dual_values, reduced_costs)
+        bound = paid + sum(weights.values())
+        if bound > node.bound or not node.weights:
+            node.bound = max(bound, node.bound)
+            node.weights = [(row, weight) for row, weight in weights.items() if weight]
+
+    def _reduced_costs(self, node: _Node) -> Any:
+        """Return the reduced cost of each action by the weights of a node, in parts."""
+        reduced_costs = self._parts.copy()
+        for row, weight in self._carrying(node):
+            reduced_costs[self._relaxation.rows[row]] -= weight
+        return reduced_costs
+
+    def _carrying(self, node: _Node) -> Iterator[tuple[int, int]]:
+        """Return the rows with their weights, without rows that a used action satisfies."""
+        for row, weight in node.weights:
+            if node.used.isdisjoint(self._relaxation.rows[row].tolist()):
+                yield row, weight
+
+    def _proof(self, node: _Node) -> tuple[Proof, set[int]]:
+        """Return the proof of a closed node, and the forbidden actions that the proof relies on."""
+        if node.hopeless is not None:
+            cut = frozenset(node.hopeless.objects)
+            return Hopeless(self._stated(cut, node)), {*self._relaxation.members(cut)} & node.forbidden
+        if node.without is None or node.using is None or node.action is None:
+            return self._packing(node)
+        proof, barred = self._proof(node.without)
+        using, barred_too = self._proof(node.using)
+        proof = Branch(self._actions[node.action], proof, using)
+        barred = (barred - {node.action}) | barred_too
+        fixed = sorted(barred & node.above_cutoff)
+        if not fixed:
+            return proof, barred
+        packing, overloaded = self._packing(node)
+        proof = CostFixing(tuple(self._actions[a] for a in fixed), packing, proof)
+        return proof, (barred - node.above_cutoff) | overloaded
+
+    def _packing(self, node: _Node) -> tuple[Packing, set[int]]:
+        weights: list[tuple[Cut, tuple[Fraction]]] = []
+        self._length_budget -= _PACKING_LENGTH
+        for row, weight in self._carrying(node):
+            cut = self._stated(self._relaxation.cuts[row], node)
+            self._length_budget -= len(cut.objects) + len(cut.members)
+            if self._length_budget < 0 or self._expired():
+                raise TooLongError
+            weights.append((cut, (Fraction(weight, PARTS),)))
+        overloaded = set(self._np.flatnonzero(self._reduced_costs(node) < 0).tolist())
+        return Packing(tuple(weights)), overloaded & node.forbidden
+
+    def _stated(self, cut: frozenset[int], node: _Node) -> Cut:
+        """Return a cut in the whole graph, with the actions that cross it at a node."""
+        crossing = (self._actions[a] for a in self._relaxation.members(cut) if a not in node.forbidden)
+        return Cut(tuple(sorted(self._relaxation.whole(cut))), tuple(sorted(crossing)))
+
+
+def branched(
+    graph: Hypergraph,
+    targets: Iterable[int],
+    actions: Collection[int],
+    cost: Callable[[int], int],
+    cuts: Iterable[Collection[int]],
+    total: int,
+    expired: Callable[[], bool],
+) -> Proof | None:
+    """Prove that no derivation costs less than ``total``; arguments are those of :class:`Branching`.
+
+    The weights of the proof add up to more than ``total - 1``, to be rounded up. Returns ``None`` where the
+    proof takes too long, where a derivation costs less, where an action costs nothing, and where all costs
+    have a common divisor above 1.
+    """
+    costs = [cost(action) for action in actions]
+    if math.gcd(*costs) != 1 or 0 in costs:
+        return None
+    search = Branching(graph, targets, actions, cost, cuts, total, lambda *_: ())
+    for _ in search.search(tuning.PROOF.search_budget, expired):
+        if search.incumbent is not None:
+            return None
+    if not search.closed:
+        return None
+    try:
+        return search.proof(tuning.PROOF.proof_length, expired)
+    except TooLongError:
+        return None

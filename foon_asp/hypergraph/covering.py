@@ -1,0 +1,140 @@
+"""The linear relaxation of the hitting set problem over landmarks, solved in floats by HiGHS."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from typing import Final, NamedTuple
+
+from foon_asp.errors import BugError
+from foon_asp.hypergraph.highs_run import libraries, run, silent_highs
+
+_OPTIONS: Final[dict[str, bool | str | float]] = {
+    "presolve": "off",
+    "solver": "simplex",
+    "threads": 1,
+    "time_limit": math.inf,
+    "primal_feasibility_tolerance": 1e-10,
+    "dual_feasibility_tolerance": 1e-10,
+}
+_INTERIOR_POINT: Final[dict[str, bool | str | float]] = {
+    "solver": "ipm",
+    "presolve": "on",
+    "run_crossover": "off",
+    "primal_feasibility_tolerance": 1e-7,
+    "dual_feasibility_tolerance": 1e-7,
+}
+_VERTEX: Final[dict[str, bool | str | float]] = (
+    _INTERIOR_POINT | _OPTIONS | {"solver": "ipm", "run_crossover": "on"}
+)
+_RUN_SECONDS = 2.0  # limit of a run: the interior-point method cannot be continued
+
+
+class UnsolvedError(BugError):
+    """HiGHS ended a covering problem without a solution."""
+
+
+class Relaxed(NamedTuple):
+    """A basic optimal solution: its value, the values ``x`` of the columns, and its basis.
+
+    ``columns`` are the basic columns and ``rows`` the rows that hold with equality by the basis: both have
+    the same number, and the square matrix between them gives the solution and the weights of the rows.
+    """
+
+    value: float
+    x: list[float]
+    columns: list[int]
+    rows: list[int]
+
+
+class Weighed(NamedTuple):
+    """An optimal solution, basic or not: its value, the values ``x`` of columns, the duals of rows."""
+
+    value: float
+    x: list[float]
+    weights: list[float]
+
+
+class Covering:
+    """Minimize the sum of ``costs[c] * x[c]``, ``x >= 0``, with ``x`` adding up to 1 or more in every row.
+
+    A limit is a row of its own: the sum of ``amounts[c] * x[c]`` is not above it. Solved by HiGHS; rows are
+    added between solutions, each of which starts from the one before.
+    """
+
+    def __init__(self, costs: Sequence[float]) -> None:
+        highspy, np = libraries()
+        self._library, self._array = highspy, np.array
+        self._highs = silent_highs()
+        self._set(_OPTIONS)
+        self._at_vertex = True  # whether the last solution, if any, is basic
+        count = len(costs)
+        self._highs.addVars(count, np.zeros(count), np.full(count, highspy.kHighsInf))
+        self._highs.changeColsCost(count, np.arange(count, dtype=np.int32), np.array(costs, dtype=float))
+
+    def add(self, row: Sequence[int]) -> None:
+        """Add a row: the values of its columns add up to at least 1."""
+        np_row = self._array(row, dtype="int32")
+        ones = self._array([1.0] * len(row))
+        self._highs.addRow(1.0, self._library.kHighsInf, len(row), np_row, ones)
+
+    def limit(self, amounts: Mapping[int, Fraction], max_amount: Fraction) -> None:
+        """Add a row of a limit; amounts may be negative."""
+        columns = self._array(list(amounts), dtype="int32")
+        takes = self._array([-float(amount) for amount in amounts.values()])
+        self._highs.addRow(-float(max_amount), self._library.kHighsInf, len(amounts), columns, takes)
+
+    def bound(self, column: int, lower: float, upper: float) -> None:
+        """Set the bounds of a column."""
+        self._highs.changeColBounds(column, lower, upper)
+
+    def demand(self, row: int, lower: float) -> None:
+        """Set the least sum of a row; 0 makes the row redundant."""
+        self._highs.changeRowBounds(row, lower, self._library.kHighsInf)
+
+    def _set(self, options: dict[str, bool | str | float]) -> None:
+        for option, value in options.items():
+            self._highs.setOptionValue(option, value)
+
+    def interior_point(self, expired: Callable[[], bool] = lambda: False) -> Weighed | None:
+        """Return an interior-point solution: with many rows faster than a basic one, and less exact.
+
+        ``None`` where HiGHS does not converge within the run's seconds, or where time is up.
+        """
+        self._at_vertex = False
+        self._run(_INTERIOR_POINT, expired)
+        if self._highs.getModelStatus() != self._library.HighsModelStatus.kOptimal:
+            return None
+        solution = self._highs.getSolution()
+        value = float(self._highs.getObjectiveValue())
+        return Weighed(value, list(solution.col_value), list(solution.row_dual))
+
+    def _run(self, options: dict[str, bool | str | float], expired: Callable[[], bool]) -> None:
+        self._set(options | {"time_limit": self._highs.getRunTime() + _RUN_SECONDS})
+        run(self._highs, expired)
+
+    def solve(self, expired: Callable[[], bool] = lambda: False) -> Relaxed:
+        """Return a basic optimal solution of the rows so far; where time is up, the current basic solution.
+
+        ``expired`` is called now and then. Raises :class:`UnsolvedError` where HiGHS ends otherwise.
+        """
+        highs = self._highs
+        if not self._at_vertex:  # steps of the simplex algorithm would start from nothing
+            self._at_vertex = True
+            self._run(_VERTEX, expired)
+            self._set(_OPTIONS)
+        ended = run(highs, expired)
+        status = self._library.HighsModelStatus
+        if ended and highs.getModelStatus() not in {status.kOptimal, status.kModelEmpty}:
+            raise UnsolvedError(f"HiGHS ends a covering problem with {highs.getModelStatus()}")
+        basis, solution = highs.getBasis(), highs.getSolution()
+        basic = self._library.HighsBasisStatus.kBasic
+        return Relaxed(
+            float(highs.getObjectiveValue()),
+            list(solution.col_value),
+            [c for c, status in enumerate(basis.col_status) if status == basic],
+            [r for r, status in enumerate(basis.row_status) if status != basic],
+        )
+
+    def weights(self) -> list[float]:
+        """Return the dual value of each row in the last solution."""
+        return list(self._highs.getSolution().row_dual)

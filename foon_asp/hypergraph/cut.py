@@ -1,0 +1,243 @@
+"""Disjunctive action landmarks from cuts: every derivation of the targets uses one of their actions.
+
+Take a set of objects with a target and no initial object in it. The first action of a derivation that
+achieves an object of the set needs no object of the set. So every derivation uses an action that achieves an
+object of the set and needs none: these actions are a *landmark*, and the set is its *cut*. Bonet and Helmert
+(2010) bound delete-free plans by hitting sets of landmarks of this kind.
+"""
+
+import math
+import sys
+from collections.abc import Callable, Collection, Iterable, Mapping
+from typing import NamedTuple
+
+from foon_asp.hypergraph.hypergraph import Hypergraph
+
+
+class Cut(NamedTuple):
+    """A cut and its landmark: object numbers and action numbers, both ascending."""
+
+    objects: tuple[int, ...]
+    members: tuple[int, ...]
+
+
+class Cutter:
+    """Finds cuts of the targets of a hypergraph, without its forbidden actions.
+
+    Initial ``targets`` are left out. ``actions`` are the relevant ones: they can run and lead to a target.
+    Every cut found holds for all actions that are not forbidden. ``hopeless`` is a cut with an empty landmark
+    where a target cannot be reached, or else ``None``. Construction takes time linear in the size of the
+    hypergraph or, with the ``reachable`` objects given, in the size of the relevant part.
+    """
+
+    def __init__(
+        self,
+        graph: Hypergraph,
+        targets: Iterable[int],
+        forbidden: frozenset[int] = frozenset(),
+        reachable: bytearray | None = None,
+    ) -> None:
+        self._graph = graph
+        self._forbidden = forbidden
+        self.targets = sorted({o for o in targets if not graph.at_start[o]})
+        reachable = graph.reach(forbidden) if reachable is None else reachable
+        self._reachable = reachable
+        self.actions: list[int] = []
+        self.hopeless: Cut | None = None
+        lost = [o for o in self.targets if not reachable[o]]
+        if lost:
+            self.hopeless = self._shrink(lost[0], set(), reachable, {})
+            return
+        # relevant objects are numbered anew: a large network has few of them
+        self._numbers: dict[int, int] = {}
+        stack = list(self.targets)
+        for o in stack:
+            self._numbers[o] = len(self._numbers)
+        chosen: set[int] = set()
+        while stack:
+            for action in graph.makers[stack.pop()]:
+                if action in chosen or action in forbidden:
+                    continue
+                if all(reachable[o] for o in graph.needs[action]):
+                    chosen.add(action)
+                    for o in graph.needs[action]:
+                        if not graph.at_start[o] and o not in self._numbers:
+                            self._numbers[o] = len(self._numbers)
+                            stack.append(o)
+        self.actions = sorted(chosen)
+        self._positions = {action: i for i, action in enumerate(self.actions)}
+        numbers = self._numbers
+        self._gives = [[numbers[o] for o in set(graph.gives[a]) if o in numbers] for a in self.actions]
+        self._consumers: list[list[int]] = [[] for _ in numbers]
+        self._missing = [0] * len(self.actions)
+        for i, action in enumerate(self.actions):
+            for o in {numbers[o] for o in graph.needs[action] if o in numbers}:
+                self._consumers[o].append(i)
+                self._missing[i] += 1
+
+    def reached_by(self, actions: Collection[int]) -> bool:
+        """Return whether these actions alone reach all targets."""
+        return _Growth(self, self._missing).admit_all(
+            self._positions[a] for a in actions if a in self._positions
+        )
+
+    def cut(self, keep: Iterable[int], order: Iterable[int]) -> Cut | None:
+        """Return a cut whose landmark has no action of ``keep`` and few others, mostly late in ``order``.
+
+        Grows a set of actions that does not reach the targets, first by ``keep`` and then along ``order``,
+        until no action can be added; the landmark are the refused actions that the targets need. ``None``
+        where ``keep`` alone reaches the targets. Landmarks contain only actions of ``order``, so it should
+        contain all :attr:`actions`.
+        """
+        growth = _Growth(self, self._missing)
+        positions = self._positions
+        if growth.admit_all(positions[a] for a in keep if a in positions):
+            return None
+        refused = {self.actions[i] for i in growth.refuse([positions[a] for a in order])}
+        reached = bytearray(self._reachable)
+        consumer_counts: dict[int, int] = {}
+        for o, number in self._numbers.items():
+            reached[o] = growth.reached[number]
+            consumer_counts[o] = len(self._consumers[number])
+        first = next(o for o in self.targets if not reached[o])
+        return self._shrink(first, refused, reached, consumer_counts)
+
+    def among(self, actions: Iterable[int]) -> tuple[int, ...] | None:
+        """Return the allowed ones of some actions; ``None`` where one of them is not in :attr:`actions`."""
+        remaining = tuple(a for a in actions if a not in self._forbidden)
+        return remaining if self._positions.keys() >= set(remaining) else None
+
+    def widened(self, objects: Iterable[int]) -> Cut:
+        """Return the cut of some objects, with unreachable objects that keep its landmark small.
+
+        An action that can never run needs an unreachable object: with the object in the cut, the action does
+        not cross it. So a cut found among the actions that can run keeps its landmark.
+        """
+        graph, reachable = self._graph, self._reachable
+        inside = {o for o in objects if not graph.at_start[o]}
+        return self._closed(inside, lambda a: next((o for o in graph.needs[a] if not reachable[o]), None))
+
+    def _shrink(
+        self, target: int, members: set[int], reached: bytearray, consumer_counts: Mapping[int, float]
+    ) -> Cut:
+        """Return a cut grown backwards from an unreached object, as small as this greedy choice makes it.
+
+        Every action outside the landmark that achieves an object of the cut needs an unreached object; the
+        one with the most consumers is added, since other actions need it, too. Objects without achiever have
+        no count of consumers, and come first.
+        """
+
+        def most_consumed(action: int) -> int | None:
+            if action in members:
+                return None
+            lacking = (o for o in self._graph.needs[action] if not reached[o])
+            return max(lacking, key=lambda o: (consumer_counts.get(o, math.inf), -o))
+
+        return self._closed({target}, most_consumed)
+
+    def _closed(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
+        """Return the cut of objects, closed under what ``needed`` returns for crossing actions."""
+        graph, forbidden = self._graph, self._forbidden
+        stack = list(inside)
+        achievers: set[int] = set()
+        while stack:
+            for action in graph.makers[stack.pop()]:
+                if action in achievers or action in forbidden:
+                    continue
+                achievers.add(action)
+                o = needed(action) if inside.isdisjoint(graph.needs[action]) else None
+                if o is not None:
+                    inside.add(o)
+                    stack.append(o)
+        landmark = sorted(a for a in achievers if inside.isdisjoint(graph.needs[a]))
+        return Cut(tuple(sorted(inside)), tuple(landmark))
+
+
+class _Growth:
+    """A set of actions, grown one by one, that never reaches all targets."""
+
+    def __init__(self, cutter: Cutter, missing: list[int]) -> None:
+        self._gives, self._consumers = cutter._gives, cutter._consumers
+        self._missing = list(missing)
+        self._waiting = bytearray(len(missing))  # admitted, with preconditions missing
+        self.reached = bytearray(len(self._consumers))
+        self._decisive = bytearray(
+            len(self._consumers)
+        )  # objects each of which alone would reach the targets
+        self._unreached = len(cutter.targets)  # targets have the first numbers
+        self._targets = len(cutter.targets)
+
+    def admit_all(self, actions: Iterable[int]) -> bool:
+        """Admit actions; return whether the targets are reached, after which the growth is of no more use."""
+        return not self._unreached or bool(self.refuse(actions, max_refused=1))
+
+    def refuse(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
+        """Admit actions one by one, and return the refused ones: with them the targets would be reached.
+
+        Ends after ``max_refused`` refusals. The consequences of an object are followed once: if they include
+        all targets, further actions that achieve the object are refused at once.
+        """
+        waiting, missing, gives = self._waiting, self._missing, self._gives
+        reached, decisive, spread = self.reached, self._decisive, self._spread
+        refused: list[int] = []
+        for action in actions:
+            if missing[action]:
+                waiting[action] = True
+                continue
+            new = [o for o in gives[action] if not reached[o]]
+            if not new:
+                continue
+            for o in new:
+                if decisive[o]:
+                    break
+            else:
+                if spread(new) is not None:
+                    continue
+                self._learn(new)
+            refused.append(action)
+            if len(refused) == max_refused:
+                break
+        return refused
+
+    def _learn(self, refused: list[int]) -> None:
+        """Record an object that alone reaches the targets, among objects that together do."""
+        for o in refused:
+            new = None if len(refused) == 1 else self._spread([o])
+            if new is None:
+                self._decisive[o] = True
+                return
+            self._undo(new)
+
+    def _spread(self, objects: list[int]) -> list[int] | None:
+        """Reach objects and their consequences by admitted actions; return all new objects.
+
+        ``None``, and nothing changes, where the targets are reached.
+        """
+        waiting, missing, reached = self._waiting, self._missing, self.reached
+        consumers, targets = self._consumers, self._targets
+        new: list[int] = []
+        for batch in (stack := [objects]):  # grows while it is walked through
+            for o in batch:
+                if reached[o]:
+                    continue
+                reached[o] = True
+                new.append(o)
+                if o < targets:
+                    self._unreached -= 1
+                for consumer in consumers[o]:
+                    missing[consumer] -= 1
+                    if not missing[consumer] and waiting[consumer]:
+                        stack.append(self._gives[consumer])
+                if not self._unreached or self._decisive[o]:
+                    self._undo(new)
+                    return None
+        return new
+
+    def _undo(self, new: list[int]) -> None:
+        missing, reached = self._missing, self.reached
+        for o in new:
+            reached[o] = False
+            if o < self._targets:
+                self._unreached += 1
+            for consumer in self._consumers[o]:
+                missing[consumer] += 1

@@ -1,0 +1,78 @@
+"""Dominance pruning: actions that another action dominates."""
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+
+from foon_asp.hypergraph.goal_graph import GoalGraph
+
+_INDEXED = 20  # actions of a node: more are indexed by effect
+
+
+def undominated(graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int]) -> set[int]:
+    """Return the actions that stay: no other has a subset of their preconditions, all effects, and less cost.
+
+    In any tree, the dominating action can replace the dominated one, and the tree costs no more under the
+    whole list of objectives, since ``cost`` compares by all of them. Effects that no action needs do not
+    count. Of actions that dominate each other, one stays.
+    """
+    start = graph.start
+    needed = {a: frozenset(o for o in graph.needs[a] if o not in start) for a in actions}
+    wanted = set(graph.goals).union(*needed.values())
+    effects = {a: frozenset(o for o in graph.gives[a] if o in wanted) for a in actions}
+    remaining = set(actions)
+    consumers = Counter(o for needs in needed.values() for o in needs)
+    made = Counter(o for gives in effects.values() for o in gives)
+    rare = {o: i for i, o in enumerate(sorted(consumers, key=lambda o: (consumers[o], o)))}
+    ordered = {a: sorted(needed[a], key=rare.__getitem__) for a in actions}
+    by_preconditions = _PreconditionTrie(ordered, effects)
+    made_by = {o: (made[o], o) for o in made}.__getitem__
+    prices = {a: cost(a) for a in actions}
+    for action in sorted(actions, key=lambda a: (prices[a], -a), reverse=True):
+        gives, price = effects[action], prices[action]
+        if not gives:
+            remaining.discard(action)
+            continue
+        rarest = min(gives, key=made_by)
+        for other in by_preconditions.with_subset(ordered[action], rarest):
+            if other != action and prices[other] <= price and other in remaining and gives <= effects[other]:
+                remaining.discard(action)
+                break
+    return remaining
+
+
+class _PreconditionTrie:
+    """A set-trie (Savnik 2013) of actions by their preconditions, rare preconditions first."""
+
+    def __init__(self, ordered: Mapping[int, Sequence[int]], effects: Mapping[int, frozenset[int]]) -> None:
+        self._effects = effects
+        self._children: dict[tuple[int, int], int] = {}  # by node and precondition
+        self._actions_at: list[list[int]] = [[]]
+        self._by_effect: dict[int, dict[int, list[int]]] = {}
+        for action, needs in ordered.items():
+            node = 0
+            for need in needs:
+                child = self._children.setdefault((node, need), len(self._actions_at))
+                if child == len(self._actions_at):
+                    self._actions_at.append([])
+                node = child
+            self._actions_at[node].append(action)
+
+    def with_subset(self, needs: Sequence[int], effect: int) -> Iterator[int]:
+        """Yield actions with a subset of some preconditions; of many, only achievers of ``effect``."""
+        actions_at, children = self._actions_at, self._children
+        nodes = [0]  # reached by subsets of the preconditions so far
+        yield from (actions_at[0] if len(actions_at[0]) <= _INDEXED else self._achieving(0).get(effect, ()))
+        for need in needs:
+            for node in [children[node, need] for node in nodes if (node, need) in children]:
+                nodes.append(node)
+                actions = actions_at[node]
+                yield from (actions if len(actions) <= _INDEXED else self._achieving(node).get(effect, ()))
+
+    def _achieving(self, node: int) -> dict[int, list[int]]:
+        if node not in self._by_effect:
+            achievers: dict[int, list[int]] = {}
+            for action in self._actions_at[node]:
+                for o in self._effects[action]:
+                    achievers.setdefault(o, []).append(action)
+            self._by_effect[node] = achievers
+        return self._by_effect[node]

@@ -1,0 +1,255 @@
+"""Costs of actions under a lexicographic list of objectives, as whole numbers."""
+
+import math
+from collections.abc import Callable, Collection, Iterable, Sequence
+from copy import copy
+from decimal import ROUND_CEILING, Context, Decimal
+from fractions import Fraction
+from itertools import pairwise
+
+from foon_asp.hypergraph.coprime_base import coprime_base, powers
+from foon_asp.hypergraph.landmark_cuts import Cuts
+from foon_asp.hypergraph.lexicographic import Lexicographic
+from foon_asp.problem import Costs, Objective, Problem, multiplies
+
+_COARSE = 1000  # scale of -ln(rate) and of fractions in estimates
+_SCALE = 10**40  # scale of logarithms where rounding must not decide
+_ROUNDED = 10**20  # more than the sum of all rounding errors at that scale
+_FINEST = 10**9  # the largest denominator of a rate that the logarithms distinguish for sure
+_FINE = Context(prec=60, rounding=ROUND_CEILING)
+_SHOWN = Context(prec=18, rounding=ROUND_CEILING)  # of bounds on success
+_LONGEST = 50_000  # sum of exponents up to which products of rates are compared
+
+
+class TooFineError(Exception):
+    """Some rates are 0, or have too many digits: rounding could hide a difference."""
+
+
+class ExactCosts:
+    """The cost of each action as one whole number, by which sums compare lexicographically.
+
+    An additive objective is scaled to whole numbers and multiplied by more than the greatest sum of the
+    objectives after it. Where rates multiply, each factor of a coprime base has a rounded logarithm of forty
+    digits: equal products are then equal sums, and sums that differ by more than ``doubt`` compare exactly
+    in spite of rounding. It is 0 where nothing is rounded.
+    """
+
+    def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
+        self._problem, self._objectives = problem, tuple(objectives)
+        self._multiplied = frozenset(filter(multiplies, self._objectives))
+        self._units = units = len(problem.network)
+        chosen = (a for a in actions if a < units)
+        self._weights = _weights(problem.different_rates(chosen) if self._multiplied else set())
+        self._steps = {objective: self._step(objective, actions) for objective in self._objectives}
+        last_first = self._objectives[::-1]
+        self._factors = {last_first[0]: 1}
+        for after, objective in pairwise(last_first):
+            self._factors[objective] = self._factors[after] * (1 + self._upper_bound(after, actions))
+        self.doubt = sum(_ROUNDED * self._factors[objective] for objective in self._multiplied)
+        self._cache: dict[int, int] = {}
+        self._actions = actions
+        self._price: Callable[[int], int] | None = None
+        self._times = 1
+        self._limit: int | None = None
+
+    def priced(
+        self, counts: Callable[[int], int], price: int | Fraction, limit: int | None = None
+    ) -> "ExactCosts":
+        """Return these costs with a price on each unit, times its count.
+
+        Where the price is a fraction, all costs are multiplied by its denominator. With a ``limit``, a search
+        ends as soon as a bound reaches the limit or a tree costs less.
+        """
+        units, costs = self._units, copy(self)
+        whole, costs._times = Fraction(price).as_integer_ratio()
+        costs._cache, costs._limit, costs.doubt = {}, limit, self.doubt * costs._times
+        costs._price = lambda action: whole * counts(action) if action < units else 0
+        return costs
+
+    @property
+    def limited(self) -> bool:
+        """Whether a search ends at any tree below the limit."""
+        return self._limit is not None
+
+    @property
+    def beyond(self) -> int:
+        """A number above the cost of every set of actions."""
+        first = self._objectives[0]
+        return self._factors[first] * (1 + self._upper_bound(first, self._actions))
+
+    def _step(self, objective: Objective, actions: Collection[int]) -> int:
+        """Return the common denominator of the costs of actions by an objective."""
+        if objective.row.whole or objective in self._multiplied:
+            return 1
+        return math.lcm(*{cost.denominator for cost in self._costs(objective, actions)})
+
+    def _upper_bound(self, objective: Objective, actions: Collection[int]) -> int:
+        """Return an upper bound on the scaled cost of a set of actions by one objective."""
+        if objective is Objective.UNITS:
+            return len(actions)
+        if objective in self._multiplied:
+            return len(actions) * max(self._weights.values(), default=0)
+        steps = self._steps[objective]
+        items = sum(a >= self._units for a in actions)
+        return sum(int(cost * steps) for cost in self._costs(objective, actions)) + objective.row.item * items
+
+    def _costs(self, objective: Objective, actions: Collection[int]) -> Iterable[int | Fraction]:
+        return self._problem.figures(objective, (a for a in actions if a < self._units))
+
+    def __call__(self, action: int) -> int:
+        """Return the cost of an action."""
+        cost = self._cache.get(action)
+        if cost is None:
+            cost = self._times * sum(self._figure(o, action) * factor for o, factor in self._factors.items())
+            cost += self._price(action) if self._price else 0
+            self._cache[action] = cost
+        return cost
+
+    def first(self, total: int) -> int | Fraction:
+        """Return the bound on the first objective by a lower bound on sums (on success: an upper bound)."""
+        figure = total // self._factors[self._objectives[0]]
+        if self._objectives[0] not in self._multiplied:
+            return self.total(self._objectives[0], figure)
+        value = _FINE.next_plus(_FINE.exp(_FINE.divide(Decimal(_ROUNDED - figure), Decimal(_SCALE))))
+        return min(Fraction(1), Fraction(_SHOWN.plus(value)))
+
+    def met(self, cuts: Cuts, tree: Collection[int]) -> bool:
+        """Return whether a cost partition proves this tree optimal, exactly.
+
+        Each weight is the reduced cost of its cheapest action. Where rates multiply, weights and reduced
+        costs are recomputed as vectors of exponents of rates, which are exact.
+        """
+        total = sum(map(self, tree))
+        if self._limit is not None:
+            return cuts.bound >= self._limit or total < self._limit
+        if not self.doubt:
+            return cuts.bound >= total
+        if self._price or cuts.bound + self.doubt < total:  # a price is no product of rates
+            return False
+        rates = [rate for rate, weight in self._weights.items() if weight]
+        order = Lexicographic([rates if o in self._multiplied else None for o in self._objectives])
+        coordinates = {rate: i for i, rate in enumerate(rates)}
+        vectors = _Vectors(self, coordinates)
+        reduced_costs = {action: vectors.of(action) for action in cuts.reduced_costs}
+        proved = [0] * order.width
+        for cut in cuts.cuts:
+            weight = tuple(reduced_costs[cut.cheapest])
+            if _large(weight) or order.sign(weight) < 0:
+                return False
+            for i, coordinate in enumerate(weight):
+                if coordinate:
+                    proved[i] += coordinate
+                    for action in cut.members:
+                        reduced_costs[action][i] -= coordinate
+        if any(
+            _large(reduced_cost) or order.sign(reduced_cost) < 0 for reduced_cost in reduced_costs.values()
+        ):
+            return False
+        for action in tree:
+            for i, coordinate in enumerate(vectors.of(action)):
+                proved[i] -= coordinate
+        return not _large(proved) and order.sign(proved) >= 0
+
+    def of(self, costs: Costs) -> int:
+        """Return the cost of a tree, or more by the rounding error."""
+        total = 0
+        for objective, factor in self._factors.items():
+            measure = Fraction(costs.measure(objective))
+            if objective in self._multiplied:
+                figure = _logarithm(measure.denominator) - _logarithm(measure.numerator) + _ROUNDED
+            else:
+                figure = math.ceil(measure * self._steps[objective])
+            total += figure * factor
+        return total * self._times
+
+    def figures(self, action: int) -> list[tuple[Objective, int]]:
+        """Return the scaled cost of an action by each objective; for ``success`` a rounded logarithm."""
+        return [(objective, self._figure(objective, action)) for objective in self._objectives]
+
+    def total(self, objective: Objective, figure: int) -> int | Fraction:
+        """Return the cost by an additive objective of a scaled sum."""
+        return figure if objective.row.whole else Fraction(figure, self._steps[objective])
+
+    def is_logarithm(self, figure: int, product: Fraction) -> bool:
+        """Return whether a sum of rounded logarithms is that of a product of rates."""
+        return abs(figure - _logarithm(product.denominator) + _logarithm(product.numerator)) < _ROUNDED
+
+    def rate(self, action: int) -> Fraction:
+        """Return the rate of an action; taking an item from the kitchen never fails."""
+        if action >= self._units:
+            return Fraction(1)
+        return self._problem.rate(action)
+
+    def _figure(self, objective: Objective, action: int) -> int:
+        if action >= self._units:
+            return objective.row.item
+        if objective in self._multiplied:
+            return self._weights[self._problem.rate(action)]
+        return int(self._problem.figure(objective, action) * self._steps[objective])
+
+
+def _large(vector: Sequence[int]) -> bool:
+    return sum(map(abs, vector)) > _LONGEST
+
+
+class _Vectors:
+    """Costs as vectors: one coordinate for an additive objective, one for each rate where rates multiply."""
+
+    def __init__(self, costs: ExactCosts, coordinates: dict[Fraction, int]) -> None:
+        self._costs, self._coordinates = costs, coordinates
+
+    def of(self, action: int) -> list[int]:
+        vector: list[int] = []
+        for objective, figure in self._costs.figures(action):
+            if multiplies(objective):
+                parts = [0] * len(self._coordinates)
+                if figure:
+                    parts[self._coordinates[self._costs.rate(action)]] = 1
+                vector += parts
+            else:
+                vector.append(figure)
+        return vector
+
+
+class CoarseCosts:
+    """Costs by the first objective only, rounded down to small whole numbers, for estimates."""
+
+    def __init__(self, problem: Problem, objective: Objective) -> None:
+        self._problem, self._objective = problem, objective
+        self._multiplied = multiplies(objective)
+        rates, own = (problem.rates, problem.own_rates) if self._multiplied else (None, {})
+        self._by_motion = {motion: _coarse(rate) for motion, rate in (rates or {}).items()}
+        self._by_unit = {unit: _coarse(rate) for unit, rate in own.items()}
+
+    def __call__(self, action: int) -> int:
+        """Return the approximate cost of an action."""
+        if action >= len(self._problem.network):
+            return self._objective.row.item
+        if self._multiplied:
+            own = self._by_unit.get(action)
+            return self._by_motion[self._problem.network.motions[action]] if own is None else own
+        cost = self._problem.figure(self._objective, action)
+        return int(cost if self._objective.row.whole else cost * _COARSE)
+
+
+def _coarse(rate: Fraction) -> int:
+    if not rate:
+        return 100 * _COARSE
+    return int((math.log(rate.denominator) - math.log(rate.numerator)) * _COARSE)  # a float may not hold it
+
+
+def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
+    """Return for each rate the sum of the rounded scaled logarithms of its coprime factors."""
+    if not all(0 < rate <= 1 and rate.denominator <= _FINEST for rate in rates):
+        raise TooFineError
+    base = coprime_base(n for rate in rates for n in rate.as_integer_ratio())
+    logarithms = {factor: _logarithm(factor) for factor in base}
+
+    def weight(number: int) -> int:
+        return sum(power * logarithms[f] for f, power in powers(number, base).items())
+
+    return {rate: weight(rate.denominator) - weight(rate.numerator) for rate in rates}
+
+
+def _logarithm(number: int) -> int:
+    return int(_FINE.multiply(_FINE.ln(Decimal(number)), Decimal(_SCALE)))

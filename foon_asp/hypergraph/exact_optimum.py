@@ -1,0 +1,173 @@
+"""The simplex algorithm in rational numbers, from a basis that floats suggest to an exact optimum."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, times
+
+_STEPS = 400  # pivots; few are needed from a float optimum
+_ZERO, _ONE = Fraction(), Fraction(1)
+
+Matrix = Mapping[int, Mapping[int, Fraction]]
+Limit = tuple[Mapping[int, Fraction], Fraction]
+
+
+class ExactOptimum(NamedTuple):
+    """The optimum of a covering problem: the value of each column and the dual of each row, where above 0.
+
+    ``value`` is the cost of the columns, equal to the sum of the row duals less that of the limits' duals
+    times their amounts.
+    """
+
+    x: dict[int, Fraction]
+    weights: dict[int, Vector]
+    value: Vector
+
+
+class NowhereError(Exception):
+    """A basis is singular, or its solution is infeasible."""
+
+
+def exact_optimum(
+    rows: Sequence[Sequence[int]],
+    costs: Sequence[Vector],
+    order: Lexicographic,
+    columns: Sequence[int],
+    tight: Sequence[int],
+    limits: Sequence[Limit] = (),
+) -> ExactOptimum | None:
+    """Solve a covering problem over ordered costs exactly, from a basis near the optimum.
+
+    ``rows`` list the columns that cover them, ``costs`` are those of the columns, none below 0. Before these
+    rows come ``limits``: the amount that each column consumes, and the amount available. The basis is given
+    by its columns and by as many tight rows. Each step solves the basis anew, and Bland's rule prevents
+    cycling. ``None`` where the basis is singular or its solution infeasible, which floats can lead to, and
+    after too many steps.
+    """
+    basic_columns, tight_rows = set(columns), set(tight)
+    full = [{column: -amount for column, amount in amounts.items()} for amounts, _ in limits]
+    full += (dict.fromkeys(row, _ONE) for row in rows)
+    least = [-max_amount for _, max_amount in limits] + [_ONE] * len(rows)
+    try:
+        for _ in range(_STEPS):
+            basis = _Basis(full, least, costs, basic_columns, tight_rows)
+            entering = basis.entering(order)
+            if entering is None:
+                kept = {row: weight for row, weight in basis.weights.items() if order.sign(weight)}
+                shares = {column: share for column, share in basis.x.items() if share}
+                value = order.total(times(weight, least[row]) for row, weight in kept.items())
+                return ExactOptimum(shares, kept, value)
+            for number, is_row in (entering, basis.leaving(*entering)):
+                (tight_rows if is_row else basic_columns).symmetric_difference_update({number})
+    except NowhereError:
+        pass
+    return None
+
+
+class _Basis:
+    """A basis: columns and as many tight rows, with its primal and dual solution.
+
+    ``x`` are the values of the basic columns, by which the tight rows hold with equality; ``slack`` is the
+    slack of each row; ``weights`` are the duals of the tight rows, by which the basic columns have reduced
+    cost 0. Raises :class:`NowhereError` where there is no solution or a negative value or slack.
+    """
+
+    def __init__(
+        self,
+        rows: Sequence[Mapping[int, Fraction]],
+        least: Sequence[Fraction],
+        costs: Sequence[Vector],
+        columns: set[int],
+        tight: set[int],
+    ) -> None:
+        self._rows, self._costs = rows, costs
+        self._matrix = {r: {c: value for c, value in rows[r].items() if c in columns} for r in sorted(tight)}
+        transposed: dict[int, dict[int, Fraction]] = {column: {} for column in sorted(columns)}
+        for row, entries in self._matrix.items():
+            for column, value in entries.items():
+                transposed[column][row] = value
+        self.x = {
+            c: share for c, (share,) in solve_exactly(self._matrix, {r: (least[r],) for r in tight}).items()
+        }
+        self.weights = solve_exactly(transposed, {column: costs[column] for column in columns})
+        self.slack = [
+            sum((value * self.x[c] for c, value in row.items() if c in self.x), -least[r])
+            for r, row in enumerate(rows)
+        ]
+        if any(value < 0 for value in (*self.x.values(), *self.slack)):
+            raise NowhereError
+
+    def entering(self, order: Lexicographic) -> tuple[int, bool] | None:
+        """Return the entering variable by Bland's rule, and whether it is the slack of a row.
+
+        That is the first column of negative reduced cost, else the first row of negative dual. ``None`` at
+        the optimum.
+        """
+        loads: dict[int, list[Vector]] = {}
+        for row, weight in self.weights.items():
+            for column, value in self._rows[row].items():
+                if column not in self.x:  # basic columns have reduced cost 0
+                    loads.setdefault(column, []).append(times(weight, value))
+        for column in sorted(loads):
+            if order.compare(order.total(loads[column]), self._costs[column]) > 0:
+                return column, False
+        return next(((row, True) for row in sorted(self.weights) if order.sign(self.weights[row]) < 0), None)
+
+    def leaving(self, number: int, is_row: bool) -> tuple[int, bool]:
+        """Return the leaving column or row by the ratio test, and whether it is a row."""
+        gains = [
+            Fraction(-(row == number)) if is_row else coefficients.get(number, _ZERO)
+            for row, coefficients in enumerate(self._rows)
+        ]
+        right = {row: (gains[row],) for row in self._matrix}
+        fall = {column: value for column, (value,) in solve_exactly(self._matrix, right).items()}
+        limits = [(self.x[c] / f, False, c) for c, f in fall.items() if f > 0]
+        for row, space in enumerate(self.slack):
+            lost = sum((value * fall[c] for c, value in self._rows[row].items() if c in fall), _ZERO)
+            lost -= gains[row]
+            if lost > 0:  # never in a tight row
+                limits.append((space / lost, True, row))
+        _, leaves_row, leaving = min(limits)  # there is one, as no cost is below 0
+        return leaving, leaves_row
+
+
+def solve_exactly(matrix: Matrix, right: Mapping[int, Vector]) -> dict[int, Vector]:
+    """Solve a sparse square system for several right-hand sides at once, by Gaussian elimination.
+
+    ``matrix[i]`` maps unknowns to coefficients, ``right[i]`` are the right-hand sides of row i. The shortest
+    row is eliminated first, which keeps systems of cuts sparse. Returns the values by unknown. Raises
+    :class:`NowhereError` where the system is singular.
+    """
+    rows = {number: dict(row) for number, row in matrix.items()}
+    right_sides = dict(right)
+    waiting = set(rows)
+    pivots: list[tuple[int, int, Fraction]] = []
+    while waiting:
+        number = min(waiting, key=lambda n: (len(rows[n]), n))
+        row = rows[number]
+        if not row:
+            raise NowhereError
+        unknown, pivot = row.popitem()
+        pivots.append((number, unknown, pivot))
+        waiting.remove(number)
+        for rival in waiting:
+            other = rows[rival]
+            if unknown in other:
+                factor = other.pop(unknown) / pivot
+                for u, value in row.items():
+                    other[u] = other.get(u, _ZERO) - factor * value
+                    if not other[u]:
+                        del other[u]
+                right_sides[rival] = _less(right_sides[rival], factor, right_sides[number])
+    solution: dict[int, Vector] = {}
+    for number, unknown, pivot in reversed(pivots):
+        right_side = right_sides[number]
+        for u, value in rows[number].items():
+            right_side = _less(right_side, value, solution[u])
+        solution[unknown] = tuple(numerator / pivot for numerator in right_side)
+    return solution
+
+
+def _less(vector: Vector, factor: Fraction, other: Vector) -> Vector:
+    return tuple(b - factor * a for a, b in zip(other, vector, strict=True))

@@ -1,0 +1,193 @@
+"""Gap-bounded subproblems: the units of trees up to a cost, for questions with rules on trees."""
+
+import math
+from collections.abc import Callable, Collection, Container, Iterable
+from dataclasses import dataclass
+
+from foon_asp.hypergraph.exact_costs import ExactCosts
+from foon_asp.hypergraph.goal_graph import GoalGraph
+from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
+from foon_asp.hypergraph.lazy_h_max import within_reach
+from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
+from foon_asp.problem import Problem
+
+_ROUNDS = 6  # of cuts and reduced-cost fixing
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Subproblem:
+    """A question with cuts that hold for every tree, before any reduction.
+
+    ``remaining`` are the actions of the cuts. With ``redundant``, trees may have units that lead to no goal,
+    which rules can require; ``costs`` then cover all actions.
+    """
+
+    problem: Problem
+    graph: GoalGraph
+    remaining: Collection[int]
+    costs: ExactCosts
+    cuts: Cuts
+    redundant: bool
+
+    def landmarks(self) -> list[frozenset[int]]:
+        """Return disjunctive landmarks, as sets of units: those of the cuts, and the required sets."""
+        graph, restriction = self.graph, self.problem.restriction
+        landmarks = [frozenset(cut.members) for cut in self.cuts.cuts if max(cut.members) < graph.units]
+        if restriction is not None:
+            size = len(self.problem.network.objects)
+            landmarks += [frozenset(graph.makers[size + n]) for n in range(len(restriction.required))]
+        return landmarks
+
+    def achievers_for(self, units: Iterable[int]) -> set[int]:
+        """Return the achievers of the goals and of the preconditions of some units."""
+        graph, kitchen = self.graph, self.problem.kitchen
+        needed = {o for unit in units for o in graph.needs[unit] if o not in kitchen}
+        return {achiever for o in needed.union(graph.goals) for achiever in graph.makers[o]}
+
+    def rival_achievers(self, units: Iterable[int]) -> set[int]:
+        """Return the achievers of everything that some units achieve, these units among them."""
+        graph, kitchen = self.graph, self.problem.kitchen
+        made = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
+        return {achiever for o in made for achiever in graph.makers[o]}
+
+    def left_of(self, numbers: Iterable[int]) -> set[int]:
+        """Return the units of this network by their numbers in the larger network, without removed ones."""
+        network, restriction = self.problem.network, self.problem.restriction
+        units = {unit for number in numbers if (unit := network.unit_of_number(number)) is not None}
+        return {unit for unit in units if restriction is None or not restriction.removed(unit)}
+
+    def with_only_achievers(self, units: Iterable[int], max_units: int) -> set[int]:
+        """Return units closed under sole achievers of preconditions; ends at about ``max_units`` units."""
+        graph, kitchen = self.graph, self.problem.kitchen
+        closed, waiting = set(units), list(units)
+        while waiting and len(closed) < max_units:
+            for o in graph.needs[waiting.pop()]:
+                if o not in kitchen and len(graph.makers[o]) == 1:
+                    [achiever] = graph.makers[o]
+                    if achiever not in closed:
+                        closed.add(achiever)
+                        waiting.append(achiever)
+        return closed
+
+    def total(self, units: Iterable[int]) -> int:
+        """Return the cost of a tree, with its items where these are counted."""
+        return sum(map(self.costs, self.actions(units)))
+
+    def actions(self, units: Iterable[int]) -> set[int]:
+        """Return the actions of a tree: its units, and its items where these are counted."""
+        tree = set(units)
+        if self.graph.start:
+            return tree
+        needed = {o for unit in tree for o in self.problem.needs[unit]}
+        return tree | {self.graph.units + o for o in needed & self.problem.kitchen}
+
+    def nearest(self, min_units: int) -> frozenset[int]:
+        """Return at least ``min_units`` units, the nearest to the goals by reduced cost, or all."""
+        return self._units(
+            neighbourhood(
+                self.graph,
+                self.remaining,
+                reduced_costs_of(self.costs, self.cuts),
+                math.inf,
+                enough=min_units,
+            )
+        )
+
+    def everything(self) -> frozenset[int]:
+        """Return all units that a tree of any cost can have."""
+        if self.redundant:
+            return self._units(self._able(self._all()))
+        cone, _ = self.graph.cone()
+        relevant, _ = self.graph.cone(self._able(cone))
+        return self._units(relevant)
+
+    def units_within(self, limit: int, expired: Callable[[], bool]) -> frozenset[int]:
+        """Return a superset of the units of trees that cost up to ``limit``, coarser where time is up."""
+        return self._units(self.actions_within(limit, expired))
+
+    def actions_within(self, limit: int, expired: Callable[[], bool]) -> Collection[int]:
+        """Return a superset of the actions of trees that cost up to ``limit``, coarser where time is up.
+
+        The reduced cost of a tree is at most its cost less the bound. In irredundant trees, it includes a
+        path from each action to a goal; else at least the derivation of the action itself. All trees up to
+        the limit remain, so cuts are found anew among the remaining actions. Raises ``KeyboardInterrupt``
+        where that is interrupted.
+        """
+        graph, costs, cuts = self.graph, self.costs, self.cuts
+        remaining: Collection[int] = self._all() if self.redundant else self.remaining
+        for _ in range(_ROUNDS):
+            gap = limit - cuts.bound + costs.doubt
+            if gap < 0:
+                return ()
+            reduced_cost = reduced_costs_of(costs, cuts)
+            before = len(remaining)
+            if self.redundant:
+                h_actions = derive(graph, remaining, reduced_cost, h_add=False).h_actions
+                remaining = {action for action, h_action in h_actions.items() if h_action <= gap}
+            else:
+                remaining = reduced_cost_fixing(graph, remaining, reduced_cost, gap, expired)
+            if len(remaining) == before or expired():
+                break
+            candidates = remaining
+            cuts = landmark_cuts(
+                graph,
+                graph.goals,
+                candidates,
+                costs,
+                derive(graph, candidates, costs, h_add=False).cost,
+                expired,
+                lambda reduced_cost, candidates=candidates: (
+                    derive(graph, candidates, reduced_cost, h_add=False).cost
+                ),  # type: ignore[misc]
+            )
+            if cuts.interrupted:
+                raise KeyboardInterrupt
+            if cuts.hopeless:
+                return ()
+        return remaining
+
+    def _all(self) -> list[int]:
+        """Return all actions that a tree may have."""
+        units, restriction = self.graph.units, self.problem.restriction
+        actions = (
+            range(units) if restriction is None else [u for u in range(units) if not restriction.removed(u)]
+        )
+        counted = not self.graph.start
+        return [*actions, *(units + o for o in self.problem.kitchen if counted)]
+
+    def _able(self, actions: Collection[int]) -> Collection[int]:
+        """Return the actions that can run, without asking for costs, which others may not have."""
+        return derive(self.graph, actions, lambda _: 0, h_add=False).h_actions
+
+    def _units(self, actions: Iterable[int]) -> frozenset[int]:
+        return frozenset(a for a in actions if a < self.graph.units)
+
+
+def reduced_costs_of(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
+    """Return the function from actions to their reduced costs by a cost partition."""
+    reduced_costs = cuts.reduced_costs
+    return lambda action: reduced_costs[action] if action in reduced_costs else costs(action)
+
+
+def reduced_cost_fixing(
+    graph: GoalGraph,
+    allowed: Container[int],
+    reduced_cost: Callable[[int], int],
+    limit: int,
+    expired: Callable[[], bool],
+) -> set[int]:
+    """Return the allowed actions that stay: those of irredundant trees of reduced cost up to ``limit``.
+
+    Alternates h_max from the start and distances to the goals up to a fixpoint, or until time is up.
+    """
+    remaining = neighbourhood(
+        graph, allowed, reduced_cost, limit, reachable=within_reach(graph, allowed, reduced_cost)
+    )
+    while not expired():
+        derivations = derive(graph, remaining, reduced_cost, h_add=False)
+        nearer = neighbourhood(graph, remaining, reduced_cost, limit, derivations.h_actions)
+        if len(nearer) == len(remaining):
+            break
+        remaining = nearer
+    return remaining

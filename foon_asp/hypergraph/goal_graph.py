@@ -1,0 +1,88 @@
+"""A question as a hypergraph of actions with preconditions and add effects, and goals."""
+
+from collections.abc import Callable, Container, Iterable, Sequence
+from dataclasses import dataclass, replace
+from heapq import nsmallest
+
+from foon_asp.hypergraph.hypergraph import Hypergraph
+from foon_asp.problem import Left, Objective, Problem, backwards
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class GoalGraph(Hypergraph):
+    """A hypergraph with goals; nothing is copied where the network has it already.
+
+    Action ``a`` below ``units`` is the unit of that id. Where the items taken from the kitchen are counted,
+    taking item ``o`` is the action ``units + o``, without preconditions and with the effect ``o``, and
+    ``start`` is empty; elsewhere ``start`` is the kitchen. Add effects may be initial objects. ``goals`` are
+    without initial objects. A required set of a restriction is an additional object, which is an add effect
+    of each of its units, and a goal; ``required`` are these objects.
+    """
+
+    units: int
+    goals: tuple[int, ...]
+    start: frozenset[int]
+    required: range
+
+    def cone(self, allowed: Container[int] | None = None) -> tuple[set[int], set[int]]:
+        """Return the relevant actions and objects, by going backwards from the goals through allowed actions.
+
+        Stops at initial objects; ``None`` allows all actions.
+        """
+        return backwards(self.goals, self.makers, self.needs, self.start, allowed)
+
+    def thin(self, max_achievers: int, cost: Callable[[int], int]) -> "GoalGraph":
+        """Return a graph in which each required set has at most ``max_achievers`` units, for estimates.
+
+        The units with the fewest preconditions that are not initial stay, the cheapest first; the achievers
+        of other objects do not change.
+        """
+
+        def lacking(action: int) -> tuple[int, int, int]:
+            return sum(o not in self.start for o in self.needs[action]), cost(action), action
+
+        kept = {o: tuple(nsmallest(max_achievers, self.makers[o], lacking)) for o in self.required}
+        if not kept:
+            return self
+        assert isinstance(self.makers, Left)
+        return replace(self, known_makers=self.makers.instead(kept))
+
+
+def graph_of(problem: Problem, objectives: Iterable[Objective]) -> GoalGraph:
+    """Return the graph of a problem under a list of objectives."""
+    network, kitchen, restriction = problem.network, problem.kitchen, problem.restriction
+    units, size = len(network), len(network.objects)
+    goals = tuple(o for o in dict.fromkeys(problem.targets) if o not in kitchen)
+    required = range(size, size + (len(restriction.required) if restriction else 0))
+    gives: Sequence[Sequence[int]] = problem.gives
+    if restriction and restriction.required:
+        gives = extended = list(problem.gives)
+        for o, units_of_set in enumerate(restriction.required, start=size):
+            for unit in units_of_set:
+                extended[unit] = (*extended[unit], o)
+    graph = GoalGraph(
+        size + len(required),
+        problem.needs,
+        gives,
+        start=kitchen,
+        known_makers=problem.makers,
+        units=units,
+        goals=goals,
+        required=required,
+    )
+    if not any(objective.row.item for objective in objectives):
+        return graph
+    taking = {o: (units + o,) for o in kitchen}
+    achievers = problem.makers
+    return replace(
+        graph,
+        needs=[*problem.needs, *([()] * size)],
+        gives=[
+            *([o for o in effects if o not in kitchen] for effects in gives),
+            *((o,) for o in range(size)),
+        ],
+        start=frozenset(),
+        known_makers=achievers.instead(taking)
+        if isinstance(achievers, Left)
+        else [taking.get(o, units_of_set) for o, units_of_set in enumerate(achievers)],
+    )

@@ -1,0 +1,85 @@
+"""The heuristics h_add and h_max (Bonet and Geffner 2001), and trees that follow their best achievers."""
+
+from collections.abc import Callable, Collection, Iterable, Mapping
+from heapq import heapify, heappop, heappush
+from typing import NamedTuple
+
+from foon_asp.hypergraph.goal_graph import GoalGraph
+from foon_asp.problem import follow
+
+
+class Derivations(NamedTuple):
+    """The h-values and best achievers of the objects that some actions reach, cheapest first.
+
+    ``cost[o]`` is the h-value of object ``o`` and ``maker[o]`` its best achiever; following best achievers is
+    acyclic. ``h_actions[a]`` is the h-value of action ``a``: of its preconditions, plus its own cost. Actions
+    that cannot run, objects that are not reached, and initial objects are missing.
+    """
+
+    cost: dict[int, int]
+    maker: dict[int, int]
+    h_actions: dict[int, int]
+
+    def tree(self, graph: GoalGraph, objects: Iterable[int]) -> set[int] | None:
+        """Return the actions that derive objects by best achievers; ``None`` if an object is not reached."""
+        return follow(objects, self.maker, graph.needs, graph.start)
+
+
+def derive(
+    graph: GoalGraph, actions: Collection[int], cost: Mapping[int, int] | Callable[[int], int], h_add: bool
+) -> Derivations:
+    """Return the h-values of the objects that actions reach, for costs of zero or more.
+
+    With ``h_add``, the h-values of an action's preconditions are added, which counts shared actions more than
+    once; else the greatest counts (h_max), which is a lower bound on every derivation (Bonet and Geffner
+    2001). The generalized Dijkstra algorithm, with a bucket for each h-value.
+    """
+    price = cost.__getitem__ if isinstance(cost, Mapping) else cost
+    needs, gives, start = graph.needs, graph.gives, graph.start
+    consumers: dict[int, list[int]] = {}
+    missing: dict[int, int] = {}
+    buckets: dict[int, list[int]] = {}
+    for action in actions:
+        count = 0
+        for o in needs[action]:
+            if o not in start:
+                count += 1
+                if o in consumers:
+                    consumers[o].append(action)
+                else:
+                    consumers[o] = [action]
+        if count:
+            missing[action] = count
+        else:
+            buckets.setdefault(price(action), []).append(action)
+    h_values = list(buckets)
+    heapify(h_values)
+    costs: dict[int, int] = {}
+    maker: dict[int, int] = {}
+    h_actions: dict[int, int] = {}
+    nobody: list[int] = []
+    while h_values:
+        h_value = heappop(h_values)
+        for action in buckets[h_value]:  # grows while it is walked through, where actions cost nothing
+            h_actions[action] = h_value
+            for o in gives[action]:
+                if o in costs or o in start:
+                    continue
+                costs[o] = h_value
+                maker[o] = action
+                for consumer in consumers.get(o, nobody):
+                    count = missing[consumer] - 1
+                    missing[consumer] = count
+                    if not count:
+                        own = price(consumer)
+                        if h_add:
+                            total = own + sum([costs[n] for n in needs[consumer] if n in costs])
+                        else:
+                            total = own + h_value
+                        bucket = buckets.get(total)
+                        if bucket is None:
+                            buckets[total] = [consumer]
+                            heappush(h_values, total)
+                        else:
+                            bucket.append(consumer)
+    return Derivations(costs, maker, h_actions)

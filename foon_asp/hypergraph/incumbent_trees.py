@@ -1,0 +1,159 @@
+"""Primal heuristics: good irredundant trees, found fast."""
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from heapq import heapify, heappop, heappush
+from typing import TYPE_CHECKING
+
+from foon_asp.hypergraph.goal_graph import GoalGraph
+from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.support import Support
+
+if TYPE_CHECKING:  # few questions need it
+    from foon_asp.hypergraph.cost_partition import SharedCosts
+
+_FINE = 1000  # scale of LP values and of perturbed costs
+_MAX_TREES = 160  # trees of a perturbation search
+
+
+def irredundant(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
+    """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
+
+    All of the actions can run. Actions that the cheapest derivations (h_add) do not use are removed first.
+    """
+    support = Support(graph, tree, cost)
+    waiting = [(-cost(action), action) for action in support.actions]
+    heapify(waiting)
+    needed: set[int] = set()  # and so in every subset of the tree
+    while waiting:
+        _, action = heappop(waiting)
+        if action in support.actions and action not in needed and support.replaceable(action):
+            freed = support.leave_out(action)
+            if freed is None:
+                needed.add(action)
+            for other in freed or ():  # they may have become replaceable
+                heappush(waiting, (-cost(other), other))
+    return support.actions
+
+
+def guessed(
+    graph: GoalGraph,
+    actions: Collection[int],
+    cost: Callable[[int], int],
+    shares: Mapping[int, float],
+    without: Collection[int],
+) -> Iterator[set[int]]:
+    """Yield irredundant trees without the actions ``without`` that follow the LP values ``shares``."""
+    allowed = [a for a in actions if a not in without]
+
+    def unshared(action: int) -> int:
+        return 1 + cost(action) * int(_FINE * (1 - min(1.0, shares[action])))
+
+    for h_add in (True, False):
+        tree = derive(graph, allowed, unshared, h_add).tree(graph, graph.goals)
+        if tree is not None:
+            yield irredundant(graph, tree, cost)
+
+
+def _scaled(cost: int, share: float) -> int:
+    """Return a share of a scaled cost, rounded down, in whole numbers since costs may exceed floats."""
+    return cost * int(share * _FINE * _FINE) // _FINE
+
+
+def following(
+    graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int], shared: "SharedCosts"
+) -> Iterator[set[int]]:
+    """Yield irredundant trees that follow an LP solution, by its values and by its reduced costs."""
+
+    def unshared(action: int) -> int:
+        return 1 + _scaled(cost(action), 1 - min(1.0, shared.shares[action]))
+
+    def loose(action: int) -> int:
+        return cost(action) + shared.reduced_costs[action]
+
+    for price in (unshared, loose):
+        for h_add in (True, False):
+            tree = derive(graph, actions, price, h_add).tree(graph, graph.goals)
+            if tree is not None:
+                yield irredundant(graph, tree, cost)
+
+
+def perturbation_search(
+    graph: GoalGraph,
+    actions: Collection[int],
+    tree: set[int],
+    cost: Callable[[int], int],
+    enough: int,
+    expired: Callable[[], bool],
+    shares: Mapping[int, float],
+    random_number: Callable[[], float],
+    tries: int,
+) -> set[int]:
+    """Return a cheaper tree found by perturbation search, else ``tree``; ends at a cost of ``enough``.
+
+    Half of the times, a random part of the actions of the current tree costs nothing and the cost of every
+    other action is multiplied by a factor from 0.5 to 1.5, over all other actions or a random part. The other
+    half, costs are scaled by one less the LP values ``shares``. A tree of equal cost becomes the current
+    tree. Ends when each action was looked at ``tries`` times after the last improvement.
+    """
+    best = last = tree
+    total = sum(map(cost, tree))
+    ordered = sorted(actions)
+    effort = tries * len(ordered)
+    for _ in range(_MAX_TREES):
+        if effort <= 0 or total <= enough or expired():
+            break
+        if random_number() < 0.5:
+            candidates = ordered
+            unused = ((a, (1 - min(1.0, shares[a])) * (0.5 + random_number())) for a in candidates)
+            price = {a: 1 + _scaled(cost(a), share) for a, share in unused}
+        else:
+            share, fraction = random_number(), 1.0 if random_number() < 0.5 else random_number() ** 2
+            candidates = [a for a in ordered if random_number() < fraction or a in last]
+            price = {a: _scaled(cost(a), 0.5 + random_number()) for a in candidates}
+            price |= {a: 0 for a in sorted(last) if random_number() < share}
+        effort -= len(candidates)
+        derived = derive(graph, candidates, price, h_add=random_number() < 0.5).tree(graph, graph.goals)
+        candidate = irredundant(graph, derived or last, cost)
+        candidate_total = sum(map(cost, candidate))
+        if candidate_total < total:
+            best, effort = candidate, tries * len(ordered)
+        if candidate_total <= total:
+            last, total = candidate, candidate_total
+    return best
+
+
+def improved(
+    graph: GoalGraph,
+    actions: Collection[int],
+    tree: set[int],
+    cost: Callable[[int], int],
+    reduced_cost: Callable[[int], int],
+    expired: Callable[[], bool],
+    thorough: bool,
+) -> set[int]:
+    """Return a cheaper tree among the actions by local search, else ``tree``.
+
+    First the trees that follow h_add and h_max, by costs and by reduced costs; then, if ``thorough``, for
+    each action of the incumbent a tree without it, in which the other actions of the incumbent cost nothing.
+    """
+    best = tree
+    total = sum(map(cost, best))
+
+    def offer(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
+        nonlocal best, total
+        derived = derive(graph, actions, price, h_add).tree(graph, graph.goals)
+        if derived is not None:
+            candidate = irredundant(graph, derived, cost)
+            candidate_total = sum(map(cost, candidate))
+            if candidate_total < total:
+                best, total = candidate, candidate_total
+
+    for use_h_add in (True, False):
+        offer(actions, cost, use_h_add)
+        offer(actions, lambda a: reduced_cost(a) * total + cost(a), use_h_add)
+    tried: set[int] = set()
+    while thorough and not expired() and (untried := best - tried):
+        action = max(untried, key=lambda a: (reduced_cost(a), cost(a), -a))
+        tried.add(action)
+        offer([a for a in actions if a != action], lambda a: 0 if a in best else cost(a), h_add=True)
+    return best

@@ -1,0 +1,272 @@
+"""Lower bounds by LM-cut (Helmert and Domshlak 2009), looking only at actions that its cuts touch.
+
+Landmarks are as in :mod:`foon_asp.hypergraph.cut`: every derivation uses one of the actions that achieve an
+object of a set with a goal in it and need none of the set. Each landmark takes from all of its actions the
+least of their reduced costs.
+"""
+
+import math
+from collections import deque
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.hypergraph import Hypergraph
+
+
+class WeightedCut(NamedTuple):
+    """A cut with its landmark ``members``, its action of least reduced cost, and that cost as its weight.
+
+    ``own`` are its objects without those of the cut ``after`` it, whose landmark actions all need one of its
+    objects.
+    """
+
+    own: frozenset[int]
+    members: tuple[int, ...]
+    cheapest: int
+    weight: int
+    after: "WeightedCut | None" = None
+
+    @property
+    def objects(self) -> frozenset[int]:
+        """All objects, with a target among them; computed on demand, since the chain of cuts may be long."""
+        objects, cut = [self.own], self.after
+        while cut is not None:
+            objects.append(cut.own)
+            cut = cut.after
+        return frozenset().union(*objects)
+
+
+class Cuts(NamedTuple):
+    """A cost partition over cuts: the sum ``bound`` of its weights is a lower bound on every derivation.
+
+    ``reduced_costs[a]`` is the reduced cost of action ``a``; actions that are missing have their full cost.
+    ``hopeless`` says that there is no derivation at all by the actions allowed, ``interrupted`` that ctrl-C
+    ended the search for more cuts: the bound holds, and ``reduced_costs`` are of no use.
+    """
+
+    bound: int
+    reduced_costs: dict[int, int]
+    cuts: list[WeightedCut]
+    hopeless: bool = False
+    interrupted: bool = False
+
+
+class _Level:
+    """Objects that every derivation makes, and the goal zone of the cuts of the last of them.
+
+    ``edge`` are actions that achieve an object of the zone, need none of its objects and have a reduced cost
+    above 0. ``cut`` is the latest cut of this zone, or else the cut that follows the whole level.
+    """
+
+    def __init__(self, objects: Sequence[int], after: WeightedCut | None) -> None:
+        self.objects = list(objects)
+        self.after = after
+        self.begin()
+
+    def begin(self) -> None:
+        """Start an empty zone."""
+        self.zone: set[int] = set()
+        self.edge: dict[int, None] = {}
+        self.cut = self.after
+
+
+class _Target:
+    """A target with a stack of levels, each of objects made before the level below.
+
+    ``behind`` are the objects of the zones of all levels but the topmost.
+    """
+
+    def __init__(self, target: int) -> None:
+        self.levels = [_Level([target], None)]
+        self.outer_zones: set[int] = set()
+
+    def level(self, free: Container[int]) -> _Level | None:
+        """Return the topmost level whose last object is not free; ``None`` where the target is free."""
+        while self.levels:
+            level = self.levels[-1]
+            if level.objects and level.objects[-1] not in free:
+                return level
+            if level.objects:
+                level.objects.pop()
+                level.begin()
+                continue
+            self.levels.pop()
+            if self.levels:
+                self.outer_zones -= self.levels[-1].zone
+        return None
+
+    def add(self, needed: Sequence[int]) -> None:
+        """Add a level of the common preconditions of the latest landmark, the last of them first."""
+        if needed:
+            self.outer_zones |= self.levels[-1].zone
+            self.levels.append(_Level(needed, self.levels[-1].cut))
+
+
+def landmark_cuts(
+    graph: Hypergraph,
+    targets: Iterable[int],
+    allowed: Container[int],
+    cost: Callable[[int], int],
+    guide_costs: Mapping[int, int],
+    expired: Callable[[], bool],
+    guide: Callable[[Callable[[int], int]], Mapping[int, int]] | None = None,
+    max_members: float = math.inf,
+) -> Cuts:
+    """Find landmark cuts and a cost partition by LM-cut, until the targets have reduced cost 0.
+
+    Ends early when the landmarks have about ``max_members`` actions together, and where time is up. Only
+    ``allowed`` actions count, and all costs are above zero. ``guide_costs`` are h-values of objects, infinite
+    where missing: a cut passes through the precondition of the greatest h-value, as in LM-cut. Targets take
+    turns, the greatest h-value first, so that the cuts of one do not take the costs that others need.
+    ``guide`` computes h-values from reduced costs, and is called now and then. Objects of reduced cost 0 only
+    grow, so the time is linear in what the cuts touch, not in the size of the graph.
+    """
+    search = _Search(graph, allowed, cost, guide_costs)
+    queue = deque(_Target(o) for o in sorted(targets, key=search.guide_key, reverse=True))
+    next_guide = max(tuning.CUTS.guided_cuts, len(queue))  # how many cuts there are when the guide is asked
+    effort = 0
+    try:
+        while queue and effort < max_members and not expired():
+            target = queue.popleft()
+            level = target.level(search.free.objects)
+            if level is None:
+                continue
+            queue.append(target)
+            if guide is not None and len(search.cuts) >= next_guide:
+                search.guide_costs = guide(search.reduced_cost)
+                waiting = sum(len(level_above.objects) for level_above in target.levels)
+                next_guide = len(search.cuts) + max(
+                    tuning.CUTS.guided_cuts,
+                    len(queue),
+                    waiting,
+                    len(search.guide_costs) // tuning.CUTS.guides,
+                )
+                level.begin()
+            cut = search.cut(level, target.outer_zones)
+            if cut is None:
+                return Cuts(search.bound, search.reduced_costs, search.cuts, hopeless=True)
+            effort += len(cut.members)
+            target.add(search.needed_by_all(cut.members))
+    except KeyboardInterrupt:
+        return Cuts(search.bound, search.reduced_costs, search.cuts, interrupted=True)
+    return Cuts(search.bound, search.reduced_costs, search.cuts)
+
+
+class _Search:
+    """The state of LM-cut: cuts so far, reduced costs, and objects of reduced cost 0."""
+
+    def __init__(
+        self,
+        graph: Hypergraph,
+        allowed: Container[int],
+        cost: Callable[[int], int],
+        guide_costs: Mapping[int, int],
+    ) -> None:
+        self._graph, self._allowed, self._cost = graph, allowed, cost
+        self.guide_costs = guide_costs
+        self.reduced_costs: dict[int, int] = {}
+        self.free = _Free(graph)
+        self.cuts: list[WeightedCut] = []
+        self.bound = 0
+
+    def reduced_cost(self, action: int) -> int:
+        """Return the reduced cost of an action."""
+        return self.reduced_costs[action] if action in self.reduced_costs else self._cost(action)
+
+    def guide_key(self, o: int) -> tuple[float, int]:
+        """Return a sort key of an object: its h-value, then its number."""
+        return self.guide_costs.get(o, math.inf), o
+
+    def cut(self, level: _Level, outer_zones: set[int]) -> WeightedCut | None:
+        """Add and return the next cut of a level; ``None`` where no action crosses it."""
+        new = self._grow_zone(level, outer_zones)
+        while new is None:
+            level.begin()
+            new = self._grow_zone(level, outer_zones)
+        needs = self._graph.needs
+        members = tuple(action for action in level.edge if level.zone.isdisjoint(needs[action]))
+        if not members:
+            return None
+        level.edge = dict.fromkeys(members)
+        reduced_costs = {action: self.reduced_cost(action) for action in members}
+        cheapest = min(reduced_costs, key=reduced_costs.__getitem__)
+        weight = reduced_costs[cheapest]
+        level.cut = WeightedCut(frozenset(new), members, cheapest, weight, level.cut)
+        self.bound += weight
+        self.cuts.append(level.cut)
+        for action, reduced_cost in reduced_costs.items():
+            self.reduced_costs[action] = reduced_cost - weight
+            if reduced_cost == weight:
+                self.free.release(action)
+        return level.cut
+
+    def needed_by_all(self, members: Sequence[int]) -> list[int]:
+        """Return the common preconditions of a landmark that are not free, the greatest h-value last."""
+        needs = self._graph.needs
+        common = set(self.free.lacking(members[0])).intersection(*(needs[action] for action in members))
+        return sorted(common, key=self.guide_key)
+
+    def _grow_zone(self, level: _Level, outer_zones: set[int]) -> list[int] | None:
+        """Grow a zone through actions of reduced cost 0, and return its new objects.
+
+        ``None`` where an action of the zone has become free, so that the zone has to start anew.
+        """
+        needs, achievers, reduced_costs = self._graph.needs, self._graph.makers, self.reduced_costs
+        zone, edge = level.zone, level.edge
+        new = [] if zone else [level.objects[-1]]
+        zone.update(new)
+        passed = [action for action in edge if not reduced_costs.get(action, True)]
+        for action in passed:
+            del edge[action]
+        i = 0
+        while True:
+            for action in passed:
+                if not zone.isdisjoint(needs[action]):
+                    continue
+                lacking = self.free.lacking(action)
+                if not lacking:
+                    return None
+                dearest = max(lacking, key=self.guide_key)
+                zone.add(dearest)
+                new.append(dearest)
+            if i == len(new):
+                return new
+            passed = []
+            for action in achievers[new[i]]:
+                if action in self._allowed and outer_zones.isdisjoint(needs[action]):
+                    if reduced_costs.get(action, True):
+                        edge[action] = None
+                    else:
+                        passed.append(action)
+            i += 1
+
+
+class _Free:
+    """The objects reachable by actions of reduced cost 0, updated incrementally."""
+
+    def __init__(self, graph: Hypergraph) -> None:
+        self._graph = graph
+        self.objects: set[int] = set()
+        self._missing: dict[int, int] = {}
+        self._waiting: dict[int, list[int]] = {}
+
+    def lacking(self, action: int) -> list[int]:
+        """Return the preconditions of an action that are neither free nor initial."""
+        free, start = self.objects, self._graph.start
+        return [o for o in self._graph.needs[action] if o not in free and o not in start]
+
+    def release(self, action: int) -> None:
+        """Add an action of reduced cost 0, which makes its add effects free once its preconditions are."""
+        lacking = self.lacking(action)
+        self._missing[action] = len(lacking)
+        for o in lacking:
+            self._waiting.setdefault(o, []).append(action)
+        stack = [] if lacking else [action]
+        while stack:
+            for o in self._graph.gives[stack.pop()]:
+                self.objects.add(o)
+                for consumer in self._waiting.pop(o, ()):
+                    self._missing[consumer] -= 1
+                    if not self._missing[consumer]:
+                        stack.append(consumer)

@@ -1,0 +1,52 @@
+"""Lazy h_max: whether objects can be made at a reduced cost up to a limit, computed on demand."""
+
+import math
+from collections.abc import Callable, Container
+
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.goal_graph import GoalGraph
+
+
+def within_reach(
+    graph: GoalGraph, allowed: Container[int], reduced_cost: Callable[[int], int]
+) -> Callable[[int, float], bool]:
+    """Return a test whether allowed actions can make an object at a reduced cost (h_max) up to a limit.
+
+    ``derive`` computes h_max of all objects at once. The test computes it backwards from the object asked
+    about, and prunes by the limit, which excludes most of a large network where the limit is low. The test
+    returns ``True`` where it would go too deep or take too long.
+    """
+    needs, achievers, start = graph.needs, graph.makers, graph.start
+    lower_bounds: dict[int, float] = {}  # on the h_max of objects
+    sufficient_limits: dict[int, float] = {}  # limits for which the answer was ``True``
+    budget = tuning.CUTS.lazy_looks
+
+    def reached(o: int, limit: float, deep: int = tuning.CUTS.lazy_depth) -> bool:
+        nonlocal budget
+        if lower_bounds.get(o, 0) > limit:
+            return False
+        if o in start or sufficient_limits.get(o, math.inf) <= limit or budget < 0:
+            return True
+        lowest = math.inf
+        for action in achievers[o]:
+            if action not in allowed:
+                continue
+            budget -= 1
+            h_action: float = reduced_cost(action)
+            if h_action <= limit:
+                remaining = limit - h_action
+                for needed in needs[action]:
+                    if needed not in start and deep and not reached(needed, remaining, deep - 1):
+                        missing = lower_bounds[needed]
+                        h_action = (
+                            missing if missing == math.inf else h_action + missing
+                        )  # whole numbers may be huge
+                        break
+                else:
+                    sufficient_limits[o] = limit
+                    return True
+            lowest = min(lowest, h_action)
+        lower_bounds[o] = lowest
+        return False
+
+    return reached

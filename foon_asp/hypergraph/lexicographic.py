@@ -1,0 +1,154 @@
+"""Lexicographic costs that are compared exactly: counts, and products of rates.
+
+A cost is a vector of rational numbers. A level that counts has one coordinate. A level that multiplies rates
+has one for each rate ``r``: the exponent ``e`` in the product of all ``r ** e``, which costs ``-log`` of it.
+Costs add up coordinate by coordinate, can be multiplied by rational numbers, and are ordered: the first level
+at which they differ decides. So linear programming works on them as on numbers, and nothing is rounded.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from decimal import Context, Decimal
+from fractions import Fraction
+from functools import cached_property, lru_cache
+
+from foon_asp.hypergraph.coprime_base import coprime_base, powers
+
+Vector = tuple[Fraction, ...]
+
+_MARGIN = 1e-9  # relative error of a sum of logarithms in floats, at most
+_TINY = 1e-290  # below this, floats lose their last digits
+_MAX_EXPONENT = 10**15  # with greater exponents, lost digits of a logarithm could matter
+_DIGITS = 60  # of a logarithm, at first
+
+_GREATEST = 10**12  # exponents in approximations: HiGHS fails far above
+
+
+class Lexicographic:
+    """An order on vectors; ``levels`` names for each level its rates, or ``None`` where it counts.
+
+    Rates lie strictly between 0 and 1. ``width`` is the number of coordinates of a vector.
+    """
+
+    def __init__(self, levels: Sequence[Sequence[Fraction] | None]) -> None:
+        self.levels = tuple(None if rates is None else tuple(rates) for rates in levels)
+        # the factor of each coordinate in its level, in floats
+        self._measures = [
+            [1.0] if rates is None else [float(minus_log(rate, _DIGITS)[0]) for rate in rates]
+            for rates in self.levels
+        ]
+        self.width = sum(map(len, self._measures))
+
+    @property
+    def zero(self) -> Vector:
+        """The cost of nothing."""
+        return (Fraction(0),) * self.width
+
+    def total(self, vectors: Iterable[Vector]) -> Vector:
+        """Add up costs."""
+        return tuple(sum(coordinates, Fraction(0)) for coordinates in zip(self.zero, *vectors, strict=True))
+
+    def sign(self, vector: Sequence[Fraction | int]) -> int:
+        """Return -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly.
+
+        It can be 0 for a vector that is not: 7/10 * 7/10 is 49/100.
+        """
+        for level, coordinates in self._parts(vector):
+            rates = self.levels[level]
+            sign = (
+                _sign(coordinates[0]) if rates is None else self._sign_of_product(level, rates, coordinates)
+            )
+            if sign != 0:
+                return sign
+        return 0
+
+    def compare(self, one: Vector, other: Vector) -> int:
+        """Return -1, 0 or 1 for a cost below, equal to or above another, exactly."""
+        return self.sign(minus(one, other))
+
+    def approximate(self, vector: Sequence[Fraction | int]) -> list[float]:
+        """Return each level as a float, for heuristics; coordinates are capped at 10^12."""
+        return [
+            sum(self._terms(level, [max(-_GREATEST, min(e, _GREATEST)) for e in coordinates]))
+            for level, coordinates in self._parts(vector)
+        ]
+
+    def _parts(self, vector: Sequence[Fraction | int]) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
+        """Yield the coordinates of each level."""
+        begin = 0
+        for level, measures in enumerate(self._measures):
+            end = begin + len(measures)
+            yield level, vector[begin:end]
+            begin = end
+
+    def _terms(self, level: int, exponents: Sequence[Fraction | int]) -> list[float]:
+        return [float(e) * measure for e, measure in zip(exponents, self._measures[level], strict=True)]
+
+    def _sign_of_product(
+        self, level: int, rates: Sequence[Fraction], exponents: Sequence[Fraction | int]
+    ) -> int:
+        """Compare a product of powers of a level's rates with 1: -1 where it is above 1."""
+        if not any(exponents):
+            return 0
+        if all(-_MAX_EXPONENT < exponent < _MAX_EXPONENT for exponent in exponents):
+            terms = self._terms(level, exponents)
+            about = sum(terms)
+            if abs(about) > _MARGIN * sum(map(abs, terms)) + _TINY:
+                return _sign(about)
+        if self._is_one(level, exponents):
+            return 0
+        digits = _DIGITS
+        while True:
+            total = error = Fraction(0)
+            for i, exponent in enumerate(exponents):
+                logarithm, off = minus_log(rates[i], digits)
+                total += logarithm * exponent
+                error += abs(off * exponent)
+            if abs(total) > error:
+                return _sign(total)
+            digits += digits
+
+    @cached_property
+    def _factors(self) -> list[dict[int, dict[int, int]]]:
+        """For each level a coprime base, with the exponent of each factor by the index of the rate."""
+        factors_by_level: list[dict[int, dict[int, int]]] = []
+        for rates in self.levels:
+            base = coprime_base(n for rate in rates or () for n in rate.as_integer_ratio())
+            factors: dict[int, dict[int, int]] = {b: {} for b in base}
+            for i, rate in enumerate(rates or ()):
+                for b, power in powers(rate.numerator, base).items():
+                    factors[b][i] = power
+                for b, power in powers(rate.denominator, base).items():
+                    factors[b][i] = -power
+            factors_by_level.append(factors)
+        return factors_by_level
+
+    def _is_one(self, level: int, exponents: Sequence[Fraction | int]) -> bool:
+        """Return whether a product of powers of a level's rates is exactly 1."""
+        return not any(
+            sum(power * exponents[i] for i, power in rates.items()) for rates in self._factors[level].values()
+        )
+
+
+def minus(one: Vector, other: Vector) -> Vector:
+    """Return the difference of two costs, ``one - other``."""
+    return tuple(a - b for a, b in zip(one, other, strict=True))
+
+
+def times(vector: Vector, factor: Fraction) -> Vector:
+    """Multiply a cost by a rational number."""
+    return vector if factor == 1 else tuple(coordinate * factor for coordinate in vector)
+
+
+@lru_cache(maxsize=4096)
+def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
+    """Return ``-log(rate)`` to ``digits`` digits, and its greatest error; the rate is below 1."""
+    # close to 1, the logarithms of denominator and numerator share their first digits
+    shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
+    precise = Context(prec=digits + shared + 10)
+    below, above = (Fraction(precise.ln(Decimal(n))) for n in (rate.denominator, rate.numerator))
+    # each is off by half of its last digit, at most
+    return below - above, (below + above) / Fraction(10 ** (precise.prec - 1))
+
+
+def _sign(number: Fraction | float) -> int:
+    return (number > 0) - (number < 0)

@@ -1,0 +1,670 @@
+"""Proofs that no derivation costs less than the incumbent: cost partitions over landmarks, and branching.
+
+Weights on landmarks that overload no action (the weights of the landmarks of an action add up to at most its
+cost) are a cost partition: their sum is a lower bound on the cost of every derivation. The best weights solve
+the dual of the hitting set relaxation; landmarks are added as long as the LP solution violates one (Bonet and
+Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
+
+A limit on a resource is one more row of the relaxation: an action that consumes the resource may carry more
+weight, and the weight of the limit times its amount is taken from the bound.
+"""
+
+import math
+import random
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import cache, cmp_to_key, partial
+from itertools import islice
+from operator import mul
+from typing import NamedTuple, Protocol
+
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
+from foon_asp.hypergraph.covering import Covering
+from foon_asp.hypergraph.cut import Cut, Cutter
+from foon_asp.hypergraph.exact_optimum import ExactOptimum, Limit, exact_optimum
+from foon_asp.hypergraph.hypergraph import Hypergraph
+from foon_asp.hypergraph.landmark_relaxation import PARTS
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
+
+_SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
+_STEP = 0.99  # of the step of costs: bounds are rounded up
+_FINER = 1e-4  # factor from a cost level to the next in floats
+
+_EXCESS_COST_FACTOR = 1000  # times the goal of the proof: what exceeding a limit by 1 costs an LP solution
+
+
+class Packing(NamedTuple):
+    """A cost partition over cuts; its weights and the costs of the used actions add up to a lower bound.
+
+    ``limits`` are the weights of limits, by their index; the unused amount of a limit, times its weight, is
+    taken from the bound. The bound is rounded up at the coordinate ``rounded``, if not ``None``.
+    """
+
+    weights: tuple[tuple[Cut, Vector], ...]
+    limits: tuple[tuple[int, Vector], ...] = ()
+    rounded: int | None = None
+
+
+class Hopeless(NamedTuple):
+    """A cut with an empty landmark: under the branches taken, no derivation reaches the targets."""
+
+    cut: Cut
+
+
+class Broken(NamedTuple):
+    """A rule that every derivation with the used actions breaks, under the branches taken."""
+
+    rule: int
+
+
+class Branch(NamedTuple):
+    """Two proofs: for all derivations without an action, and for all those with it."""
+
+    action: int
+    without: "Proof"
+    using: "Proof"
+
+
+class CostFixing(NamedTuple):
+    """Reduced-cost fixing: ``actions`` are above the cutoff by ``packing``; ``others`` does without them."""
+
+    actions: tuple[int, ...]
+    packing: Packing
+    others: "Proof"
+
+
+Proof = Packing | Hopeless | Broken | Branch | CostFixing
+# A branching tree: an action, the cases without it and the cases with it.
+Cases = tuple[int, "Cases", "Cases"] | None
+
+
+# Continues the proof for derivations without the given actions, from the given cuts.
+Others = Callable[[frozenset[int], Collection[frozenset[int]]], Proof]
+
+# Searches for a proof that no derivation of the targets by the actions costs less than a total, for whole
+# costs, from the given cuts, until time is up. The sums of its weights are to be rounded up.
+Search = Callable[
+    [
+        Hypergraph,
+        Iterable[int],
+        Collection[int],
+        Callable[[int], int],
+        Iterable[Collection[int]],
+        int,
+        Callable[[], bool],
+    ],
+    Proof | None,
+]
+
+
+class Rules(Protocol):
+    """Rules on derivations that neither targets nor limits express."""
+
+    def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+        """Return by rule the actions in no derivation with the actions used and none of ``without``."""
+
+    def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
+        """Return actions of a derivation that together break a rule; empty where it keeps to all rules."""
+
+    def exceeded(self, derivation: frozenset[int]) -> Limit | None:
+        """Return a limit not returned before that a derivation exceeds; ``None`` if it keeps to all."""
+
+
+class CheaperError(Exception):
+    """A derivation was found that costs less than the incumbent."""
+
+    def __init__(self, actions: Sequence[int]) -> None:
+        super().__init__("a cheaper derivation was found")
+        self.actions = tuple(actions)
+
+
+class _TimeUpError(Exception):
+    pass
+
+
+class Prover:
+    """Searches for optimality proofs over one hypergraph, its targets and the cost of each action.
+
+    Derivations with an action of ``forbidden`` do not count, nor do derivations that exceed one of the
+    ``limits`` or break one of the ``rules``. ``expired`` returns whether to give up; it is called between
+    steps that take milliseconds on thousands of actions. Costs are multiples of the positive ``multiples``,
+    coordinate by coordinate, so that bounds are rounded up. ``known_cuts`` are objects of cuts to begin
+    with. ``search`` is tried where many actions have whole costs and a cost partition does not suffice.
+    """
+
+    def __init__(
+        self,
+        graph: Hypergraph,
+        targets: Sequence[int],
+        costs: Sequence[Vector],
+        order: Lexicographic,
+        forbidden: frozenset[int] = frozenset(),
+        expired: Callable[[], bool] = lambda: False,
+        known_cuts: Iterable[Iterable[int]] = (),
+        limits: Sequence[Limit] = (),
+        rules: Rules | None = None,
+        multiples: Sequence[Fraction] = (),
+        search: Search | None = None,
+    ) -> None:
+        self._multiples, self._search = multiples, search
+        self._known_cuts, self._limits, self._rules = tuple(map(frozenset, known_cuts)), [*limits], rules
+        self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
+        self._forbidden, self._expired = forbidden, expired
+        self._random = random.Random(0)
+        self._members = cache(graph.crossing)
+        floats = [order.approximate(cost) for cost in set(costs)]
+        scale, self._scales = 1.0, list[float]()
+        for level, rates in enumerate(order.levels):
+            largest = max((f[level] for f in floats), default=0.0)
+            # rates may all be next to 1, where a solver would see nothing
+            unit = largest or 1.0 if rates else 1.0
+            self._scales.append(scale / unit)
+            scale *= _FINER / (1 + largest / unit)
+
+    def scaled(self, vector: Vector) -> float:
+        """Return a cost as one float: a sum in which each level weighs much less than the one before."""
+        return sum(map(mul, self._order.approximate(vector), self._scales), 0.0)
+
+    def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
+        """Return a proof that no derivation costs less than this one; ``None`` where that takes too long.
+
+        The proof branches on ``cases`` first, where the known cuts do not suffice. Raises
+        :class:`CheaperError` when a cheaper derivation is found.
+        """
+        actions = frozenset(derivation)
+        try:
+            goal, nothing = self._total(actions), frozenset[int]()
+            return self._prove(actions, goal, nothing, self._forbidden, self._known_cuts, cases, at_root=True)
+        except _TimeUpError:
+            return None
+
+    def prove_none(self) -> Proof | None:
+        """Return a proof that there is no derivation; ``None`` where that takes too long or one exists."""
+        try:
+            return self._prove(frozenset(), None, frozenset(), self._forbidden)
+        except _TimeUpError:
+            return None
+
+    def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
+        """Return the optimal cost partition of the relaxation at the root and its sum, a lower bound.
+
+        Cuts are grown around ``derivation``. ``None`` where time was up, and where the targets cannot be
+        reached.
+        """
+        nothing: frozenset[int] = frozenset()
+        barred = self._bars(nothing, self._forbidden).values()
+        cutter = Cutter(self._graph, self._targets, self._forbidden.union(*barred))
+        if cutter.hopeless:
+            return None
+        actions = frozenset(derivation)
+        try:
+            node = _Node(self, cutter, actions, nothing, self._total(actions))
+            exact = node.relax(None)
+        except _TimeUpError:
+            return None
+        return None if exact is None else (node.packing(exact), self.rounded(exact.value)[0])
+
+    def _prove(
+        self,
+        derivation: frozenset[int],
+        goal: Vector | None,
+        used: frozenset[int],
+        forbidden: frozenset[int],
+        known_cuts: Collection[frozenset[int]] = (),
+        cases: Cases = None,
+        at_root: bool = False,
+    ) -> Proof:
+        """Return a proof that derivations with the used and no forbidden actions cost at least ``goal``.
+
+        With ``None`` as the goal, it proves that there is no such derivation. ``known_cuts`` are tried first.
+        ``at_root`` is true before any branching, but perhaps after reduced-cost fixing.
+        """
+        targets = [*self._targets, *(o for action in sorted(used) for o in self._graph.needs[action])]
+        bars = self._bars(used, forbidden)
+        for rule, barred in bars.items():
+            if not used.isdisjoint(barred):
+                return Broken(rule)
+        cutter = Cutter(self._graph, targets, forbidden.union(*bars.values()))
+        if cutter.hopeless:
+            return Hopeless(cutter.hopeless)
+        remaining_goal = None if goal is None else minus(goal, self._total(used))
+        undecided = set(cutter.actions) - used if cases else ()
+        while cases is not None and cases[0] not in undecided:
+            cases = cases[2] if cases[0] in used else cases[1]
+        widened: Sequence[Cut] = ()
+        if remaining_goal is not None:
+
+            def others(above_cutoff: frozenset[int], known_cuts: Collection[frozenset[int]]) -> Proof:
+                return self._prove(
+                    derivation, goal, used, forbidden | above_cutoff, known_cuts, cases, at_root
+                )
+
+            many = len(cutter.actions) > tuning.PROOF.rounded_actions or (
+                at_root and forbidden != self._forbidden
+            )
+            step = self._step() if many else Fraction(0)
+            alone = cases is not None and not at_root
+            proof, widened = self._packed(
+                cutter, used, remaining_goal, known_cuts, others, step, alone, at_root
+            )
+            if proof is not None:
+                return proof
+        if cases is not None:
+            return self._branch(derivation, goal, used, forbidden, known_cuts, cases[0], cases[1:])
+        while True:
+            node = _Node(self, cutter, derivation, used, goal)
+            node.admit(widened)
+            exact = node.relax(remaining_goal)
+            if exact is not None and node.suffices(exact.value, remaining_goal):
+                return node.packing(exact)
+            action = node.undecided()
+            rounded_solution = [] if action is not None else node.rounded_solution()
+            limit = self._exceeded(rounded_solution)
+            if limit is None:
+                break
+            self._limits.append(limit)
+            widened = node.cuts
+        if action is None:
+            breaking = [a for a in self._breaking(rounded_solution) if a not in used]
+            if not breaking:
+                cheaper = goal is not None and self._order.compare(self._total(rounded_solution), goal) < 0
+                if cheaper and cutter.reached_by(rounded_solution) and not node.exceeds(rounded_solution):
+                    raise CheaperError(self._able(rounded_solution))
+                raise _TimeUpError  # floats led nowhere
+            action = breaking[0]
+        known_cuts = [frozenset(cut.objects) for cut in node.cuts]
+        return self._branch(derivation, goal, used, forbidden, known_cuts, action, (None, None))
+
+    def _branch(
+        self,
+        derivation: frozenset[int],
+        goal: Vector | None,
+        used: frozenset[int],
+        forbidden: frozenset[int],
+        known_cuts: Collection[frozenset[int]],
+        action: int,
+        cases: Sequence[Cases],
+    ) -> Branch:
+        """Return a proof by branching: for the derivations without an action, and for those with it."""
+        without, using = cases
+        return Branch(
+            action,
+            self._prove(derivation, goal, used, forbidden | {action}, known_cuts, without),
+            self._prove(derivation, goal, used | {action}, forbidden, known_cuts, using),
+        )
+
+    def rounded(self, bound: Vector) -> tuple[Vector, int | None]:
+        """Round up a bound at its first coordinate that is no multiple of the step of costs.
+
+        Returns the bound and the index of the coordinate, ``None`` where no coordinate was rounded.
+        """
+        for i, (coordinate, multiple) in enumerate(zip(bound, self._multiples, strict=False)):
+            if multiple and coordinate % multiple:
+                after = self._order.zero[i + 1 :]
+                return (*bound[:i], math.ceil(coordinate / multiple) * multiple, *after), i
+        return bound, None
+
+    def _bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+        return {} if self._rules is None else self._rules.bars(used, without)
+
+    def _breaking(self, derivation: Iterable[int]) -> Sequence[int]:
+        return () if self._rules is None else self._rules.breaking(frozenset(derivation))
+
+    def _exceeded(self, derivation: Iterable[int]) -> Limit | None:
+        chosen = frozenset(derivation)
+        return None if self._rules is None or not chosen else self._rules.exceeded(chosen)
+
+    def _able(self, actions: Sequence[int]) -> list[int]:
+        """Return the actions that can run in a derivation by the given actions alone."""
+        graph = self._graph
+        reached = graph.reach(frozenset(range(len(graph.needs))).difference(actions))
+        return [action for action in actions if all(reached[o] for o in graph.needs[action])]
+
+    def _packed(
+        self,
+        cutter: Cutter,
+        used: frozenset[int],
+        goal: Vector,
+        known_cuts: Collection[frozenset[int]],
+        others: Others,
+        step: Fraction,
+        alone: bool,
+        at_root: bool,
+    ) -> tuple[Proof | None, Sequence[Cut]]:
+        """Return a proof of ``goal``, if one is found without exact arithmetic, and all cuts.
+
+        A greedy cost partition over ``known_cuts`` is tried first. Where many actions cost multiples of
+        ``step``, reduced-cost fixing by it follows, if it fixes enough actions, with a proof for ``others``.
+        If not ``alone``, both are done with the rounded dual solution of the LP, too. At the root, the search
+        comes last.
+        """
+        targets = set(cutter.targets)
+        known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
+        cuts = [self._widened(cutter, cut) for cut in known_cuts[: tuning.PROOF.greedy_cuts]]
+        cuts = [cut for cut in cuts if used.isdisjoint(cut.members)]
+        packing, reduced_costs = self._share_out((cut, None) for cut in cuts)
+        if self._reaches(packing, goal):
+            return packing, cuts
+        proof = self._fix_by_cost(cutter, used, goal, packing, reduced_costs, others, known_cuts, step)
+        if proof is not None or alone or not step:
+            return proof, cuts
+
+        def steps(action: int) -> int:
+            return 0 if action in used else int(self._costs[action][0] / step)
+
+        enough = math.ceil(goal[0] / step)
+
+        shared = self._optimal_partition(cutter, steps, known_cuts, enough)
+        if shared is not None:
+            weighted_cuts = [
+                (self._widened(cutter, cut), (weight * step / PARTS,)) for cut, weight in shared.cuts
+            ]
+            weighted_cuts = [(cut, weight) for cut, weight in weighted_cuts if used.isdisjoint(cut.members)]
+            packing, reduced_costs = self._share_out(weighted_cuts)
+            if self._reaches(packing, goal):
+                return packing, cuts
+            proof = self._fix_by_cost(cutter, used, goal, packing, reduced_costs, others, shared.tight, step)
+            if proof is not None:
+                return proof, cuts
+            cuts += [cut for cut, _ in weighted_cuts]
+        return self._searched(cutter, goal, cuts, step) if at_root else None, cuts
+
+    def _optimal_partition(
+        self, cutter: Cutter, cost: Callable[[int], int], known_cuts: Iterable[frozenset[int]], enough: int
+    ) -> SharedCosts | None:
+        """Return the optimal cost partition, or one by which enough actions are above the cutoff."""
+        partitioning = CostPartitioning(
+            self._graph, cutter.targets, cutter.actions, cost, self._expired, known_cuts
+        )
+        while True:
+            shared = partitioning.advance(enough, max_solutions=1)
+            if shared is None or partitioning.converged:
+                return shared
+            cutoff = (enough - 1) * PARTS - shared.bound
+            above_cutoff = sum(reduced_cost > cutoff for reduced_cost in shared.reduced_costs.values())
+            if above_cutoff > tuning.PROOF.fixed_share * len(cutter.actions):
+                return shared
+
+    def _step(self) -> Fraction:
+        """Return the step that all costs are multiples of, where they are one number each; else 0."""
+        constrained = self._limits or self._rules is not None
+        one_number = len(self._multiples) == 1 == len(self._order.zero)
+        return self._multiples[0] if one_number and not constrained else Fraction(0)
+
+    def _fix_by_cost(
+        self,
+        cutter: Cutter,
+        used: frozenset[int],
+        goal: Vector,
+        packing: Packing,
+        reduced_costs: Mapping[int, Vector],
+        others: Others,
+        known_cuts: Collection[frozenset[int]],
+        step: Fraction,
+    ) -> Proof | None:
+        """Return a proof by reduced-cost fixing; ``None`` where too few actions are above the cutoff.
+
+        A derivation with an action costs at least the sum of the weights and the reduced cost of the action.
+        """
+        if not step:
+            return None
+        cutoff = (math.ceil(goal[0] / step) - 1) * step - sum(weight[0] for _, weight in packing.weights)
+        remaining = ((a, reduced_costs.get(a, self._costs[a])[0]) for a in cutter.actions if a not in used)
+        above_cutoff = frozenset(a for a, reduced_cost in remaining if reduced_cost > cutoff)
+        if len(above_cutoff) <= tuning.PROOF.fixed_share * len(cutter.actions):
+            return None
+        proof = others(above_cutoff, known_cuts)
+        needed = above_cutoff.intersection(self._crossing(proof))
+        return CostFixing(tuple(sorted(needed)), packing._replace(rounded=0), proof) if needed else proof
+
+    def _crossing(self, proof: Proof) -> Iterator[int]:
+        """Return the actions that cross cuts of a proof, including the fixed ones."""
+        for objects in {cut.objects for cut in _cuts(proof)}:
+            yield from self._members(frozenset(objects))
+
+    def _widened(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
+        """Return a cut, with more objects if an action that cannot run crosses it."""
+        inside = frozenset(o for o in objects if not self._graph.at_start[o])
+        members = cutter.among(self._members(inside))
+        return cutter.widened(inside) if members is None else Cut(tuple(sorted(inside)), members)
+
+    def _searched(
+        self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
+    ) -> Proof | None:
+        """Return the proof of the search, its cuts widened to all actions; ``None`` where it finds none."""
+        if self._search is None or not step:
+            return None
+        result = self._search(
+            *(self._graph, cutter.targets, cutter.actions),
+            *(lambda action: int(self._costs[action][0] / step), [cut.objects for cut in known_cuts]),
+            *(math.ceil(goal[0] / step), self._expired),
+        )
+
+        widened = cache(partial(self._widened, cutter))
+
+        def packed(packing: Packing) -> Packing:
+            weights = [(widened(cut.objects), (weight[0] * step,)) for cut, weight in packing.weights]
+            _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
+            return Packing(tuple(weights), rounded=rounded)
+
+        def stated(proof: Proof) -> Proof:
+            if isinstance(proof, Branch):
+                return Branch(proof.action, stated(proof.without), stated(proof.using))
+            if isinstance(proof, Hopeless):
+                return Hopeless(widened(proof.cut.objects))
+            if isinstance(proof, CostFixing):
+                return CostFixing(
+                    proof.actions, packed(proof.packing)._replace(rounded=0), stated(proof.others)
+                )
+            assert isinstance(proof, Packing)
+            return packed(proof)
+
+        return None if result is None else stated(result)
+
+    def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> tuple[Packing, dict[int, Vector]]:
+        """Partition costs greedily: each cut in turn gets the least reduced cost of its landmark actions.
+
+        A cut with a number gets at most that. Returns the cost partition, and the reduced costs of the
+        landmark actions.
+        """
+        reduced_costs: dict[int, Vector] = {}
+        weights: list[tuple[Cut, Vector]] = []
+        for cut, max_weight in cuts:
+            remaining = {a: reduced_costs.get(a, self._costs[a]) for a in cut.members}
+            limits = [*remaining.values()] if max_weight is None else [*remaining.values(), max_weight]
+            weight = min(limits, key=cmp_to_key(self._order.compare))
+            if self._order.sign(weight) > 0:
+                weights.append((cut, weight))
+                reduced_costs.update(
+                    (a, minus(reduced_cost, weight)) for a, reduced_cost in remaining.items()
+                )
+        _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
+        return Packing(tuple(weights), rounded=rounded), reduced_costs
+
+    def _reaches(self, packing: Packing, goal: Vector) -> bool:
+        """Return whether the weights of a cost partition add up to a goal, rounded up."""
+        value, _ = self.rounded(self._order.total(weight for _, weight in packing.weights))
+        return self._order.compare(value, goal) >= 0
+
+    def _total(self, actions: Iterable[int]) -> Vector:
+        return self._order.total(self._costs[a] for a in actions)
+
+
+def _cuts(proof: Proof) -> Iterator[Cut]:
+    """Return the cuts of a proof."""
+    waiting = [proof]
+    while waiting:
+        step = waiting.pop()
+        if isinstance(step, Branch):
+            waiting += [step.without, step.using]
+        elif isinstance(step, CostFixing):
+            waiting += [step.packing, step.others]
+        elif isinstance(step, Hopeless):
+            yield step.cut
+        elif isinstance(step, Packing):
+            yield from (cut for cut, _ in step.weights)
+
+
+class _Node:
+    """The relaxation at one node of the branching, a column for each action and a row for each cut.
+
+    ``shares`` are the LP values of the columns in the last solution, ``cuts`` the cuts of the rows.
+    """
+
+    def __init__(
+        self,
+        prover: Prover,
+        cutter: Cutter,
+        derivation: frozenset[int],
+        used: frozenset[int],
+        goal: Vector | None,
+    ) -> None:
+        self._prover, self._cutter, self._used = prover, cutter, used
+        self._derivation = sorted(derivation)
+        self._actions = cutter.actions
+        self._columns = {action: column for column, action in enumerate(self._actions)}
+        self._costs = [prover._costs[action] for action in self._actions]
+        floats = {cost: prover.scaled(cost) for cost in set(self._costs)}
+        self._floats = [floats[cost] for cost in self._costs]
+        self._limits = [self._limited(column, limit) for column, limit in enumerate(prover._limits)]
+        excess_cost = (
+            (Fraction(1),) * prover._order.width
+            if goal is None
+            else times(goal, Fraction(_EXCESS_COST_FACTOR))
+        )
+        self._costs += [excess_cost] * len(self._limits)
+        self._covering = Covering([*self._floats, *[prover.scaled(excess_cost)] * len(self._limits)])
+        for amounts, max_amount in self._limits:
+            self._covering.limit(amounts, max_amount)
+        constrained = self._limits or prover._rules is not None
+        self._free = (
+            [] if constrained else [column for column, cost in enumerate(self._costs) if not any(cost)]
+        )
+        self.cuts: list[Cut] = []
+        self._rows: list[list[int]] = []
+        self.shares: Sequence[float]
+
+    def _limited(self, row: int, limit: Limit) -> Limit:
+        """Return a limit over the columns without the used actions; its last column is the excess."""
+        amounts, max_amount = limit
+        columns = {self._columns[a]: amount for a, amount in amounts.items() if a in self._columns}
+        remaining = max_amount - sum(amounts[a] for a in self._used if a in amounts)
+        return {**columns, len(self._actions) + row: Fraction(-1)}, remaining
+
+    def exceeds(self, actions: Iterable[int]) -> bool:
+        """Return whether actions exceed a limit."""
+        chosen = set(actions)
+        return any(
+            sum(amount for a, amount in amounts.items() if a in chosen) > max_amount
+            for amounts, max_amount in self._prover._limits
+        )
+
+    def suffices(self, value: Vector, enough: Vector | None) -> bool:
+        """Return whether a bound is at least ``enough``; ``None`` asks for a bound above 0."""
+        order = self._prover._order
+        if enough is None:
+            return order.sign(value) > 0
+        return order.compare(self._prover.rounded(value)[0], enough) >= 0
+
+    def relax(self, enough: Vector | None) -> ExactOptimum | None:
+        """Add cuts until the LP solution violates none that is found, or the bound is enough.
+
+        Returns the exact optimum of the rows; ``None`` where exact arithmetic fails.
+        """
+        order = self._prover._order
+        wanted = math.inf if enough is None else self._prover.scaled(enough)
+        if enough is not None and len(enough) == len(self._prover._multiples) == 1:  # more than one step less
+            wanted -= _STEP * self._prover.scaled((self._prover._multiples[0],))
+        while True:
+            self._check()
+            relaxed = self._covering.solve(self._prover._expired)
+            self._check()
+            self._share(relaxed.x)
+            if relaxed.value < wanted * 0.9999999 and self._separate():
+                continue
+            exact = exact_optimum(self._rows, self._costs, order, relaxed.columns, relaxed.rows, self._limits)
+            if exact is not None:
+                if enough is not None and self.suffices(exact.value, enough):
+                    return exact
+                self._share([float(exact.x.get(column, 0)) for column in range(len(self._actions))])
+            if not self._separate():
+                return exact
+
+    def _check(self) -> None:
+        if self._prover._expired():
+            raise _TimeUpError
+
+    def _share(self, x: Sequence[float]) -> None:
+        """Record an LP solution, with unconstrained actions of cost 0 at 1."""
+        self.shares = [*x]
+        for column in self._free:
+            self.shares[column] = 1.0
+
+    def packing(self, exact: ExactOptimum) -> Packing:
+        """Return the cost partition of an exact optimum."""
+        weights = sorted(exact.weights.items())
+        first = len(self._limits)
+        return Packing(
+            tuple((self.cuts[row - first], weight) for row, weight in weights if row >= first),
+            tuple((row, weight) for row, weight in weights if row < first),
+            self._prover.rounded(exact.value)[1],
+        )
+
+    def undecided(self) -> int | None:
+        """Return the most fractional action, the most expensive of several; ``None`` where all are whole."""
+        halves = [
+            (abs(x - 0.5), -self._floats[column], self._actions[column])
+            for column, x in enumerate(self.shares[: len(self._actions)])
+            if abs(x - 0.5) < 0.499999
+        ]
+        return min(halves)[2] if halves else None
+
+    def rounded_solution(self) -> list[int]:
+        """Return the actions of the rounded LP solution, with the used ones."""
+        shares = zip(self._actions, self.shares, strict=False)  # after those of actions come those of limits
+        return sorted({action for action, x in shares if round(x)} | self._used)
+
+    def _separate(self) -> bool:
+        """Add cuts that the LP solution violates; return whether there were any."""
+        return self._add_disjoint_cuts() or any(self._add_violated_cuts() for _ in range(tuning.PROOF.orders))
+
+    def _add_disjoint_cuts(self) -> bool:
+        """Add violated cuts with disjoint landmarks; return whether there were any."""
+        import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
+
+        shares = np.zeros(len(self._prover._costs))
+        shares[self._actions] = self.shares[: len(self._actions)]
+        costs = np.zeros(len(self._prover._costs))
+        costs[self._actions] = self._floats
+        random_number = self._prover._random.random
+        cuts = disjoint_violated_cuts(self._cutter, self._used, shares, costs, random_number, _SATISFIED)
+        violated = list(islice(cuts, tuning.RELAXATION.cuts))
+        self.admit(violated)
+        return bool(violated)
+
+    def _add_violated_cuts(self) -> bool:
+        """Add violated cuts grown around the incumbent less one action; return whether there were any.
+
+        Actions of great LP values are kept out of landmarks first, in a random order among equals.
+        """
+        arbitrary = self._prover._random.random
+        order = sorted(self._actions, key=lambda a: (-self.shares[self._columns[a]], arbitrary()))
+        keeps = [[b for b in self._derivation if b != a] for a in self._derivation]
+        missed: dict[tuple[int, ...], Cut] = {}
+        for keep in (*keeps, ()):
+            cut = self._cutter.cut([*keep, *self._used], order)
+            if cut is not None and sum(self.shares[self._columns[a]] for a in cut.members) < _SATISFIED:
+                missed[cut.members] = cut
+        self.admit(missed.values())
+        return bool(missed)
+
+    def admit(self, cuts: Iterable[Cut]) -> None:
+        """Add cuts whose landmark actions are all columns."""
+        for cut in cuts:
+            if self._columns.keys() >= set(cut.members):
+                row = [self._columns[a] for a in cut.members]
+                self.cuts.append(cut)
+                self._rows.append(row)
+                self._covering.add(row)

@@ -1,0 +1,186 @@
+"""Lagrangian relaxation of a limit on a sum over the units of a tree: the limit becomes a price per unit."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.exact_costs import ExactCosts
+from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem
+from foon_asp.hypergraph.reduction import Reduced, at_costs
+from foon_asp.problem import Objective
+
+Units = frozenset[int]
+
+
+class Limited(NamedTuple):
+    """The result of a search for trees within a limit.
+
+    ``tree`` is within the limit; ``None`` where no tree is. Better trees within the limit have only units of
+    ``units``, which are ``None`` where no price excludes any.
+    """
+
+    tree: Units | None
+    units: Units | None = None
+
+
+def limited(
+    subproblem: Subproblem,
+    objectives: Sequence[Objective],
+    tree: Units,
+    counts: Callable[[int], int],
+    max_count: int,
+    expired: Callable[[], bool],
+) -> Limited | None:
+    """Search for the best tree whose units count at most ``max_count`` together; ``tree`` exceeds the limit.
+
+    A first tree within the limit is found by :func:`any_within_limit`. Then the price is the Lagrange
+    multiplier at which that tree and the one beyond the limit cost the same. With a price, a tree within the
+    limit costs at most ``max_count`` times the price more, so lower bounds carry over. Where that price
+    leaves many units, lower prices that rise up to it are tried. ``None`` where nothing is found out.
+    """
+
+    def count_of(units: Units) -> int:
+        return sum(map(counts, units))
+
+    first = any_within_limit(subproblem, counts, max_count, expired)
+    if first is None or first.tree is None:
+        return first
+    incumbent, over = first.tree, tree
+    remaining: Units | None = None
+    for _ in range(tuning.PRICES.prices):
+        ratio = -(
+            -(subproblem.total(incumbent) - subproblem.total(over)) // (count_of(over) - count_of(incumbent))
+        )
+        if ratio <= 0:
+            break
+        allowed = subproblem.total(incumbent) + ratio * max_count
+        reduced = _reduced_at(
+            subproblem,
+            subproblem.costs.priced(counts, ratio),
+            objectives,
+            expired,
+            incumbent,
+            allowed,
+            tuning.PRICES.rising_units,
+        )
+        if reduced.tree is None:
+            break
+        better = count_of(reduced.tree) <= max_count and subproblem.total(reduced.tree) < subproblem.total(
+            incumbent
+        )
+        incumbent = reduced.tree if better else incumbent
+        if remaining is None or len(reduced.units) < len(remaining):
+            remaining = frozenset(reduced.units)
+        if len(remaining) > tuning.PRICES.rising_units:
+            return _by_rising_prices(subproblem, objectives, incumbent, over, counts, max_count, expired)
+        if count_of(reduced.tree) > max_count and subproblem.total(reduced.tree) > subproblem.total(over):
+            over = reduced.tree
+        elif not better:
+            break
+        if len(remaining) <= tuning.PRICES.easy_units:
+            break
+    return Limited(incumbent, remaining)
+
+
+def _by_rising_prices(
+    subproblem: Subproblem,
+    objectives: Sequence[Objective],
+    incumbent: Units,
+    over: Units,
+    counts: Callable[[int], int],
+    max_count: int,
+    expired: Callable[[], bool],
+) -> Limited:
+    """Search for trees better than ``incumbent``, which is within the limit, from ``over`` beyond it.
+
+    A question at a low price is about as quick as one without a price. Prices rise, from about the cost of a
+    unit, to the one at which ``incumbent`` and ``over`` cost the same; the optimal tree at a price replaces
+    one of the two. The price of the greatest bound determines the units of trees better than ``incumbent``.
+    """
+
+    def count_of(units: Units) -> int:
+        return sum(map(counts, units))
+
+    next_price = tuning.LOWEST_PRICE * subproblem.total(over) / len(over)
+    greatest: tuple[Fraction, Fraction] | None = None  # bound, and its price
+    subproblem = _restricted_to_cost(subproblem, incumbent, expired)
+    for _ in range(tuning.PRICES.rising_prices):
+        tie = Fraction(
+            subproblem.total(incumbent) - subproblem.total(over), count_of(over) - count_of(incumbent)
+        )
+        if tie <= 0:
+            break
+        price, next_price = min(tie, next_price), 2 * next_price
+        reduced = _reduced_at(subproblem, subproblem.costs.priced(counts, price), objectives, expired)
+        if reduced.tree is None:
+            break
+        bound = Fraction(reduced.bound, price.denominator) - price * max_count
+        greatest = max(greatest or (bound, price), (bound, price))
+        count, total = count_of(reduced.tree), subproblem.total(reduced.tree)
+        tied = price == tie and total + price * count >= subproblem.total(incumbent) + price * count_of(
+            incumbent
+        )
+        if count > max_count:
+            over = reduced.tree
+        elif total < subproblem.total(incumbent):
+            incumbent = reduced.tree
+            subproblem = _restricted_to_cost(subproblem, incumbent, expired)
+        else:
+            break
+        if tied or count == max_count:
+            break
+    if greatest is None:
+        return Limited(incumbent)
+    _, price = greatest
+    allowed = subproblem.total(incumbent) * price.denominator + price.numerator * max_count
+    reduced = _reduced_at(
+        subproblem, subproblem.costs.priced(counts, price), objectives, expired, incumbent, allowed
+    )
+    if reduced.tree is None:
+        return Limited(incumbent)
+    if count_of(reduced.tree) <= max_count and subproblem.total(reduced.tree) < subproblem.total(incumbent):
+        incumbent = reduced.tree
+    return Limited(incumbent, frozenset(reduced.units))
+
+
+def _restricted_to_cost(subproblem: Subproblem, tree: Units, expired: Callable[[], bool]) -> Subproblem:
+    """Return the subproblem of the trees that cost no more than ``tree``."""
+    remaining = subproblem.actions_within(subproblem.total(tree), expired)
+    return replace(subproblem, remaining={*remaining, *subproblem.actions(tree)})
+
+
+def any_within_limit(
+    subproblem: Subproblem, counts: Callable[[int], int], max_count: int, expired: Callable[[], bool]
+) -> Limited | None:
+    """Search for any tree whose units count at most ``max_count`` together, by minimizing the count.
+
+    Returns ``Limited(None)`` where a bound proves that there is none, ``None`` where nothing is found out.
+    """
+    units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
+    limit = units_cost.beyond * (max_count + 1)
+    reduced = _reduced_at(
+        subproblem, units_cost.priced(counts, units_cost.beyond, limit), (Objective.UNITS,), expired
+    )
+    if reduced.bound >= limit:
+        return Limited(None)
+    if reduced.tree is None or sum(map(counts, reduced.tree)) > max_count:
+        return None
+    return Limited(reduced.tree)
+
+
+def _reduced_at(
+    subproblem: Subproblem,
+    costs: ExactCosts,
+    objectives: Sequence[Objective],
+    expired: Callable[[], bool],
+    known_tree: Units = frozenset(),
+    below: int = 0,
+    max_actions: float = math.inf,
+) -> Reduced:
+    reduced = at_costs(subproblem, objectives, costs, expired, known_tree, below, max_actions)
+    if reduced.interrupted:
+        raise KeyboardInterrupt
+    return reduced

@@ -1,0 +1,58 @@
+"""The reduced-cost neighbourhood: actions that derivations below a given cost can use."""
+
+from collections.abc import Callable, Container, Mapping
+from heapq import heappop, heappush
+
+from foon_asp.hypergraph.goal_graph import GoalGraph
+
+
+def neighbourhood(
+    graph: GoalGraph,
+    allowed: Container[int],
+    reduced_cost: Callable[[int], int],
+    limit: float,
+    h_actions: Mapping[int, int] | None = None,
+    enough: int | None = None,
+    min_reduced_cost: int = 0,
+    reachable: Callable[[int, float], bool] | None = None,
+) -> set[int]:
+    """Return the allowed actions that stay: those of irredundant derivations of reduced cost up to ``limit``.
+
+    In such a derivation there is a path from each action to a goal, each action a consumer of the one before,
+    so the reduced costs along the path count. With the h-values ``h_actions`` of actions, these count instead
+    of an action's own reduced cost, as no action of its derivation is on the path. Dijkstra's algorithm from
+    the goals, up to the limit (``math.inf`` is none) and until it has ``enough`` actions, if given. No
+    reduced cost is below ``min_reduced_cost``. ``reachable`` tests whether an object can be made at a reduced
+    cost, where there are no ``h_actions``.
+    """
+    needs, achievers, start = graph.needs, graph.makers, graph.start
+    buckets: dict[int, list[int]] = {0: list(graph.goals)}
+    distances = [0]
+    reached = set(start)
+    kept: set[int] = set()
+    while distances and distances[0] + min_reduced_cost <= limit:
+        distance = heappop(distances)
+        for target in buckets[distance]:  # grows while it is walked through
+            if target in reached:
+                continue
+            reached.add(target)
+            for action in achievers[target]:
+                if action in kept or action not in allowed:
+                    continue
+                total = distance + reduced_cost(action)
+                if total > limit:
+                    continue
+                if h_actions is not None:
+                    h_action = h_actions.get(action)
+                    if h_action is None or distance + h_action > limit:
+                        continue
+                if reachable is not None and not all(reachable(o, limit - total) for o in needs[action]):
+                    continue
+                kept.add(action)
+                if total not in buckets:
+                    buckets[total] = []
+                    heappush(distances, total)
+                buckets[total] += needs[action]
+        if enough is not None and len(kept) >= enough:
+            break
+    return kept

@@ -1,0 +1,491 @@
+"""Presolve of a question: an incumbent, a lower bound, and the units that a better tree can have.
+
+Stages (:mod:`greedy_stages`, :mod:`relaxation_stages`) pass a :class:`Gap`, each a smaller one than the stage
+before it.
+"""
+
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext, suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from foon_asp.garbage import uncollected
+from foon_asp.hypergraph import greedy_stages as greedy
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineError
+from foon_asp.hypergraph.extension import extended, extensions
+from foon_asp.hypergraph.gap import Gap, Stage
+from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem
+from foon_asp.hypergraph.goal_graph import graph_of
+from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.incumbent_trees import irredundant
+from foon_asp.hypergraph.landmark_cuts import Cuts
+from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
+from foon_asp.hypergraph.reductions import ALL, Reduction
+from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
+from foon_asp.hypergraph.task import Task
+from foon_asp.hypergraph.tuning import PresolveTuning
+from foon_asp.problem import Objective, Problem
+
+if TYPE_CHECKING:  # few questions need it
+    from foon_asp.hypergraph.cost_partition import SharedCosts
+    from foon_asp.hypergraph.optimality_proof import Cases
+
+Expired = Callable[[], bool]
+Guard = Callable[[], AbstractContextManager[object]]
+HValues = Mapping[int, int]
+Stages = Callable[[Task, Gap, HValues], Stage]
+
+
+class Course(NamedTuple):
+    """The stages from a first tree on, where little of a large network was looked at, and elsewhere."""
+
+    near_goals: Stages
+    whole: Stages
+
+
+class Reduced(NamedTuple):
+    """A presolved question.
+
+    ``tree`` are the units of the incumbent, or ``None`` where there is no tree. ``units`` are those of the
+    incumbent and those that a better tree can have, ascending. ``settled`` is true where the incumbent is
+    proved optimal. ``costs`` compares trees exactly, and ``bound`` is a lower bound by it on every tree;
+    ``None`` and 0 where rates are too fine. ``cuts`` is the greedy cost partition of the greatest sum, over
+    the units remaining at the time. ``interrupted`` is true where ctrl-C ended it, or time was up before any
+    reduction: ``units`` means nothing then. ``subproblem`` is the gap-bounded subproblem, which holds
+    whatever rules trees have to keep to. ``shared`` is the optimal cost partition, if one was computed.
+    ``cases`` are the actions branched on. ``tight`` are the tight cuts of the LP solutions by which units
+    were left out, over the units remaining at the time.
+    """
+
+    tree: frozenset[int] | None
+    units: tuple[int, ...]
+    settled: bool
+    costs: ExactCosts | None
+    bound: int
+    cuts: Cuts | None
+    interrupted: bool = False
+    subproblem: Subproblem | None = None
+    shared: "SharedCosts | None" = None
+    cases: "Cases" = None
+    tight: Collection[frozenset[int]] = ()
+
+
+class Listener:
+    """Observer of incumbents and bounds; its methods do nothing unless overridden."""
+
+    def tree(self, units: frozenset[int]) -> None:
+        """Receive a tree that is better than the one before."""
+
+    def bound(self, costs: ExactCosts, bound: int) -> None:
+        """Receive a lower bound on all trees."""
+
+
+class Bounds(Listener):
+    """Observer that passes on bounds only: trees found on the way may not keep to all rules."""
+
+    def __init__(self, listener: Listener) -> None:
+        self._listener = listener
+
+    def bound(self, costs: ExactCosts, bound: int) -> None:
+        """Receive a lower bound on all trees."""
+        self._listener.bound(costs, bound)
+
+
+def reduce(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    reductions: Collection[Reduction] = ALL,
+    expired: Expired = lambda: False,
+    listener: Listener | None = None,
+    guard: Guard = nullcontext,
+) -> Reduced:
+    """Reduce a problem to the units that a search for the best tree still has to look at.
+
+    ``objectives`` is the list as it is optimized, with ``units`` in it, so that every unit costs something.
+    Without reductions, the relevant units that can be executed remain. ``expired`` returns whether time is
+    up; longer computations are interrupted, as by ctrl-C, by the ``guard``.
+    """
+    with uncollected():
+        with guard():
+            presolve = _Presolve(_task(problem, objectives, reductions, expired), listener, guard)
+        presolve.extend_or_run()
+        return presolve.reduced()
+
+
+def reduce_under_rules(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    reductions: Collection[Reduction] = ALL,
+    expired: Expired = lambda: False,
+    listener: Listener | None = None,
+    guard: Guard = nullcontext,
+    redundant: bool = False,
+) -> Reduced:
+    """Reduce a problem whose trees have to keep to rules unknown here, for which ``subproblem`` is computed.
+
+    With ``redundant``, its trees may have units that lead to no goal. Other arguments are those of
+    :func:`reduce`.
+    """
+    return _without_branching(problem, objectives, reductions, expired, listener, guard, redundant, ROUNDS)
+
+
+def bound_under_rules(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    reductions: Collection[Reduction] = ALL,
+    expired: Expired = lambda: False,
+    listener: Listener | None = None,
+    guard: Guard = nullcontext,
+    redundant: bool = False,
+) -> Reduced:
+    """Compute any tree and ``subproblem``; arguments are those of :func:`reduce_under_rules`."""
+    course = Course(_bound_lazily, _bound_once)
+    return _without_branching(problem, objectives, reductions, expired, listener, guard, redundant, course)
+
+
+def _without_branching(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    reductions: Collection[Reduction],
+    expired: Expired,
+    listener: Listener | None,
+    guard: Guard,
+    redundant: bool,
+    course: Course,
+) -> Reduced:
+    presolve_tuning = replace(tuning.PRESOLVE, branching_budget=0, landmark_actions=math.inf)
+    with uncollected():
+        with guard():
+            task = _task(problem, objectives, reductions, expired, presolve_tuning)
+            if redundant:  # costs of all actions are needed later
+                task = _with_costs(task, range(len(task.graph.needs)))
+            presolve = _Presolve(task, listener, guard)
+        presolve.run(course)
+        return presolve.reduced(redundant)
+
+
+def at_costs(
+    subproblem: Subproblem,
+    objectives: Sequence[Objective],
+    costs: ExactCosts,
+    expired: Expired,
+    known_tree: Collection[int] = (),
+    below: int = 0,
+    max_actions: float = math.inf,
+) -> Reduced:
+    """Reduce a gap-bounded subproblem under other costs, with ``known_tree`` as a first incumbent, if any.
+
+    With ``below``, only units are left out whose trees all cost at least ``below`` and at least as much as
+    the incumbent; that is given up where more than ``max_actions`` remain and the first cuts exclude hardly
+    any.
+    """
+    presolve_tuning = replace(tuning.PRESOLVE, rounds=6, branching_budget=0, landmark_actions=math.inf)
+    if below:  # clingo gets the remaining actions with an incumbent
+        presolve_tuning = replace(presolve_tuning, relaxed_actions=presolve_tuning.easy_actions)
+    reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
+    with uncollected():
+        task = _task(subproblem.problem, objectives, reductions, expired, presolve_tuning)
+        task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
+
+        def fixed_first(task: Task, gap: Gap, h_values: HValues) -> Stage:
+            if below and len(gap.candidates) > max_actions:
+                before = len(gap.candidates)
+                gap, cuts = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap))
+                gap = greedy.fix(task, gap, cuts)  # the cutoff does not depend on the incumbent
+                yield gap
+                if len(gap.candidates) > max(max_actions, task.tuning.worthwhile_share * before):
+                    return gap
+                h_values = derive(task.graph, gap.candidates, costs, h_add=False).cost
+            return (yield from rounds(task, gap, h_values))
+
+        presolve = _Presolve(task, None, nullcontext)
+        presolve.run(Course(rounds_near_goals, fixed_first), subproblem.actions(known_tree))
+        return presolve.reduced(subproblem.redundant)
+
+
+def _task(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    reductions: Collection[Reduction],
+    expired: Expired,
+    presolve_tuning: PresolveTuning | None = None,
+) -> Task:
+    presolve_tuning = presolve_tuning or tuning.PRESOLVE
+    graph, coarse = graph_of(problem, objectives), CoarseCosts(problem, objectives[0])
+    return Task(
+        problem,
+        tuple(objectives),
+        frozenset(reductions),
+        expired,
+        graph,
+        graph.thin(presolve_tuning.required_achievers, coarse),
+        coarse,
+        presolve_tuning,
+        range(len(graph.needs)),
+    )
+
+
+def _with_costs(task: Task, actions: Collection[int]) -> Task:
+    """Return the task with exact costs of actions, unless it has costs or rates are too fine for them."""
+    if task.costs is None:
+        with suppress(TooFineError):
+            return replace(task, costs=ExactCosts(task.problem, task.objectives, actions))
+    return task
+
+
+def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
+    """Repeat bounds, better trees and reductions, until nothing changes or the incumbent is optimal."""
+    costs, limits = task.costs, task.tuning
+    if costs is not None and len(gap.candidates) > limits.easy_actions:
+        gap = greedy.follow_h_add(task, gap)
+        yield gap
+    if costs is not None and costs.limited:  # any tree below the limit will do
+        gap = greedy.improve(task, gap, greedy.NO_CUTS, thorough=False)
+        gap = gap.closed() if greedy.meets(task, gap, greedy.NO_CUTS) else gap
+        yield gap
+    thorough = False  # as a last resort
+    for _ in range(0 if gap.proved else limits.rounds):
+        before = gap
+        if costs is not None and task.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
+            guide = greedy.guide_by(task, gap)
+            gap = yield from greedy.tighten(task, gap, h_values, guide, thorough)
+        if gap.proved or task.expired():
+            return gap
+        gap = greedy.prune_dominated(task, gap)
+        if not _differs(gap, before):
+            gap = greedy.prune_beside_landmarks(task, gap)
+        yield gap
+        slow = len(gap.candidates) > max(
+            limits.neighbourhood_actions, limits.worthwhile_share * len(before.candidates)
+        )  # another turn would bring little
+        if (slow or not _differs(gap, before)) and costs is not None and not thorough:
+            gap = yield from _relaxed(task, gap)
+            if gap.proved:
+                return gap
+        changed = _differs(gap, before)
+        if not changed and (thorough or len(gap.candidates) <= limits.easy_actions):
+            return gap
+        thorough = not changed
+        h_values = derive(task.graph, gap.candidates, costs or task.coarse, h_add=False).cost
+    return gap
+
+
+def _differs(gap: Gap, before: Gap) -> bool:
+    """Return whether there are fewer candidates, or another incumbent."""
+    return (len(gap.candidates), gap.incumbent) != (len(before.candidates), before.incumbent)
+
+
+def _relaxed(task: Task, gap: Gap) -> Stage:
+    """Go on with linear programs, where there are enough candidates for these to be of use."""
+    if len(gap.candidates) <= task.tuning.relaxed_actions:
+        return gap
+    from foon_asp.hypergraph.relaxation_stages import (  # noqa: PLC0415 (few questions need it)
+        branch,
+        partition_costs,
+    )
+
+    gap = yield from partition_costs(task, gap)
+    return gap if gap.proved else (yield from branch(task, gap))
+
+
+def rounds_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
+    """Look at what a large network has near the goals, and go on with the candidates that remain.
+
+    h-values of reduced costs would look at all actions, so no guide is asked.
+    """
+    if task.costs is not None:
+        gap = yield from greedy.tighten(task, gap, h_values, None, thorough=False)
+    if gap.proved:
+        return gap
+    if len(gap.candidates) == len(task.graph.needs):
+        if task.expired():  # before any reduction
+            raise KeyboardInterrupt
+        opening = greedy.relevant(task, gap)
+        assert opening is not None
+        gap, _ = opening
+    gap = greedy.prune_dominated(task, gap)
+    yield gap
+    if not task.expired():
+        h_values = derive(task.graph, gap.candidates, task.costs or task.coarse, h_add=False).cost
+        gap = yield from rounds(task, gap, h_values)
+    return gap
+
+
+ROUNDS = Course(rounds_near_goals, rounds)
+
+
+def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
+    """Bound trees by landmark cuts."""
+    if task.costs is not None:
+        gap = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap)).gap
+        yield gap
+    return gap
+
+
+def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
+    """Bound trees by landmark cuts, which are not guided: that would look at all actions."""
+    if task.costs is not None:
+        gap = greedy.bound(task, gap, h_values, None).gap
+        yield gap
+    return gap
+
+
+def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
+    """Find a first tree among the actions nearest to the goals, so that large networks are read lazily.
+
+    Most of a large network is too far from the goals for a good tree, and is never looked at. Returns the gap
+    over all actions and h-values of objects, ``None`` where the network is small or no tree is found.
+    """
+    size, limits = len(task.graph.needs), task.tuning
+    if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= limits.lazy_actions:
+        return None
+    all_actions = range(size)
+    nearest = neighbourhood(task.thin, all_actions, task.coarse, math.inf, enough=limits.first_actions)
+    if len(nearest) < limits.first_actions:
+        return None
+    narrowed = restricted_subproblem(task.thin, nearest, task.coarse, size // 4)
+    if narrowed is None:
+        return None
+    derivations, tree = narrowed
+    return Gap(frozenset(tree), 0, all_actions), derivations.cost
+
+
+class _Presolve:
+    """A run of the stages of a task: its last gap, ``None`` before there is a tree.
+
+    ``ended`` is true where nothing interrupted it.
+    """
+
+    def __init__(self, task: Task, listener: Listener | None, guard: Guard) -> None:
+        self.task, self.ended = task, False
+        self.gap: Gap | None = None
+        self._listener, self.guard = listener or Listener(), guard
+
+    @property
+    def bounds_listener(self) -> Listener:
+        """The listener for trees of another task, whose bounds hold here too."""
+        return Bounds(self._listener)
+
+    def guarded(self, step: Callable[[], None]) -> None:
+        """Take a step that may be interrupted, which raises ``KeyboardInterrupt`` before there is a tree."""
+        self.ended = False
+        try:
+            with self.guard():
+                step()
+                self.ended = True
+        except KeyboardInterrupt:
+            if self.gap is None and not self.ended:
+                raise
+
+    def run(self, course: Course, known_tree: Collection[int] = ()) -> None:
+        """Find a first tree, and take a course from there."""
+        self.guarded(lambda: self._run(course, known_tree))
+
+    def _run(self, course: Course, known_tree: Collection[int]) -> None:
+        task, stages = self.task, course.near_goals
+        opening = _near_goals(task)
+        if opening is None:
+            opening, stages = greedy.relevant(task, Gap(frozenset(), 0, ())), course.whole
+        if opening is None:
+            return
+        self.gap, h_values = opening
+        if task.reductions:
+            trees = [self.gap.incumbent, known_tree] if known_tree else [self.gap.incumbent]
+            tree = min(trees, key=lambda tree: sum(map(task.coarse, tree)))
+            self.report(self.gap.with_incumbent(irredundant(task.graph, tree, task.coarse)))
+            self.take(stages, h_values)
+
+    def extend_or_run(self) -> None:
+        """Take all rounds, from trees for the goals alone where sets are required and that helps."""
+        restriction = self.task.problem.restriction
+        if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:
+            _extend(self)
+        if self.gap is None:
+            self.run(ROUNDS)
+
+    def take(self, stages: Stages, h_values: HValues) -> None:
+        """Take stages from the gap; report trees and bounds on the way."""
+        assert self.gap is not None
+        self.task = task = _with_costs(self.task, self.gap.candidates)
+        for gap in stages(task, replace(self.gap, budget=task.tuning.branching_budget), h_values):
+            self.report(gap)
+
+    def report(self, gap: Gap) -> None:
+        """Go on to another gap; report its tree and its bound where these are new."""
+        before, self.gap = self.gap, gap
+        if before is None or gap.incumbent is not before.incumbent:
+            self._listener.tree(self._units(gap.incumbent))
+        if self.task.costs is not None and before is not None and gap.lower_bound > before.lower_bound:
+            self._listener.bound(self.task.costs, gap.lower_bound)
+
+    def _units(self, actions: Collection[int]) -> frozenset[int]:
+        return frozenset(a for a in actions if a < self.task.graph.units)
+
+    def reduced(self, redundant: bool = False) -> Reduced:
+        """Return the result; trees of its subproblem may be ``redundant``."""
+        task, gap = self.task, self.gap
+        if gap is None:
+            return Reduced(None, (), False, None, 0, None)
+        evidence, tree = gap.evidence, self._units(gap.incumbent)
+        units = tree if gap.proved or not self.ended else tree | self._units(gap.candidates)
+        subproblem = None
+        if evidence.first is not None and task.costs is not None:
+            cuts, actions = evidence.first
+            subproblem = Subproblem(task.problem, task.graph, actions, task.costs, cuts, redundant)
+        return Reduced(
+            *(tree, tuple(sorted(units)), gap.proved, task.costs, gap.lower_bound, evidence.cuts),
+            *(not self.ended, subproblem, evidence.shared, evidence.cases, evidence.tight),
+        )
+
+
+def _extend(presolve: _Presolve) -> None:
+    """Keep the units of cheap trees for the goals alone, and of cheap extensions to the required sets.
+
+    Every tree contains one for the goals alone, which costs no more; the other units cost at most the
+    difference. A tree as cheap as the best one for the goals alone is optimal. Leaves no gap where this
+    relaxation does not help.
+    """
+    task = presolve.task
+    graph, restriction = task.graph, task.problem.restriction
+    assert restriction is not None
+    alone = replace(task.problem, restriction=replace(restriction, required=()))
+    goals_task = _task(alone, task.objectives, task.reductions, task.expired)
+    goals_task = _with_costs(goals_task, range(len(goals_task.graph.needs)))
+    goals_only = _Presolve(goals_task, presolve.bounds_listener, presolve.guard)
+    goals_only.run(ROUNDS)
+    reduced, gap, costs = goals_only.reduced(), goals_only.gap, goals_task.costs
+    if costs is None or gap is None or reduced.subproblem is None:
+        return
+    subproblem, h_values = reduced.subproblem, dict[int, int]()
+
+    def extend() -> None:
+        tree = extended(task.thin, gap.incumbent, costs, len(graph.needs) // 4)
+        if tree is None:
+            return
+        incumbent = frozenset(irredundant(graph, tree, costs))
+        first = Gap(incumbent, 0, range(len(graph.needs)))
+        presolve.report(first)
+        if reduced.interrupted:
+            raise KeyboardInterrupt
+        only_better, total = Reduction.BOUNDS in task.reductions, sum(map(costs, incumbent))
+        optimal = gap.proved and incumbent == gap.incumbent if costs.doubt else total == gap.lower_bound
+        if only_better and optimal:
+            presolve.task = replace(task, costs=costs)
+            evidence = gap.evidence._replace(first=None, tight=())
+            presolve.gap = first.raised(gap.lower_bound, evidence).closed()
+            return
+        limit = total - only_better
+        candidates = {*subproblem.actions_within(limit, task.expired), *incumbent}
+        distance = limit - gap.lower_bound + costs.doubt
+        candidates |= extensions(graph, candidates, costs, distance, task.expired)
+        if task.expired():
+            raise KeyboardInterrupt
+        derivations = derive(graph, candidates, task.coarse, h_add=False)
+        h_values.update(derivations.cost)
+        presolve.gap = first.with_candidates(graph.cone(derivations.h_actions)[0])
+
+    presolve.guarded(extend)
+    if presolve.gap is not None and presolve.ended and not presolve.gap.proved:
+        presolve.guarded(lambda: presolve.take(rounds, h_values))

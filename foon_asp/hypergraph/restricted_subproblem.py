@@ -1,0 +1,43 @@
+"""A restricted subproblem: a few actions of a large network that contain a tree."""
+
+from collections.abc import Callable
+
+from foon_asp.hypergraph.goal_graph import GoalGraph
+from foon_asp.hypergraph.h_values import Derivations, derive
+
+
+def restricted_subproblem(
+    graph: GoalGraph, actions: set[int], cost: Callable[[int], int], max_actions: int
+) -> tuple[Derivations, set[int]] | None:
+    """Add actions until they contain a tree: in each round an achiever of each unreached relevant object.
+
+    Achievers with the fewest non-initial preconditions are added first. Returns the derivations by the
+    actions and the tree; ``None`` where it takes more than ``max_actions`` actions, or where there is no
+    tree.
+    """
+    needs, achievers, start = graph.needs, graph.makers, graph.start
+    chosen = set(actions)
+    ranked: dict[int, list[int]] = {}  # by relevant object, its achievers not yet added, best last
+    fresh = set(graph.goals)
+    while len(chosen) <= max_actions:
+        while fresh:
+            o = fresh.pop()
+            if o in start:
+                continue
+            candidates = ranked.get(o)
+            if candidates is None:
+                candidates = ranked[o] = sorted(
+                    achievers[o], key=lambda a: (-sum(n not in start for n in needs[a]), -cost(a), -a)
+                )
+            if candidates:
+                action = candidates.pop()
+                chosen.add(action)
+                fresh.update(n for n in needs[action] if n not in ranked)
+        derivations = derive(graph, chosen, cost, h_add=False)
+        tree = derivations.tree(graph, graph.goals)
+        if tree is not None:
+            return derivations, tree
+        fresh = {o for o, candidates in ranked.items() if candidates and o not in derivations.cost}
+        if not fresh:
+            return None
+    return None

@@ -1,0 +1,122 @@
+"""The cheapest achievers in a tree, updated as actions are removed one by one."""
+
+from collections.abc import Callable, Collection
+from heapq import heapify, heappop, heappush
+
+from foon_asp.hypergraph.goal_graph import GoalGraph
+from foon_asp.hypergraph.h_values import derive
+
+
+class Support:
+    """A tree with the h_add values and best achievers of its objects, updated incrementally.
+
+    ``actions`` are those of the tree that follow best achievers from the goals; others are removed at once.
+    ``figure[o]`` is the h_add value of an object in use. When an action is removed, only objects derived by
+    it are derived anew, from the others, so that actions of a cycle do not support each other.
+    """
+
+    def __init__(self, graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> None:
+        self._graph, self._cost = graph, cost
+        self.figure, self._best_achiever, self._h_actions = derivations = derive(
+            graph, tree, cost, h_add=True
+        )
+        self.actions = derivations.tree(graph, graph.goals) or set()
+        self._goals = frozenset(graph.goals)
+        self._achievers: dict[int, set[int]] = {}
+        self._consumers: dict[int, set[int]] = {}
+        for action in self.actions:
+            for o in graph.gives[action]:
+                self._achievers.setdefault(o, set()).add(action)
+            for o in graph.needs[action]:
+                if o not in graph.start:
+                    self._consumers.setdefault(o, set()).add(action)
+        self._supported = dict.fromkeys(self.actions, 0)  # number of objects in use with this best achiever
+        for o in self._goals | self._consumers.keys():
+            self._supported[self._best_achiever[o]] += 1
+
+    def _in_use(self, o: int) -> bool:
+        return bool(o in self._goals or self._consumers.get(o))
+
+    def replaceable(self, action: int) -> bool:
+        """Return whether each add effect in use of an action has another achiever, too.
+
+        As long as a tree is redundant, that is true of some redundant action: the last, in an executable
+        order, of the actions that would be removed together.
+        """
+        return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._in_use(o))
+
+    def leave_out(self, action: int) -> set[int] | None:
+        """Remove an action and the actions that are of no use without it.
+
+        Returns the remaining achievers of objects that are no longer in use. ``None``, and nothing changes,
+        where the other actions do not reach the goals.
+        """
+        missing = {action: 0}  # number of lost preconditions of each action derived by it
+        lost: set[int] = set()
+        for unit in (stack := [action]):  # grows while it is walked through
+            for o in self._graph.gives[unit]:
+                if self._best_achiever.get(o) == unit and o not in lost and self._in_use(o):
+                    lost.add(o)
+                    for consumer in self._consumers.get(o, ()):
+                        if consumer not in missing:
+                            missing[consumer] = 0
+                            stack.append(consumer)
+                        missing[consumer] += 1
+        made, h_actions = self._rederive(lost, missing)
+        if any(o in self._goals and o not in made for o in lost):
+            return None
+        for o, (figure, achiever) in made.items():
+            self._supported[self._best_achiever[o]] -= 1
+            self._supported[achiever] += 1
+            self.figure[o], self._best_achiever[o] = figure, achiever
+        self._h_actions.update(h_actions)
+        return self._drop([unit for unit in missing if not self._supported[unit]])
+
+    def _rederive(
+        self, lost: Collection[int], missing: dict[int, int]
+    ) -> tuple[dict[int, tuple[int, int]], dict[int, int]]:
+        """Derive lost objects anew; return their h_add values and achievers, and the h_add values of actions.
+
+        ``missing`` counts the lost preconditions of the actions.
+        """
+        made: dict[int, tuple[int, int]] = {}
+        h_actions: dict[int, int] = {}
+        waiting = [(self._h_actions[a], a, o) for o in lost for a in self._achievers[o] if a not in missing]
+        heapify(waiting)
+        while waiting:
+            figure, action, o = heappop(waiting)
+            if o in made:
+                continue
+            made[o] = figure, action
+            for consumer in self._consumers.get(o, ()):
+                missing[consumer] -= 1
+                if not missing[consumer]:
+                    needs = (n for n in self._graph.needs[consumer] if n not in self._graph.start)
+                    total = self._cost(consumer) + sum(
+                        made[n][0] if n in made else self.figure[n] for n in needs
+                    )
+                    h_actions[consumer] = total
+                    for effect in self._graph.gives[consumer]:
+                        if effect in lost:
+                            heappush(waiting, (total, consumer, effect))
+        return made, h_actions
+
+    def _drop(self, idle: list[int]) -> set[int]:
+        """Remove idle actions, and actions only used by them; return achievers of objects not in use now."""
+        graph, actions = self._graph, self.actions
+        freed: set[int] = set()
+        while idle:
+            action = idle.pop()
+            actions.remove(action)
+            for o in graph.gives[action]:
+                self._achievers[o].discard(action)
+            for o in graph.needs[action]:
+                if o not in graph.start and action in self._consumers[o]:
+                    self._consumers[o].remove(action)
+                    if not self._in_use(o):
+                        freed |= self._achievers[o]
+                        achiever = self._best_achiever[o]
+                        self._supported[achiever] -= 1
+                        if not self._supported[achiever]:
+                            idle.append(achiever)
+        return freed & actions

@@ -1,0 +1,165 @@
+"""A plan as a behaviour tree: XML of BehaviorTree.CPP 4, which Groot2 reads.
+
+Where items last, the tree is a reactive sequence with, for each step, a fallback of the condition that what
+the step makes is there, and the action. So a step starts only after what it needs was made, a step that
+failed is tried again at the next tick, and nothing is copied: the tree has three nodes for each step. Where
+items are used up, what a step made may be gone later, so the tree is a sequence in which each action is
+repeated until it succeeds, behind the condition that its inputs are there.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+from xml.etree import ElementTree
+
+from msgspec import field
+
+from foon_asp.escapes import escaped
+from foon_asp.planning.pddl_name import pddl_name
+from foon_asp.planning.robot_step import RobotStep
+from foon_asp.results.values import Node, Value
+
+CONDITION = "NodesAvailable"
+ACTION = "ExecuteUnit"
+UNTIL_SUCCESS = -1  # num_attempts of RetryUntilSuccessful without a limit
+
+
+class Branch(Value, frozen=True):
+    """A tree to follow, and how long.
+
+    Attributes:
+        failures: After how many failed executions the next branch begins.
+        robot_steps: The steps, in an order that executes; one that another branch did is skipped.
+    """
+
+    failures: int
+    robot_steps: tuple[RobotStep, ...] = field(name="steps")
+
+
+class _Port(NamedTuple):
+    name: str
+    type: str
+    meaning: str
+
+
+_NODES = "std::vector<std::string>"
+_PORTS = {
+    ("Condition", CONDITION): (_Port("nodes", _NODES, "object nodes that all have to be there"),),
+    ("Action", ACTION): (
+        _Port("step", "int", "number of the step in its plan, from 1"),
+        _Port("unit", "int", "id of the functional unit"),
+        _Port("motion", "std::string", "the motion"),
+        _Port("needs", _NODES, "object nodes that have to be there"),
+        _Port("makes", _NODES, "object nodes that are there afterwards"),
+        _Port("acted_on", _NODES, "what the motion is done to"),
+        _Port("tools", _NODES, "what it is done with"),
+        _Port("from", _NODES, "what the inputs are in, on or at"),
+        _Port("to", _NODES, "what the outputs are in, on or at"),
+        _Port("rate", "double", "success rate, if known"),
+        _Port("duration", "double", "seconds, if known"),
+    ),
+}
+LIST_SEPARATOR = ";"  # BehaviorTree.CPP splits lists at it
+
+
+def node_name(node: Node) -> str:
+    """Return the name of an object node in ports, which is its name in PDDL.
+
+    What the network does not have, such as a place that is no object of a unit, has its label.
+    """
+    if node.id is None:
+        return _plain(node.label).replace(LIST_SEPARATOR, ",")
+    return pddl_name("o", node.id, node.node)
+
+
+def behaviour_tree_text(name: str, branches: Sequence[Branch], is_used_up: bool) -> str:
+    """Return a behaviour tree as XML.
+
+    Parameters:
+        name: The name of the root, for people.
+        branches: The trees to follow, the first one first; if a branch has failed as often as it may, the
+            next one begins with what is there by then.
+        is_used_up: Whether items are used up; then there is one branch.
+    """
+    root = ElementTree.Element("root", BTCPP_format="4", main_tree_to_execute="Plan")
+    tree = ElementTree.SubElement(root, "BehaviorTree", ID="Plan")
+    parent = tree
+    if len(branches) > 1:
+        parent = ElementTree.SubElement(tree, "Fallback", name="the plan, and other ways")
+    for branch in branches:
+        if is_used_up:
+            _sequence(parent, name, branch.robot_steps)
+        else:
+            above = parent if branch.failures == 1 else _retry(parent, branch.failures)
+            _reactive_sequence(above, name, branch.robot_steps)
+    model = ElementTree.SubElement(root, "TreeNodesModel")
+    for (kind, node_id), ports in _PORTS.items():
+        described = ElementTree.SubElement(model, kind, ID=node_id)
+        for port in ports:
+            ElementTree.SubElement(
+                described, "input_port", name=port.name, type=port.type
+            ).text = port.meaning
+    ElementTree.indent(root)
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, encoding="unicode")}\n'
+
+
+def _reactive_sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
+    sequence = ElementTree.SubElement(parent, "ReactiveSequence", name=escaped(name))
+    for step in steps:
+        fallback = ElementTree.SubElement(sequence, "Fallback", name=_step_name(step))
+        if step.makes:  # else nothing shows that it is done
+            _condition(fallback, step.makes)
+        _action(fallback, step)
+    if not len(sequence):
+        ElementTree.SubElement(sequence, "AlwaysSuccess")
+
+
+def _sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
+    sequence = ElementTree.SubElement(parent, "Sequence", name=escaped(name))
+    for step in steps:
+        _condition(sequence, step.needs)
+        _action(_retry(sequence, UNTIL_SUCCESS), step)
+    if not len(sequence):
+        ElementTree.SubElement(sequence, "AlwaysSuccess")
+
+
+def _retry(parent: ElementTree.Element, attempts: int) -> ElementTree.Element:
+    return ElementTree.SubElement(parent, "RetryUntilSuccessful", num_attempts=str(attempts))
+
+
+def _condition(parent: ElementTree.Element, nodes: Iterable[Node]) -> None:
+    ElementTree.SubElement(parent, "Condition", ID=CONDITION, nodes=_names(nodes))
+
+
+def _action(parent: ElementTree.Element, step: RobotStep) -> None:
+    numbers = {"rate": step.rate, "duration": step.duration}
+    ElementTree.SubElement(
+        parent,
+        "Action",
+        {
+            "ID": ACTION,
+            "name": _step_name(step),
+            "step": str(step.step),
+            "unit": str(step.id),
+            "motion": _plain(step.motion),
+            "needs": _names(step.needs),
+            "makes": _names(step.makes),
+            "acted_on": _names(step.acted_on),
+            "tools": _names(step.tools),
+            "from": _names(step.origins),
+            "to": _names(step.destinations),
+            **{port: f"{float(value):.15g}" for port, value in numbers.items() if value is not None},
+        },
+    )
+
+
+def _plain(name: str) -> str:
+    """Return a name that BehaviorTree.CPP does not take for an entry of the blackboard, ``{name}``."""
+    return escaped(name).replace("{", "(").replace("}", ")")
+
+
+def _step_name(step: RobotStep) -> str:
+    return escaped(f"{step.step} {step.motion}")
+
+
+def _names(nodes: Iterable[Node]) -> str:
+    return LIST_SEPARATOR.join(map(node_name, nodes))

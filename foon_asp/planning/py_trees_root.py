@@ -1,0 +1,146 @@
+"""Behaviour trees of this program executed by py_trees (``pip install 'foon-asp[robot]'``)."""
+
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+from xml.etree import ElementTree
+
+from foon_asp.errors import UserError
+from foon_asp.planning.behaviour_tree import ACTION, CONDITION, LIST_SEPARATOR, UNTIL_SUCCESS
+
+if TYPE_CHECKING:
+    from py_trees.behaviour import Behaviour
+    from py_trees.common import Status
+
+
+class Execution(NamedTuple):
+    """The ports of an action: one execution of a functional unit.
+
+    ``step`` is the number of the step, ``unit`` the id of the functional unit, ``motion`` its motion. Object
+    nodes have their names in PDDL, such as ``o46-ice-cubed-in-drinking-glass``: those that have to be there
+    (``needs``), those that are there afterwards (``makes``), and by role what the motion is done to
+    (``acted_on``) and with (``tools``), and what inputs and outputs are in, on or at (``origins``,
+    ``destinations``). ``rate`` and ``duration``, in seconds, are ``None`` where they are not known.
+
+    Example:
+        >>> foon_asp.Execution(1, 26, "twist", ("o43-ice",), ("o46-ice",)).motion
+        'twist'
+    """
+
+    step: int
+    unit: int
+    motion: str
+    needs: tuple[str, ...]
+    makes: tuple[str, ...]
+    acted_on: tuple[str, ...] = ()
+    tools: tuple[str, ...] = ()
+    origins: tuple[str, ...] = ()
+    destinations: tuple[str, ...] = ()
+    rate: float | None = None
+    duration: float | None = None
+
+
+Execute = Callable[[Execution], bool | None]
+"""Executes a unit: ``True`` if that succeeded, ``False`` if it failed, ``None`` while it is going on."""
+IsAvailable = Callable[[str], bool]
+"""Whether an object node is there, by its name in PDDL."""
+
+
+def py_trees_root(xml: str | PathLike[str], execute: Execute, is_available: IsAvailable) -> "Behaviour":
+    """Make a tree of py_trees from a behaviour tree of this program.
+
+    Tick it until its status is ``SUCCESS``; each tick after a failure tries again.
+
+    Parameters:
+        xml: The text of the XML, or the path of a file.
+        execute: Is called with an :class:`Execution` to execute a unit; returns ``True`` if it succeeded,
+            ``False`` if it failed, ``None`` while it is going on: then the next tick calls it again.
+        is_available: Is called with the name of an object node; returns whether it is there.
+
+    Returns:
+        The root, a ``py_trees.behaviour.Behaviour``.
+
+    Raises:
+        UserError: if py_trees is not installed, or for XML that is not of this program.
+
+    Example:
+        >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
+        >>> kitchen = {node for step in answer.robot_plan().robot_steps for node in step.needs}
+        >>> root = foon_asp.py_trees_root(answer.behaviour_tree(), print, lambda name: False)
+        >>> root.name
+        'ice; crushed; in [drinking glass]'
+    """
+    try:
+        import py_trees  # noqa: F401, PLC0415 (an extra)
+    except ImportError:
+        raise UserError("running a behaviour tree needs py_trees: pip install 'foon-asp[robot]'") from None
+    text, name = (xml, "the behaviour tree") if isinstance(xml, str) else (_text(Path(xml)), str(xml))
+    try:
+        element = ElementTree.fromstring(text).find("BehaviorTree/*")
+    except ElementTree.ParseError as error:
+        raise UserError(f"{name}: {error}") from None
+    if element is None:
+        raise UserError(f"{name}: found no <BehaviorTree>, expected XML of --format behaviour-tree")
+    return _behaviour(element, execute, is_available)
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"{file}: cannot be read: {error}") from None
+
+
+def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsAvailable) -> "Behaviour":
+    from py_trees import behaviours, composites, decorators  # noqa: PLC0415
+
+    name = element.get("name", element.get("ID", element.tag))
+    children = [_behaviour(child, execute, is_available) for child in element]
+    behaviour: Behaviour
+    match element.tag, element.get("ID"):
+        case ("ReactiveSequence" | "Sequence") as tag, _:
+            behaviour = composites.Sequence(name, memory=tag == "Sequence", children=children)
+        case "Fallback", _:
+            behaviour = composites.Selector(name, memory=True, children=children)
+        case "RetryUntilSuccessful", _:
+            attempts = int(element.attrib["num_attempts"])
+            failures = float("inf") if attempts == UNTIL_SUCCESS else attempts
+            behaviour = decorators.Retry(name, children[0], failures)  # type: ignore[arg-type]
+        case "AlwaysSuccess", _:
+            behaviour = behaviours.Success(name)
+        case "Condition", id_ if id_ == CONDITION:
+            nodes = _names(element, "nodes")
+            behaviour = _leaf(name, lambda: all(map(is_available, nodes)))
+        case "Action", id_ if id_ == ACTION:
+            execution = _execution(element)
+            behaviour = _leaf(name, lambda: execute(execution))
+        case _:
+            raise UserError(f"found the node {element.tag} {name!r}, which is not of this program")
+    return behaviour
+
+
+def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
+    from py_trees.behaviour import Behaviour  # noqa: PLC0415
+    from py_trees.common import Status  # noqa: PLC0415
+
+    class Leaf(Behaviour):
+        def update(self) -> "Status":
+            outcome = ask()
+            return Status.RUNNING if outcome is None else Status.SUCCESS if outcome else Status.FAILURE
+
+    return Leaf(name)
+
+
+def _execution(element: ElementTree.Element) -> Execution:
+    ports = element.attrib
+    needs, makes, acted_on, tools, origins, destinations = (
+        _names(element, port) for port in ("needs", "makes", "acted_on", "tools", "from", "to")
+    )
+    rate, duration = (float(ports[port]) if port in ports else None for port in ("rate", "duration"))
+    step, unit, motion = int(ports["step"]), int(ports["unit"]), ports["motion"]
+    return Execution(step, unit, motion, needs, makes, acted_on, tools, origins, destinations, rate, duration)
+
+
+def _names(element: ElementTree.Element, port: str) -> tuple[str, ...]:
+    return tuple(filter(None, element.get(port, "").split(LIST_SEPARATOR)))

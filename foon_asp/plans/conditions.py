@@ -1,0 +1,78 @@
+"""Conditions that the counts of executions in every plan satisfy, and costs of counts."""
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+Counts = dict[int, int]
+"""How often each action is executed, without actions that are not."""
+
+
+class Measure(NamedTuple):
+    """The cost of executions by one objective, to be minimized.
+
+    ``costs`` are those of each action, whole numbers from 0, and ``item`` is the cost of each distinct item
+    and of each initial copy that is consumed. Where ``exact`` is not ``None``, ``costs`` are rounded down and
+    ``exact`` returns the exact cost of counts, which depends on the number of executions in each of the
+    ``classes`` of actions; actions of class -1 do not change it.
+    """
+
+    costs: Sequence[int]
+    item: int = 0
+    exact: Callable[[Mapping[int, int]], Fraction] | None = None
+    classes: Sequence[int] = ()
+
+
+class Landmark(NamedTuple):
+    """The condition that one of the ``members`` is executed, or an initial copy of ``stock`` is consumed.
+
+    With an ``action``, it holds only if the action is executed. ``objects`` are the cut of the landmark.
+    """
+
+    members: tuple[int, ...]
+    stock: tuple[int, ...] = ()
+    action: int | None = None
+    objects: tuple[int, ...] = ()
+
+
+class Balance(NamedTuple):
+    """The row of the state equation of an object: no more copies are consumed than there are."""
+
+    object: int
+
+
+class Supply(NamedTuple):
+    """The condition that an action that is executed has the copies of an object that it asks for.
+
+    They are initial, or added by other actions, as none are added before its first execution by itself.
+    """
+
+    object: int
+    action: int
+
+
+class Sum(NamedTuple):
+    """The condition that a sum keeps to a limit, by the index of the limit."""
+
+    limit: int
+
+
+SumLimit = tuple[Mapping[int, int], int, bool, bool]
+"""Weights by action, a bound on their sum, whether it is a lower bound, whether an action counts once."""
+
+
+class Level(NamedTuple):
+    """An objective with the cost of the incumbent.
+
+    ``max_cost`` is the greatest sum of the (rounded) costs of a plan that is as good as the incumbent. If
+    ``strict``, a plan of equal cost does not count as good.
+    """
+
+    measure: Measure
+    cost: Fraction
+    max_cost: int
+    strict: bool = False
+
+
+Condition = Landmark | Balance | Supply | Sum | Level
+"""The condition on the counts of every plan that a row of the program states."""

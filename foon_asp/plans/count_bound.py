@@ -1,0 +1,432 @@
+"""Operator counting with the state equation: lower bounds on the cost of plans that consume objects.
+
+The counts of executions in a plan satisfy linear conditions (operator counting, Pommerening et al. 2014): of
+every object no more copies are consumed than there are, a copy of every target remains, and each action that
+is executed has achievers of its preconditions, if they are not initial. Landmarks of the delete relaxation
+hold as well. HiGHS solves the relaxations in floats; bounds are recomputed in whole numbers, so that no float
+decides.
+"""
+
+import math
+import random
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from heapq import heappop, heappush
+
+from foon_asp.hypergraph.cut import Cutter
+from foon_asp.hypergraph.hypergraph import Hypergraph
+from foon_asp.plans.conditions import Counts, Landmark, Level, Measure, SumLimit
+from foon_asp.plans.count_model import CountModel
+from foon_asp.plans.flows import Flows
+from foon_asp.plans.whole_program import INTEGRALITY, Solved, Stopped, WholeProgram
+
+_Bounds = tuple[list[int], list[int | None]]
+
+_SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
+_PROBES = 60  # actions probed at the root: can they be executed twice?
+_MOST_PARTS = 20_000  # nodes after which a proof is given up
+_MOST_UNCAPPED = 1_000  # the same where the number of executions is unbounded
+_ORDERS = 3  # orders in which landmarks are looked for before the search for them ends
+_FAR = 1000  # assumed greatest count of an unbounded action when looking for counts
+_FEWER = 8  # the same at first, which is much faster
+
+
+class BetterError(Exception):
+    """The counts of a plan better than the incumbent were found."""
+
+    def __init__(self, counts: Counts) -> None:
+        super().__init__("a better plan was found")
+        self.counts = counts
+
+
+class CountBound:
+    """Branch and bound over the counts of executions in plans for one question.
+
+    ``expired`` returns whether to give up: methods then raise :class:`Stopped`. ``required`` are disjunctive
+    action landmarks. ``limits`` bound weighted sums, with weights from 0, over executions or over the actions
+    used. ``derivation`` are actions that reach the targets in the delete relaxation: landmarks are grown
+    around it. Only plans count that are as good as the incumbent by each of ``levels`` and that do not
+    execute everything in one of ``excluded_counts`` as often.
+    """
+
+    def __init__(
+        self,
+        flows: Flows,
+        required: Sequence[Sequence[int]] = (),
+        limits: Sequence[SumLimit] = (),
+        derivation: Sequence[int] = (),
+        levels: Sequence[Level] = (),
+        excluded_counts: Sequence[Counts] = (),
+        expired: Callable[[], bool] = lambda: False,
+    ) -> None:
+        self._flows, self._limits, self._expired = flows, limits, expired
+        self._size = len(flows.asks)
+        self._levels, self._excluded_counts = tuple(levels), tuple(excluded_counts)
+        self.derivation = derivation
+        self._random = random.Random(0)
+        self.proved: float | Fraction = 0  # lower bound on every plan by the first level
+        self._landmarks = [Landmark(tuple(units)) for units in required]
+        self._achievers = flows.achievers
+
+    def counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
+        """Return counts of least cost in floats, the first measure most important; ``None`` if infeasible.
+
+        The counts belong to a plan of the delete relaxation; they need not belong to a plan, and their
+        optimality is not proved.
+        """
+        counts = None
+        wanted = max(self._flows.targets.values(), default=1)
+        for assumed_cap in (_FEWER * wanted, _FAR * wanted):
+            counts = self._counts(measures, rounds, assumed_cap)
+            if counts is not None and max(counts.values(), default=0) < assumed_cap:
+                break
+        return counts
+
+    def _counts(self, measures: Sequence[Measure], rounds: int, assumed_cap: int) -> Counts | None:
+        counts: Counts | None = None
+        for _ in range(rounds):
+            model = self._model(measures, assumed_cap)
+            x: list[float] = []
+            for measure in measures:
+                relaxed = self._relaxed(model, model.objective(measure))
+                whole = relaxed or model.program.whole_optimum(model.objective(measure))
+                if whole is None:
+                    return None
+                x = whole
+                for a in range(self._size):  # the larger a count, the less of an indicator satisfies floats
+                    x[self._size + a] = float(x[a] > 0.5)
+                model.keep(measure, x)
+                self._check()
+            counts = {a: round(x[a]) for a in range(self._size) if x[a] > 0.5}
+            if not self._add_landmark(x, model):
+                break
+        return counts
+
+    def _relaxed(self, model: CountModel, objective: Mapping[int, int]) -> list[float] | None:
+        """Add violated landmarks to the relaxation; return its solution if it is whole, else ``None``."""
+        while True:
+            self._check()
+            x = model.program.solve(objective).x
+            if x is None or not self._separate(x, model, at_root=True):
+                break
+        columns = {*range(model.program.columns)}
+        if not self._excluded_counts:
+            columns.difference_update(range(self._size, 2 * self._size))
+        if x is None or any(abs(x[column] - round(x[column])) > INTEGRALITY for column in columns):
+            return None
+        return x
+
+    def none(self) -> bool:
+        """Return whether it is proved that no counts satisfy the conditions, so that there is no plan."""
+        model = self._model(())
+        while True:
+            solved = model.program.solve({})
+            if solved.x is None:
+                return solved.bound == math.inf
+            if not self._add_landmark(solved.x, model):
+                return False
+            self._check()
+
+    def most_executions(self) -> int | None:
+        """Return an upper bound on the executions in a plan; ``None`` if unbounded."""
+        program = self._model(()).program
+        bound = program.solve(dict.fromkeys(range(self._size), -1)).bound
+        return None if abs(bound) == math.inf else math.floor(-bound)
+
+    def caps(self, level: Level) -> list[int | None]:
+        """Return for each action a bound on its count in plans that are as good; ``None`` if unbounded."""
+        model = self._model((level.measure,))
+        model.limit(level)
+        caps: list[int | None] = []
+        for action in range(self._size):
+            self._check()
+            solved = model.program.solve({action: -1})
+            caps.append(None if solved.bound == -math.inf else math.floor(-solved.bound))
+            model.program.upper[action] = caps[-1]
+            model.tighten()
+        return caps
+
+    def prove(self, levels: Sequence[Level], is_better: Callable[[Counts], bool]) -> None:
+        """Prove that no plan is better than the incumbent, the first level most important.
+
+        ``is_better`` is called with better counts, and returns whether some order of them is a plan. Raises
+        :class:`BetterError` with such counts, and :class:`Stopped` where time is up.
+        """
+        for i, level in enumerate(levels):
+            before, rounded = levels[:i], level.measure.exact is not None
+            max_cost = level.max_cost if rounded else math.ceil(level.cost) - 1
+            self._prove(level.measure, max_cost, is_better, before, [*before, level._replace(strict=True)])
+
+    def every(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
+        """Call ``ask`` with all counts that may be those of a plan as good as the incumbent by each level.
+
+        Costs of the last level are whole numbers. Raises :class:`Stopped` where time is up.
+        """
+        *before, last = levels
+        self._prove(last.measure, last.max_cost, ask, before, before)
+
+    def none_is_left(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
+        """Prove that there is no plan at all, looking at counts of low cost by ``measure`` first.
+
+        ``is_better`` returns whether some order of counts is a plan: then raises :class:`BetterError`. Raises
+        :class:`Stopped` where nothing is proved.
+        """
+        proved = self.proved
+        try:
+            self._prove(measure, self.most_executions(), is_better)
+        finally:
+            self.proved = proved  # by another measure, maybe
+
+    def _prove(
+        self,
+        measure: Measure,
+        max_cost: int | None,
+        is_better: Callable[[Counts], bool | None],
+        before: Sequence[Level] = (),
+        levels: Sequence[Level] = (),
+    ) -> None:
+        """Call ``is_better`` with all counts of cost up to ``max_cost`` (``None``: any), by branch and bound.
+
+        The counts are as good by each level ``before``, by their rounded costs, and by the exact costs of
+        ``levels``.
+        """
+        model = self._model([measure, *(level.measure for level in before)])
+        for level in before:
+            model.limit(level)
+        objective = model.objective(measure)
+        if max_cost is not None:
+            model.cap(measure, max_cost)
+            self._tighten_root(model, objective, max_cost)
+        cutoff = math.inf if max_cost is None else max_cost
+        lower, upper = list(model.program.lower), list(model.program.upper)
+        number = 0
+        waiting: list[tuple[float | Fraction, int, int, _Bounds]] = [(0, sum(lower), number, (lower, upper))]
+        while waiting:
+            bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
+            if not before:
+                self.proved = max(self.proved, bound)
+            solved = self._solved(model, objective, cutoff)
+            if solved.x is None:
+                continue
+            for lower, upper in self._branches(model, solved.x, levels, is_better):
+                number += 1
+                executions = sum(lower[: self._size])
+                heappush(waiting, (max(bound, solved.bound), executions, -number, (lower, upper)))
+            if number > (_MOST_UNCAPPED if max_cost is None else _MOST_PARTS):
+                raise Stopped
+
+    def _solved(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
+        """Return the relaxed solution of a node, all violated landmarks added; no ``x`` without a plan."""
+        while True:
+            self._check()
+            model.tighten()
+            solved = model.program.solve(objective, cutoff)
+            if solved.bound > cutoff or solved.bound == math.inf:
+                return solved._replace(x=None)
+            if solved.x is None:
+                raise Stopped  # infeasible in floats, but not provably so
+            if not self._add_landmark(solved.x, model) and not self._separate(solved.x, model, at_root=False):
+                return solved
+
+    def _model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
+        every = (*measures, *(level.measure for level in self._levels))
+        different = {id(measure): measure for measure in every}
+        model = CountModel(
+            self._flows,
+            list(different.values()),
+            self._landmarks,
+            self._limits,
+            self._excluded_counts,
+            assumed_cap,
+            self._expired,
+        )
+        for level in self._levels:
+            model.limit(level)
+        return model
+
+    def _tighten_root(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
+        """Probe which actions cannot be executed twice, which tightens the rows of their indicators."""
+        program, probed = model.program, set[int]()
+        while len(probed) < _PROBES:
+            self._check()
+            solved = program.solve(objective, cutoff)
+            if solved.x is None or solved.bound > cutoff:
+                return
+            if self._add_landmark(solved.x, model) or self._separate(solved.x, model, at_root=True):
+                continue
+            loose = [
+                a
+                for a in range(self._size)
+                if solved.x[self._size + a] < min(1.0, solved.x[a]) - INTEGRALITY and a not in probed
+            ]
+            if not loose:
+                return
+            for action in loose[: _PROBES - len(probed)]:
+                probed.add(action)
+                self._check()
+                lower = program.lower[action]
+                program.lower[action] = 2
+                if program.solve(objective, cutoff).bound > cutoff:
+                    program.upper[action] = 1
+                program.lower[action] = lower
+            model.tighten()
+
+    def _branches(
+        self,
+        model: CountModel,
+        x: Sequence[float],
+        levels: Sequence[Level],
+        is_better: Callable[[Counts], bool | None],
+    ) -> Iterator[_Bounds]:
+        """Yield the bounds of the child nodes; whole counts of the node are checked first."""
+        program = model.program
+        halves = [(abs(value - math.floor(value) - 0.5), column) for column, value in enumerate(x)]
+        half = min((h for h in halves if h[0] < 0.5 - INTEGRALITY), default=None)
+        if half is not None:
+            column = half[1]
+            below = math.floor(x[column])
+            yield program.with_bounds(column, None, below)
+            yield program.with_bounds(column, below + 1, None)
+            return
+        counts = {a: round(x[a]) for a in range(self._size) if round(x[a])}
+        idle = next((a for a in counts if not round(x[self._size + a])), None)
+        if idle is not None:  # unbounded, so that its indicator is not forced
+            yield program.with_bounds(idle, None, 0)
+            lower, upper = program.with_bounds(idle, 1, None)
+            lower[self._size + idle] = 1
+            yield lower, upper
+            return
+        rounded = [level for level in (*self._levels, *levels) if level.measure.exact is not None]
+        worse = [
+            level
+            for level in rounded
+            if (cost := _exact(level, counts)) > level.cost or (cost == level.cost and level.strict)
+        ]
+        unforced = model.unforced_count(counts, x)
+        if unforced is not None:  # its action is unbounded, so that the indicator is not forced
+            action, count, column = unforced
+            yield program.with_bounds(action, None, count - 1)
+            lower, upper = program.with_bounds(action, count, None)
+            lower[column] = 1
+            yield lower, upper
+            return
+        if worse:
+            yield from _around(program, x, model.class_columns(worse[0].measure))
+            return
+        if is_better(counts):
+            raise BetterError(counts)
+        yield from _around(program, x, range(self._size))
+
+    def _add_landmark(self, x: Sequence[float], model: CountModel) -> bool:
+        """Add a landmark that a solution violates; return whether there is one.
+
+        The initial objects are closed under the executed actions in the delete relaxation. For a target or an
+        executed action that is not reached, the landmark are the achievers on the border.
+        """
+        flows = self._flows
+        asks, targets = flows.lacking(bool(model.stock))
+        used = {a for a in range(self._size) if x[self._size + a] > INTEGRALITY}
+        reached = {o for o, column in model.stock.items() if x[column] > INTEGRALITY}
+        waiting = set(used)
+        grown = True
+        while grown:
+            ready = [a for a in waiting if reached.issuperset(asks[a])]
+            grown = bool(ready)
+            waiting.difference_update(ready)
+            reached.update(o for a in ready for o in flows.adds[a])
+        missed: list[tuple[int, int | None]]
+        missed = [(target, None) for target in targets if target not in reached]
+        missed += [(next(o for o in asks[a] if o not in reached), a) for a in sorted(waiting)]
+        for o, action in missed[:1]:
+            landmark = self._landmark(o, asks, reached, used, model)._replace(action=action)
+            self._landmarks.append(landmark)
+            model.add_landmark(landmark)
+        return bool(missed)
+
+    @cached_property
+    def _cutter(self) -> Cutter:
+        flows = self._flows
+        asks, targets = flows.lacking(priced=False)
+        objects = {o for numbers in (*asks, *flows.adds, targets) for o in numbers}
+        return Cutter(
+            Hypergraph(max(objects, default=0) + 1, asks, list(map(tuple, flows.adds)), ()), targets
+        )
+
+    @cached_property
+    def _cutter_of_stock(self) -> Cutter:
+        """The cutter where copies of the stock have a price: its cuts hold no initial object."""
+        flows = self._flows
+        asks, targets = flows.lacking(priced=True)
+        start = [o for o, count in flows.start.items() if count]
+        objects = {o for numbers in (*asks, *flows.adds, targets, start) for o in numbers}
+        adds = list(map(tuple, flows.adds))
+        return Cutter(Hypergraph(max(objects, default=0) + 1, asks, adds, start), targets)
+
+    def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
+        """Add landmarks of the targets that an LP solution violates; return whether there are any.
+
+        Actions of great LP values are kept out of landmarks first, and at the root the derivation less one
+        action. Without a derivation no landmarks are looked for.
+        """
+        derivation, size = self.derivation, self._size
+        if not derivation:
+            return False
+        cutter = self._cutter_of_stock if model.stock else self._cutter
+        if cutter.hopeless or not cutter.targets:
+            return False
+        cuts: dict[tuple[int, ...], tuple[int, ...]] = {}
+        keeps = [[a for a in derivation if a != gone] for gone in derivation]
+        for number in range(_ORDERS):
+            order = sorted(cutter.actions, key=lambda a: (-x[size + a], self._random.random()))
+            for keep in ((), *(keeps if at_root and number == 0 else ())):
+                cut = cutter.cut(keep, order)
+                if cut is not None and sum(x[size + a] for a in cut.members) < _SATISFIED:
+                    cuts.setdefault(cut.members, cut.objects)
+            if cuts:
+                break
+        for members in sorted(cuts):
+            self._landmarks.append(Landmark(members, objects=cuts[members]))
+            model.add_landmark(self._landmarks[-1])
+        return bool(cuts)
+
+    def _landmark(
+        self, o: int, asks: Sequence[Sequence[int]], reached: set[int], used: set[int], model: CountModel
+    ) -> Landmark:
+        """Return a landmark by a small cut grown backwards from an object that is not reached."""
+        zone, stack, edge = {o}, [o], dict[int, None]()
+        while stack:
+            for achiever in self._achievers.get(stack.pop(), ()):
+                edge[achiever] = None
+                if achiever in used and zone.isdisjoint(asks[achiever]):
+                    lacking = next(needed for needed in asks[achiever] if needed not in reached)
+                    zone.add(lacking)
+                    stack.append(lacking)
+        members = tuple(achiever for achiever in edge if zone.isdisjoint(asks[achiever]))
+        return Landmark(members, tuple(sorted(zone & model.stock.keys())), objects=tuple(sorted(zone)))
+
+    def _check(self) -> None:
+        if self._expired():
+            raise Stopped
+
+
+def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
+    assert level.measure.exact is not None
+    return level.measure.exact(counts)
+
+
+def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[_Bounds]:
+    """Yield bounds of child nodes that together exclude just the whole values of some columns."""
+    lower, upper = list(program.lower), list(program.upper)
+    for column in sorted(columns, key=lambda column: -x[column]):
+        value = round(x[column])
+        if lower[column] < value:
+            lowered = list(upper)
+            lowered[column] = value - 1
+            yield list(lower), lowered
+        cap = upper[column]
+        if cap is None or cap > value:
+            raised = list(lower)
+            raised[column] = value + 1
+            yield raised, list(upper)
+        lower[column] = upper[column] = value

@@ -1,0 +1,185 @@
+"""The linear relaxation of counts of executions: conditions as rows, counts and indicators as columns."""
+
+from collections.abc import Callable, Sequence
+
+from foon_asp.plans.conditions import (
+    Balance,
+    Condition,
+    Counts,
+    Landmark,
+    Level,
+    Measure,
+    Sum,
+    SumLimit,
+    Supply,
+)
+from foon_asp.plans.flows import Flows
+from foon_asp.plans.whole_program import WholeProgram
+
+
+class CountModel:
+    """The conditions as rows over columns: the count of each action, its indicator, auxiliary columns.
+
+    ``assumed_cap`` is the count that unbounded actions are assumed to keep to; where it is ``None``, nothing
+    is assumed, and costs that are not whole have columns for their classes.
+    """
+
+    def __init__(
+        self,
+        flows: Flows,
+        measures: Sequence[Measure],
+        landmarks: Sequence[Landmark],
+        limits: Sequence[SumLimit],
+        excluded_counts: Sequence[Counts],
+        assumed_cap: int | None,
+        expired: Callable[[], bool],
+    ) -> None:
+        size, achievers_of = len(flows.asks), flows.achievers
+        self._flows = flows
+        self.program = program = WholeProgram(size, expired)
+        self._size, self._assumed_cap = size, assumed_cap
+        self.conditions: dict[int, Condition] = {}  # by row
+        for _ in range(size):
+            program.column(0, 1)  # whether an action is executed at all
+        self._loose = [program.open_row((size + a, a), 0) for a in range(size)]
+        for a in range(size):
+            program.row({a: 1, size + a: -1}, 0)
+        self._classes: dict[int, list[int]] = {}
+        priced = any(measure.item for measure in measures)
+        self.stock: dict[int, int] = {}
+        if priced:
+            self.stock = {o: program.column(0, count) for o, count in flows.start.items() if count}
+        change: dict[int, dict[int, int]] = {o: {} for o in (*achievers_of, *flows.targets)}
+        for action in range(size):
+            for o in flows.adds[action]:
+                change[o][action] = flows.adds[action][o]
+            for o in flows.uses[action]:
+                row = change.setdefault(o, {})
+                row[action] = row.get(action, 0) - flows.uses[action][o]
+        for o, row in change.items():
+            if any(effect < 0 for effect in row.values()) or o in flows.targets:
+                least = flows.targets.get(o, 0)
+                self.conditions[program.row(*self._with_stock(o, row, least))] = Balance(o)
+        for action, asked in enumerate(flows.asks):
+            for o in (o for o, n in asked.items() if n > 1):
+                others = (a for a in achievers_of.get(o, ()) if a != action)
+                row = {achiever: flows.adds[achiever][o] for achiever in others}
+                supply = program.row(*self._with_stock(o, {**row, size + action: -asked[o]}, 0))
+                self.conditions[supply] = Supply(o, action)
+        items = self.items = dict[int, int]()
+        for action in range(size):
+            y = size + action
+            for o in (needed for needed in flows.asks[action] if needed not in flows.uses[action]):
+                achievers = {size + achiever: 1 for achiever in achievers_of.get(o, ())}
+                read = program.row(*self._with_stock(o, {**achievers, y: -1}, 0))
+                if o in self.stock or not flows.start.get(o):  # else it says nothing
+                    self.conditions[read] = Landmark((), (), action, (o,))
+            for o in flows.items[action] if priced else ():
+                if o not in items:
+                    items[o] = program.column(0, 1)
+                self.conditions[program.row({items[o]: 1, y: -1}, 0)] = Landmark((), (), action, (o,))
+        for landmark in landmarks:
+            self.add_landmark(landmark)
+        for i, (weights, limit, at_least, used) in enumerate(limits):
+            first, sign = size if used else 0, 1 if at_least else -1
+            row = {first + a: sign * weight for a, weight in weights.items()}
+            self.conditions[program.row(row, sign * limit)] = Sum(i)
+            for a, weight in weights.items() if not at_least and not used else ():
+                program.cap(a, max(limit, 0) // weight)
+        for measure in measures:
+            if measure.exact is not None and assumed_cap is None:
+                self._add_classes(measure)
+        self._count_indicators: dict[tuple[int, int], tuple[int, int]] = {}
+        for counts in excluded_counts:
+            columns = [self._count_indicator(a, n) for a, n in counts.items()]
+            program.row(dict.fromkeys(columns, -1), 1 - len(columns))
+        self.tighten()
+
+    def _count_indicator(self, action: int, count: int) -> int:
+        """Return the column that indicates whether an action is executed at least ``count`` times."""
+        if count == 1:
+            return self._size + action
+        if (action, count) not in self._count_indicators:
+            column = self.program.column(0, 1)
+            self.program.row({action: 1, column: -count}, 0)
+            self._count_indicators[action, count] = column, self.program.open_row((column, action), 1 - count)
+        return self._count_indicators[action, count][0]
+
+    def unforced_count(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
+        """Return an action, count and indicator where the action reaches the count and the indicator is 0."""
+        for (action, count), (column, _) in self._count_indicators.items():
+            if action in counts and counts[action] >= count and not round(x[column]):
+                return action, count, column
+        return None
+
+    def _with_stock(self, o: int, row: dict[int, int], least: int) -> tuple[dict[int, int], int]:
+        if o in self.stock:
+            return {**row, self.stock[o]: 1}, least
+        return row, least - self._flows.start.get(o, 0)
+
+    def _add_classes(self, measure: Measure) -> None:
+        columns = []
+        for number in sorted(set(measure.classes) - {-1}):
+            members = [a for a, class_number in enumerate(measure.classes) if class_number == number]
+            column = self.program.column(0, None)
+            self.program.row({column: 1, **dict.fromkeys(members, -1)}, 0)
+            self.program.row({column: -1, **dict.fromkeys(members, 1)}, 0)
+            columns.append(column)
+        self._classes[id(measure)] = columns
+
+    def class_columns(self, measure: Measure) -> list[int]:
+        """Return the columns that count the executions of each class of actions."""
+        return self._classes[id(measure)]
+
+    def add_landmark(self, landmark: Landmark) -> None:
+        """Add the row of a landmark, unless an initial copy without column may satisfy it."""
+        members, stock, action, _ = landmark
+        if not self.stock.keys() >= set(stock):
+            return
+        row = {self._size + member: 1 for member in members} | {self.stock[o]: 1 for o in stock}
+        if action is None:
+            number = self.program.row(row, 1)
+        else:
+            number = self.program.row({**row, self._size + action: -1}, 0)
+        self.conditions[number] = landmark
+
+    def tighten(self) -> None:
+        """Tie each indicator to its action by the greatest count that it can have."""
+        program = self.program
+        for action, row in enumerate(self._loose):
+            max_count = self._max_count(action)
+            program.change(row, {} if max_count is None else {self._size + action: max_count, action: -1})
+        for (action, count), (column, row) in self._count_indicators.items():
+            max_count = self._max_count(action)
+            program.change(row, {} if max_count is None else {column: max_count - count + 1, action: -1})
+
+    def _max_count(self, action: int) -> int | None:
+        upper = self.program.upper[action]
+        return self._assumed_cap if upper is None else upper
+
+    def cap(self, measure: Measure, max_cost: int) -> None:
+        """Bound the counts of actions by the greatest total cost."""
+        for action, cost in enumerate(measure.costs):
+            if cost:
+                self.program.cap(action, max(max_cost, 0) // cost)
+        self.tighten()
+
+    def objective(self, measure: Measure) -> dict[int, int]:
+        """Return the cost of each column."""
+        costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
+        if measure.item:
+            costs |= dict.fromkeys((*self.items.values(), *self.stock.values()), measure.item)
+        return costs
+
+    def limit(self, level: Level) -> None:
+        """Add the row that counts are as good by a level as the incumbent."""
+        costs = self.objective(level.measure)
+        row = self.program.row({column: -cost for column, cost in costs.items()}, -level.max_cost)
+        self.conditions[row] = level
+        self.cap(level.measure, level.max_cost)
+
+    def keep(self, measure: Measure, solution: Sequence[float]) -> None:
+        """Add the row that counts cost no more than a solution."""
+        costs = self.objective(measure)
+        max_cost = sum(cost * round(solution[column]) for column, cost in costs.items())
+        self.program.row({column: -cost for column, cost in costs.items()}, -max_cost)

@@ -1,0 +1,271 @@
+"""Proofs that no plan costs less: Farkas combinations of conditions on counts, and branching over counts.
+
+The relaxation of whole counts (:mod:`foon_asp.plans.count_bound`) has dual values of its rows in floats.
+Whatever they are, rounded or solved for exactly, they prove the bound of a Lagrangian relaxation: the
+right-hand sides of the weighted rows, plus for each action the least of its reduced cost over the counts that
+it may have.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import cmp_to_key
+from typing import NamedTuple
+
+from foon_asp.hypergraph.exact_optimum import NowhereError, solve_exactly
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.plans.conditions import Condition, Landmark, Level, Measure
+from foon_asp.plans.count_bound import CountBound
+from foon_asp.plans.count_model import CountModel
+from foon_asp.plans.whole_program import INTEGRALITY, PARTS, Relaxation
+
+_ROUNDS = 20  # of separation at a node
+_MOST_DEPTH = 150
+_MOST_LEAVES = 1_000
+
+
+class Weighted(NamedTuple):
+    """A leaf: weights of conditions, each above 0, that prove the bound for its counts."""
+
+    weights: Sequence[tuple[Condition, Vector]]
+
+
+class Split(NamedTuple):
+    """A branching: proofs for values of a column up to ``max_count``, and above it."""
+
+    column: int
+    max_count: int
+    up_to: "CountProof"
+    above: "CountProof"
+
+
+CountProof = Weighted | Split
+
+
+class Claim(NamedTuple):
+    """The claim that all plans cost at least ``least``.
+
+    ``costs`` are those of each action, ``item`` is that of each item and of each initial copy consumed.
+    ``least`` is ``None`` for the claim that there is no plan at all, with all costs 0. Costs of plans are
+    multiples of ``1 / parts``, if it is not ``None``. ``caps`` bound the counts of each action in plans that
+    cost less.
+    """
+
+    order: Lexicographic
+    costs: Sequence[Vector]
+    item: Vector
+    least: Vector | None
+    parts: int | None
+    caps: Sequence[int | None]
+
+
+class PlanProver(CountBound):
+    """Searches for a proof of a claim about all plans that are as good as the incumbent by some levels."""
+
+    def prove_claim(
+        self, claim: Claim, measure: Measure, kept: Sequence[Level]
+    ) -> tuple[CountProof, Vector | None, Mapping[int, int]] | None:
+        """Return a proof of a claim or of a weaker one, the bound proved, and the items by column.
+
+        The bound is ``claim.least`` where the whole claim is proved. ``None`` where nothing is. ``measure``
+        is the objective of the claim, which counts items or not.
+        """
+        self._claim, self._least, self._leaves = claim, claim.least, 0
+        model = self._model([measure, *(level.measure for level in kept)])
+        for level in kept:
+            model.limit(level)
+        for action, cap in enumerate(claim.caps):
+            if cap is not None:
+                model.program.cap(action, cap)
+        self._columns = {column: o for o, column in {**model.items, **model.stock}.items()}
+        floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
+        self._objective = {action: cost for action, cost in enumerate(floats) if cost}
+        self._objective |= dict.fromkeys(self._columns, claim.order.approximate(claim.item)[0])
+        self._failed = False
+        proof = self._prove_part(model, 0)
+        if self._failed:
+            return None
+        return proof, self._least, self._columns
+
+    def require(self, landmarks: Sequence[Landmark]) -> None:
+        """Add known landmarks."""
+        self._landmarks += landmarks
+
+    def _prove_part(self, model: CountModel, depth: int) -> CountProof:
+        """Return the proof of a node, and lower the claim where less is proved of it."""
+        program = model.program
+        model.tighten()
+        if program.is_empty:
+            return Weighted(())
+        best: tuple[Vector, dict[int, Vector]] | None = None
+        rounds = 0
+        while True:
+            relaxed = program.relaxation(self._objective)
+            for weights in self._weights(model, relaxed):
+                bound = self._bound(model, weights)
+                if bound is not None and (best is None or self._claim.order.compare(bound, best[0]) > 0):
+                    best = bound, weights
+                if best is not None and self._is_enough(best[0]):
+                    return self._leaf(model, best[1])
+            if relaxed.x is None or self._expired():
+                break
+            if self._add_landmark(relaxed.x, model):
+                continue
+            if rounds < _ROUNDS and self._separate(relaxed.x, model, at_root=depth == 0):
+                rounds += 1
+                continue
+            break
+        column = None if relaxed.x is None or self._expired() else self._choice(model, relaxed.x)
+        if column is None or depth > _MOST_DEPTH or self._leaves > _MOST_LEAVES:
+            self._give_up(best)
+            return self._leaf(model, best[1] if best else {})
+        return self._split(model, *column, depth)
+
+    def _split(self, model: CountModel, column: int, max_count: int, depth: int) -> Split:
+        program, size = model.program, self._size
+        lower, upper = list(program.lower), list(program.upper)
+        action = column < size
+        program.lower[column] = max_count + 1
+        if action:
+            program.lower[size + column] = 1
+        above = self._prove_part(model, depth + 1)
+        program.lower, program.upper = list(lower), list(upper)
+        program.upper[column] = max_count
+        if action and not max_count:
+            program.upper[size + column] = 0
+        up_to = self._prove_part(model, depth + 1)
+        program.lower, program.upper = lower, upper
+        return Split(column, max_count, up_to, above)
+
+    def _choice(self, model: CountModel, x: Sequence[float]) -> tuple[int, int] | None:
+        """Return a column to branch on, and the greatest value below; ``None`` if all are whole."""
+        program, size = model.program, self._size
+        for a in range(size):
+            upper = program.upper[a]
+            if (
+                x[size + a] < min(1.0, x[a]) - INTEGRALITY
+                and not program.lower[a]
+                and (upper is None or upper > 1)
+            ):
+                return a, max(1, math.floor(x[a] + INTEGRALITY))
+        columns = [*range(size), *self._columns]
+        halves = [(abs(x[column] - math.floor(x[column]) - 0.5), column) for column in columns]
+        half = min((candidate for candidate in halves if candidate[0] < 0.5 - INTEGRALITY), default=None)
+        return None if half is None else (half[1], math.floor(x[half[1]]))
+
+    def _give_up(self, best: tuple[Vector, object] | None) -> None:
+        """Lower the claim to the bound proved of a node."""
+        if self._least is None or best is None:
+            self._failed = True
+            return
+        self._least = min(self._least, self._rounded(best[0]), key=cmp_to_key(self._claim.order.compare))
+
+    def _rounded(self, bound: Vector) -> Vector:
+        parts = self._claim.parts
+        return bound if parts is None else tuple(Fraction(math.ceil(b * parts), parts) for b in bound)
+
+    def _is_enough(self, bound: Vector) -> bool:
+        order = self._claim.order
+        if self._least is None:
+            return order.sign(bound) > 0
+        return order.compare(self._rounded(bound), self._least) >= 0
+
+    def _leaf(self, model: CountModel, weights: Mapping[int, Vector]) -> Weighted:
+        self._leaves += 1
+        return Weighted([(model.conditions[row], weight) for row, weight in sorted(weights.items())])
+
+    def _weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
+        """Return candidate weights of rows: the rounded duals, perhaps the exact duals of the basis."""
+        claim = self._claim
+        first = claim.order.levels[0]
+        one = (Fraction(1), *claim.order.zero[1:])
+        scale = claim.order.approximate(one)[0]
+        floats = relaxed.weights
+        if relaxed.x is None:
+            largest = max(floats, default=0.0)
+            if largest == 0.0:  # a row without columns that asks for something
+                rows = ((row, *model.program.row_of(row)) for row in model.conditions)
+                return [{row: one} for row, coefficients, least in rows if least > 0 and not coefficients]
+            for parts in PARTS:
+                ray = self._rounded_weights(model, [weight / largest for weight in floats], parts, one)
+                nothing = self._bound(model, ray, free=True)
+                if nothing is None or claim.order.sign(nothing) <= 0:
+                    continue
+                if self._least is None:
+                    return [ray]
+                need = claim.order.approximate(self._least)[0] / claim.order.approximate(nothing)[0]
+                factor = Fraction(math.ceil(abs(need) * 1.001) + 1)
+                return [{row: times(weight, factor) for row, weight in ray.items()}]
+            return []
+        floats = [weight / scale for weight in floats]
+        candidates = [self._rounded_weights(model, floats, parts, one) for parts in PARTS]
+        value = sum(cost * relaxed.x[column] for column, cost in self._objective.items())
+        least = 0.0 if self._least is None else claim.order.approximate(self._least)[0]
+        close = value > least - INTEGRALITY * max(1.0, abs(least))
+        if close and (first is not None or claim.parts is None):
+            candidates += self._exact_weights(model, relaxed)
+        return candidates
+
+    def _rounded_weights(
+        self, model: CountModel, floats: Sequence[float], parts: int, one: Vector
+    ) -> dict[int, Vector]:
+        rounded = {row: round(floats[row] * parts) for row in model.conditions if abs(floats[row]) < 1e15}
+        return {row: times(one, Fraction(n, parts)) for row, n in rounded.items() if n > 0}
+
+    def _exact_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
+        """Return the exact duals of a basis, by which its columns have reduced cost 0; none if singular."""
+        columns, tight = set(relaxed.columns), relaxed.rows
+        matrix: dict[int, dict[int, Fraction]] = {column: {} for column in sorted(columns)}
+        for row in tight:
+            for column, coefficient in model.program.row_of(row)[0].items():
+                if column in columns and coefficient:
+                    matrix[column][row] = Fraction(coefficient)
+        if len(columns) != len(tight):
+            return []
+        try:
+            solved = solve_exactly(matrix, {column: self._cost(column) for column in columns})
+        except NowhereError:
+            return []
+        sign = self._claim.order.sign
+        return [{row: w for row, w in solved.items() if row in model.conditions and sign(w) > 0}]
+
+    def _cost(self, column: int) -> Vector:
+        claim = self._claim
+        if column < self._size:
+            return claim.costs[column]
+        return claim.item if column in self._columns else claim.order.zero
+
+    def _bound(self, model: CountModel, weights: Mapping[int, Vector], free: bool = False) -> Vector | None:
+        """Return the bound that weights prove of the current node; ``None`` where they prove none.
+
+        With ``free``, all costs are 0.
+        """
+        program, size, order = model.program, self._size, self._claim.order
+        loads: dict[int, list[Vector]] = {}
+        terms: list[Vector] = []
+        for row, weight in weights.items():
+            coefficients, least = program.row_of(row)
+            terms.append(times(weight, Fraction(least)))
+            for column, coefficient in coefficients.items():
+                loads.setdefault(column, []).append(times(weight, Fraction(coefficient)))
+        zero = order.zero
+
+        def reduced_cost(column: int) -> Vector:
+            cost = zero if free else self._cost(column)
+            return minus(cost, order.total(loads[column])) if column in loads else cost
+
+        for column in (*range(size), *self._columns):
+            low, high = program.lower[column], program.upper[column]
+            once = reduced_cost(size + column) if column < size else zero
+            if column not in loads and size + column not in loads and not low:
+                continue
+            per_execution = reduced_cost(column)
+            ends = [zero] if low == 0 else []
+            if high is None or high >= 1:
+                ends.append(order.total([times(per_execution, Fraction(max(low, 1))), once]))
+                if order.sign(per_execution) < 0:
+                    if high is None:
+                        return None
+                    ends.append(order.total([times(per_execution, Fraction(high)), once]))
+            terms.append(min(ends, key=cmp_to_key(order.compare)))
+        return order.total(terms)

@@ -1,0 +1,356 @@
+"""Counts of executions of the units of a question: bounds, proofs, and orders that run."""
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from heapq import heappop, heappush
+
+from foon_asp.asp.reporter import Reporter
+from foon_asp.asp.settings import Settings
+from foon_asp.encoding.exact_success import RateScale, rate_scale
+from foon_asp.encoding.own_encodings import ENCODING_FILES, question_encoding
+from foon_asp.errors import UserError
+from foon_asp.grounding.run import Run
+from foon_asp.plans.bulk_order import bulk_order, least_copies, plan_of
+from foon_asp.plans.conditions import Counts, Level, Measure
+from foon_asp.plans.count_bound import BetterError, CountBound
+from foon_asp.plans.execution_order import sequence
+from foon_asp.plans.flows import flows_of
+from foon_asp.plans.plan_question import Plan, PlanQuestion
+from foon_asp.plans.whole_program import Stopped
+from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.problem.costs import Costs
+from foon_asp.rules.limit import Limit
+
+_MAX_EXACT_COST = 10**12  # largest cost that is counted unrounded
+_COST_STEPS = 10**6  # steps of the greatest cost, where costs are rounded
+_MAX_UNORDERED = 10  # counts without an order, after which clingo searches all remaining ones at once
+_MAX_EXECUTIONS = 500  # executions in one such search
+_MAX_STOCKS = 200  # numbers of copies of the stock that an order is looked for with
+_MAX_EXTRA_COPIES = 4  # executions of a unit beyond its count in the search for a first plan
+
+
+class _ManyError(Exception):
+    """Too many counts have no order: clingo has to search all of them at once."""
+
+
+class Counting:
+    """Counts of executions of the units of a question, by index, and the search for their order."""
+
+    def __init__(self, question: PlanQuestion, units: list[int]) -> None:
+        self._question, self._problem, self.units = question, question.problem, units
+        self._measures: dict[Objective, Measure] = {}
+        self._step = Fraction(1)  # step of the counted costs of the first objective
+        self._orders_sought = -math.inf  # searches for an order since the proof began
+        problem = question.problem
+        positions = {unit: a for a, unit in enumerate(units)}
+        self._flows = flows_of(problem, units)
+        self.bound = CountBound(
+            self._flows,
+            [
+                [a for a, unit in enumerate(units) if unit in required_set]
+                for required_set in question.required
+            ],
+            [
+                Limit({a: limit.weights[u] for a, u in enumerate(units) if limit.weights.get(u)}, *limit[1:])
+                for limit in question.limits
+            ],
+            [a for a, unit in enumerate(units) if unit in question.tree],
+            [self._below(objective, cost) for objective, cost in question.below],
+            [
+                {positions[u]: n for u, n in plan.items()}
+                for plan in question.incomparable
+                if positions.keys() >= plan.keys()
+            ],
+            expired=lambda: question.deadline.passed,
+        )
+
+    def measure(self, objective: Objective) -> Measure:
+        """Return the measure of an objective over the units, cached."""
+        if objective not in self._measures:
+            self._measures[objective] = self._measured(objective)
+        return self._measures[objective]
+
+    def _measured(self, objective: Objective) -> Measure:
+        row, figures = objective.row, self._figures(objective)
+        if multiplies(objective):
+            classes = _classes(figures, Fraction(1))
+
+            def product(counts: Mapping[int, int]) -> Fraction:
+                return -math.prod((figures[a] ** n for a, n in counts.items()), start=Fraction(1))
+
+            return Measure([self._rates.weights[rate] for rate in figures], 0, product, classes)
+        scale = self._scale(objective)
+        costs = [math.floor(scale * figure) for figure in figures]
+        if all(cost == scale * figure for cost, figure in zip(costs, figures, strict=True)):
+            return Measure(costs, row.item)
+
+        def total(counts: Mapping[int, int]) -> Fraction:
+            return sum((figures[a] * n for a, n in counts.items()), start=Fraction(0))
+
+        return Measure(costs, 0, total, _classes(figures, Fraction(0)))
+
+    def _figures(self, objective: Objective) -> list[Fraction]:
+        return [Fraction(self._problem.figure(objective, unit)) for unit in self.units]
+
+    @cached_property
+    def _rates(self) -> RateScale:
+        try:
+            return rate_scale(self._problem.different_rates(self.units))
+        except ValueError:
+            raise UserError(
+                "a success rate is 0, for which plans with items that are used up cannot be compared"
+            ) from None
+
+    def _scale(self, objective: Objective) -> Fraction:
+        """Return the factor by which costs are scaled: exact where costs stay small, else rounding."""
+        figures = self._figures(objective)
+        common = math.lcm(*(figure.denominator for figure in figures))
+        greatest = max(figures, default=Fraction(0))
+        return Fraction(common) if common * greatest <= _MAX_EXACT_COST else _COST_STEPS / greatest
+
+    def level(self, objective: Objective, costs: Costs) -> Level:
+        """Return the level of an objective with the cost of a plan."""
+        return self._level(objective, Fraction(costs.measure(objective)))
+
+    def _below(self, objective: Objective, cost: int | Fraction) -> Level:
+        """Return the level of plans that cost less."""
+        level = self._level(objective, Fraction(cost))
+        if level.measure.exact is not None:
+            return level._replace(strict=True)
+        return level._replace(max_cost=math.ceil(level.cost) - 1)
+
+    def _level(self, objective: Objective, cost: Fraction) -> Level:
+        measure = self.measure(objective)
+        if multiplies(objective):
+            return Level(measure, -cost, self._rates.weigh(cost))
+        scale = self._scale(objective)
+        if measure.exact is not None:
+            return Level(measure, cost, math.floor(scale * cost))
+        return Level(measure, scale * cost, int(scale * cost))
+
+    def prove(self) -> None:
+        """Prove that no plan is better than the incumbent; raises :class:`BetterError` if one is."""
+        assert self._question.best is not None
+        plan, costs = self._question.best
+        levels: list[Level] = []
+        self._step = 1 / self._scale(self._question.levels[0])
+        for objective in self._question.levels:
+            split = self._split(objective, plan)
+            if split is None:
+                levels.append(self.level(objective, costs))
+                continue
+            if not levels:
+                self._step = split[0]
+            levels += split[1]
+        self._orders_sought = 0
+        try:
+            self.bound.prove(levels, self._is_better)
+        except _ManyError:
+            if not self._best_within_caps(levels[0]):
+                self._orders_sought = -math.inf
+                self.bound.prove(levels, self._is_better)
+
+    def _split(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
+        """Split costs too large to count unrounded into two levels: large ones in steps, and all others.
+
+        Plans that differ in the large costs differ by a step at least. Where the small costs of the plan sum
+        up to less, no plan that costs a step more is better. Returns the step and the levels; ``None`` where
+        costs need no such levels, or cannot be split.
+        """
+        if multiplies(objective) or objective.row.item or self.measure(objective).exact is None:
+            return None
+        figures = self._figures(objective)
+        common = math.lcm(*(figure.denominator for figure in figures))
+        costs = [int(common * figure) for figure in figures]
+        step = math.gcd(*(cost for cost in costs if cost > _MAX_EXACT_COST))
+        counts = Counter(plan)
+        executed = [counts[unit] for unit in self.units]
+        levels = []
+        for large in (True, False):
+            of_level = [
+                (cost // step if large else cost) * ((cost > _MAX_EXACT_COST) is large) for cost in costs
+            ]
+            total = sum(cost * n for cost, n in zip(of_level, executed, strict=True))
+            if max(of_level) > _MAX_EXACT_COST or (not large and total >= step):
+                return None
+            levels.append(Level(Measure(of_level), Fraction(total), total))
+        return Fraction(step, common), levels
+
+    def none_is_left(self) -> bool:
+        """Prove that no counts belong to a plan, where there are not too many; return whether it is proved.
+
+        A plan found on the way becomes the incumbent. Raises :class:`Stopped` where nothing is proved.
+        """
+        try:
+            self.bound.none_is_left(self.measure(Objective.UNITS), self._is_better)
+        except BetterError:
+            return False
+        return True
+
+    def proved(self) -> dict[Objective, int | Fraction]:
+        """Return the proved lower bound of the first objective; empty where there is none or rates multiply.
+
+        Costs are rounded down, so a bound on rounded costs is valid.
+        """
+        objective = self._question.levels[0]
+        if self.bound.proved <= 0 or multiplies(objective):
+            return {}
+        least = math.ceil(self.bound.proved) * self._step
+        return {objective: int(least) if objective.row.whole else least}
+
+    def _best_within_caps(self, level: Level) -> bool:
+        """Prove with clingo that no plan is better, where all better plans have executions within caps.
+
+        Returns whether it is proved. Raises :class:`BetterError` if a plan is better.
+        """
+        caps = [cap for cap in self.bound.caps(level) if cap is not None]
+        if len(caps) < len(self.units) or sum(caps) > _MAX_EXECUTIONS:
+            return False
+        if not all(objective.row.whole for objective in self._question.levels):
+            return False
+        ended = self._ended({a: (0, cap) for a, cap in enumerate(caps)}, True)
+        if ended.units is not None and self._question.take(self._sequence(ended)):
+            raise BetterError({})
+        return ended.exhausted and ended.units is not None
+
+    def _is_better(self, counts: Counts) -> bool:
+        self._orders_sought += 1
+        if self._orders_sought > _MAX_UNORDERED and not self._problem.counts_amounts:
+            raise _ManyError
+        plan = self.order(counts)
+        return plan is not None and self._question.take(plan)
+
+    def order(self, counts: Counts) -> Plan | None:
+        """Return an executable order of counts; ``None`` where there is none."""
+        if self._problem.counts_amounts:
+            return self._bulk_plan(counts)
+        return self._plan({a: (n, n) for a, n in counts.items()})
+
+    def any_order(self, counts: Counts) -> Plan | None:
+        """Return a good plan with few executions beyond counts, found by clingo; ``None`` without one.
+
+        Copies are not counted there one by one, so with amounts there is none.
+        """
+        if self._problem.counts_amounts:
+            return None
+        extra = 1
+        while extra <= _MAX_EXTRA_COPIES:
+            plan = self._plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self.units))}, True)
+            if plan is not None:
+                return plan
+            extra *= 2
+        return None
+
+    def _bulk_plan(self, counts: Counts) -> Plan | None:
+        """Return an order of counts in runs, with as few copies of the stock as an objective asks for."""
+        flows, question = self._flows, self._question
+        if not self._keeps_to_rules(counts):
+            return None
+        if Objective.KITCHEN not in question.levels:
+            runs = bulk_order(flows, counts, flows.start, lambda: question.deadline.passed)
+            return None if runs is None else plan_of(self.units, runs)
+        first = tuple(sorted(least_copies(flows, counts).items()))
+        waiting, seen = [(sum(n for _, n in first), first)], {first}
+        for _ in range(_MAX_STOCKS):
+            if not waiting:
+                return None
+            total, stock = heappop(waiting)
+            if any(n > flows.start[o] for o, n in stock):
+                continue
+            runs = bulk_order(flows, counts, dict(stock), lambda: question.deadline.passed)
+            if runs is not None:
+                return plan_of(self.units, runs)
+            for place, (o, n) in enumerate(stock):
+                more = (*stock[:place], (o, n + 1), *stock[place + 1 :])
+                if more not in seen:
+                    seen.add(more)
+                    heappush(waiting, (total + 1, more))
+        raise Stopped
+
+    def _keeps_to_rules(self, counts: Counts) -> bool:
+        """Whether executions keep to the user's rules, which read how often units are executed."""
+        program, problem = self._question.program, self._problem
+        if program.own:
+            return True
+        from foon_asp.encoding import facts, search  # noqa: PLC0415 (clingo, which not every question needs)
+        from foon_asp.encoding.scales import Scales  # noqa: PLC0415
+
+        units = [self.units[a] for a in counts]
+        text = facts.write_facts(problem, units, Scales(problem, units), program.looked_at)
+        text += "".join(
+            f"use({number}). times({number},{n}).\n"
+            for a, n in counts.items()
+            if (number := problem.network.unit_number(self.units[a])) is not None
+        )
+        added = program.files[len(ENCODING_FILES) :]
+        ended = search.run(
+            added, text, program.arguments, self._question.deadline, "ignore", endless=program.endless
+        )
+        if not ended.exhausted and ended.units is None:
+            raise Stopped
+        return ended.units is not None
+
+    def _plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
+        ended = self._ended(times, best)
+        if ended.units is None:
+            if not ended.exhausted:
+                raise Stopped
+            return None
+        return self._sequence(ended)
+
+    def _sequence(self, ended: Run) -> Plan:
+        return sequence(self._problem, ended.rows["times"], ended.rows["_after"])
+
+    def _ended(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
+        from foon_asp.encoding import facts, search  # noqa: PLC0415 (clingo, which not every question needs)
+        from foon_asp.encoding.scales import Scales  # noqa: PLC0415
+
+        question, problem = self._question, self._problem
+        units = [self.units[a] for a in times]
+        number = problem.network.unit_number
+        # with fixed counts only the copies taken of a stock are free
+        wanted = question.levels if best else [o for o in question.levels if o is Objective.KITCHEN]
+        looked_at = None if question.program.own else question.program.looked_at
+        scales = Scales(problem, units, wanted) if best or looked_at is not None else None
+        text = facts.write_facts(problem, units, scales, looked_at)
+        text += facts.write_times({number(self.units[a]): bounds for a, bounds in times.items()})
+        text += facts.write_objectives(wanted)
+        files = question.program.files
+        if best and scales is not None and (question.below or question.incomparable):
+            # bounds by fractions are enforced by counts alone
+            text += facts.write_below([{o: cost} for o, cost in question.below if o.row.whole], scales)
+            text += facts.write_beside(
+                [{number(u): n for u, n in plan.items()} for plan in question.incomparable]
+            )
+            files = (*files, question_encoding("bounded_plans.lp"))
+        ended = search.run(
+            files,
+            text,
+            question.program.arguments,
+            question.deadline,
+            "opt" if wanted else "ignore",
+            predicates=[("times", 2), ("_after", 4)],
+            endless=question.program.endless,
+        )
+        if ended.statistics:
+            question.searched = True
+            question.reporter.statistics(ended.statistics)
+        question.seconds["ground"] = question.seconds.get("ground", 0.0) + ended.ground_seconds
+        question.seconds["solve"] = question.seconds.get("solve", 0.0) + ended.solve_seconds
+        return ended
+
+
+def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
+    """Return the rank of each figure among the different figures, -1 for the neutral one."""
+    numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
+    return [-1 if figure == idle else numbers[figure] for figure in figures]
+
+
+def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
+    """Return units, repeats included, in an executable order; ``None`` where there is none."""
+    question = PlanQuestion(problem, (Objective.UNITS,), Settings(), Reporter())
+    counted = Counter(units)
+    return Counting(question, list(counted)).order(dict(enumerate(counted.values())))

@@ -1,0 +1,26 @@
+"""Order of executions that stand in a partial order."""
+
+from graphlib import TopologicalSorter
+
+from foon_asp.plans.plan_question import Plan
+from foon_asp.problem import Problem
+
+
+def sequence(problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]) -> Plan:
+    """Return executions in topological order, the smallest units first among those that are ready."""
+    before: dict[tuple[int, int], set[tuple[int, int]]] = {
+        (unit, turn): set() for unit, count in times for turn in range(1, count + 1)
+    }
+    for unit, turn, other, earlier in after:
+        before[unit, turn].add((other, earlier))
+    plan: list[int] = []
+    sorter = TopologicalSorter(before)
+    sorter.prepare()
+    while sorter.is_active():
+        ready = sorted(sorter.get_ready())
+        for unit, _ in ready:
+            unit_id = problem.network.unit_of_number(unit)
+            assert unit_id is not None
+            plan.append(unit_id)
+        sorter.done(*ready)
+    return tuple(plan)

@@ -1,0 +1,65 @@
+"""Preconditions, consumption and add effects of the units of a question, on plain numbers."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from foon_asp.problem import Problem
+
+
+class Flows(NamedTuple):
+    """Actions with preconditions and effects on copies of objects, all by number.
+
+    Each action maps objects to numbers of copies. It can be executed while there are those that it ``asks``
+    for. It consumes those that it ``uses``, and adds those that it ``adds``. ``start`` maps initial objects
+    to their numbers of copies, and ``targets`` those that have to remain. Objects that are not consumable are
+    in none of these; ``items`` are the preconditions of each action among them.
+    """
+
+    asks: Sequence[Mapping[int, int]]
+    uses: Sequence[Mapping[int, int]]
+    adds: Sequence[Mapping[int, int]]
+    items: Sequence[Sequence[int]]
+    start: Mapping[int, int]
+    targets: Mapping[int, int]
+
+    def lacking(self, priced: bool) -> tuple[list[list[int]], list[int]]:
+        """Return the preconditions of each action, and the targets, that initial copies do not satisfy.
+
+        An action that is executed can be executed again in the delete relaxation, so an object that is added
+        is there as often as wanted. If ``priced``, initial copies are taken one by one, and satisfy nothing.
+        """
+
+        def lacks(copies: Mapping[int, int]) -> list[int]:
+            return [o for o, n in copies.items() if priced or n > self.start.get(o, 0)]
+
+        return list(map(lacks, self.asks)), lacks(self.targets)
+
+    @property
+    def achievers(self) -> dict[int, list[int]]:
+        """The actions that add each object."""
+        achievers: dict[int, list[int]] = {}
+        for action, effects in enumerate(self.adds):
+            for o in effects:
+                achievers.setdefault(o, []).append(action)
+        return achievers
+
+
+def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
+    """Return the preconditions, consumption and add effects of units, by their index in ``units``.
+
+    Object nodes that only other units need are excluded.
+    """
+    needed = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
+
+    def finite(copies: Mapping[int, int]) -> dict[int, int]:
+        return {o: n for o, n in copies.items() if o not in problem.endless and o in needed}
+
+    flows = [problem.flows[unit] for unit in units]
+    return Flows(
+        [finite(flow.asks) for flow in flows],
+        [finite(flow.uses) for flow in flows],
+        [finite(flow.adds) for flow in flows],
+        [[o for o in flow.asks if o in problem.endless] for flow in flows],
+        {o: problem.stock_of(o) or 0 for o in needed & problem.kitchen - problem.endless},
+        {goal: problem.wanted(goal) for goal in problem.goals if goal not in problem.endless},
+    )

@@ -1,0 +1,47 @@
+"""Bounds on how often units are executed in plans that are as good as the best."""
+
+from collections.abc import Sequence
+
+from foon_asp.asp.outcome import Outcome, Status
+from foon_asp.asp.reporter import Reporter
+from foon_asp.asp.settings import Settings
+from foon_asp.errors import UserError
+from foon_asp.plans.counting import Counting
+from foon_asp.plans.plan_question import PlanQuestion
+from foon_asp.plans.plan_search import solve_question
+from foon_asp.problem import Objective, Problem
+
+
+def most_executions(
+    problem: Problem, objectives: Sequence[Objective], settings: Settings
+) -> dict[int, tuple[int, int]]:
+    """Return the least and greatest number of executions in any best plan, by unit that can matter.
+
+    Where no plan exists, every unit has at most one execution. Raises
+    :class:`UserError` where neither is proved.
+    """
+    question = PlanQuestion(problem, objectives, settings, Reporter())
+    outcome = solve_question(question)
+    if outcome.status is Status.INFEASIBLE:
+        return dict.fromkeys(range(len(problem.network)), (0, 1))
+    if outcome.status is not Status.OPTIMAL or outcome.costs is None:
+        raise UserError("no plan is proved the best, so nothing bounds how often units are executed")
+    units = question.cut() or []
+    counting = Counting(question, units)
+    caps = counting.bound.caps(counting.level(Objective.UNITS, outcome.costs))
+    return {u: (0, outcome.costs.units if cap is None else cap) for u, cap in zip(units, caps, strict=True)}
+
+
+def executions_as_good(outcome: Outcome, settings: Settings) -> dict[int, int] | None:
+    """Return the most executions of each unit in plans as good as an outcome by its first objective.
+
+    ``None`` where some unit has no bound.
+    """
+    question = PlanQuestion(outcome.problem, outcome.objectives, settings, Reporter())
+    if outcome.costs is None or not question.apply_rules():
+        return None
+    units = question.cut() or []
+    counting = Counting(question, units)
+    caps = counting.bound.caps(counting.level(question.levels[0], outcome.costs)) if units else []
+    caps_by_unit = {unit: cap for unit, cap in zip(units, caps, strict=True) if cap is not None}
+    return caps_by_unit if len(caps_by_unit) == len(units) else None

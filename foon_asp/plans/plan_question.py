@@ -1,0 +1,179 @@
+"""A question about plans: what its rules do, which units can matter, and the best plan so far."""
+
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.outcome import Outcome, Proof, Status
+from foon_asp.asp.reporter import Reporter
+from foon_asp.asp.settings import Bounded, Settings
+from foon_asp.asp.solver import solve as solve_lasting
+from foon_asp.errors import BugError
+from foon_asp.plans.built_for_plans import require_built_for_plans, require_rules_of_plans
+from foon_asp.problem import (
+    Costs,
+    Objective,
+    Problem,
+    Restriction,
+    first_tree,
+    levels,
+    multiplies,
+    reach,
+    relevant_to_plans,
+)
+from foon_asp.proof.counted_run import counted_run
+from foon_asp.rules.dependence import TIMES
+from foon_asp.rules.limit import Limit
+
+Plan = tuple[int, ...]
+"""Units by id in the order of execution, with repeats."""
+
+
+class PlanQuestion:
+    """A question about plans, with the incumbent."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        objectives: Sequence[Objective],
+        settings: Settings,
+        reporter: Reporter,
+    ) -> None:
+        """Read the rules of a question.
+
+        Raises :class:`UserError` naming a feature that is not built for items that are used up.
+        """
+        require_built_for_plans(settings)
+        objectives = tuple(objectives)
+        by_levels = levels(objectives)
+        problem.require_known_for(by_levels)
+        self.problem, self.objectives, self.levels = problem, objectives, by_levels
+        self.settings, self.deadline, self.reporter = settings, settings.begun, reporter
+        self.program = assemble(settings, reporter.warning, used_up=True, problem=problem)
+        self.program.require_facts(problem, by_levels)
+        require_rules_of_plans(self.program)
+        self.removed: Callable[[int], bool] = lambda _: False
+        self.required: tuple[frozenset[int], ...] = ()
+        self.limits: Sequence[Limit] = ()
+        bounded = settings.bounded or Bounded()
+        self.below = [(objective, cost) for costs in bounded.below for objective, cost in costs.items()]
+        self.incomparable = bounded.incomparable
+        if not {objective for objective, _ in self.below} <= set(by_levels):
+            raise BugError("a bound is on an objective that is not asked for")
+        self.tree: frozenset[int] = frozenset()  # some tree that makes the goals if nothing is used up
+        self.seconds: dict[str, float] = {}
+        self.best: tuple[Plan, Costs] | None = None
+        self.searched = False  # whether clingo ran, so that there are statistics
+        self.bounds: dict[Objective, int | Fraction] = {}
+
+    def apply_rules(self) -> bool:
+        """Apply rules that remove units, require sets or limit sums; return whether they allow a plan.
+
+        Other rules about executions are left to the search, since their analysis assumes items that last,
+        where every unit is executed once.
+        """
+        rules = self.program.understood
+        if rules is None:
+            return True
+        self.limits = rules.limits(self.problem)
+        restriction = rules.varying({TIMES}).applied(self.problem)
+        if isinstance(restriction, Restriction):
+            self.removed, self.required = restriction.removed, restriction.required
+        return isinstance(restriction, Restriction)
+
+    @property
+    def keeps_redundant(self) -> bool:
+        """Whether a rule may require redundant units, which lead to no goal."""
+        rules = self.program.understood
+        return rules is not None and not (rules.shrinking and rules.only_limits)
+
+    def cut(self) -> list[int] | None:
+        """Return the units that can matter, ascending; ``None`` if a goal is unreachable even if items last.
+
+        These are the achievers of goals and of preconditions of each other; with rules that may require
+        redundant units, all units that can execute.
+        """
+        problem = self.problem
+        stocked = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
+        restriction = Restriction(self.removed, self.required)
+        lasting = replace(problem, kitchen=stocked, restriction=restriction)
+        reached = reach(lasting)
+        if not all(reached.available[goal] for goal in problem.goals):
+            return None
+        if not all(required_set & set(reached.units) for required_set in self.required):
+            return None
+        self.tree = frozenset(first_tree(lasting, reached) or ())
+        if self.keeps_redundant:
+            return sorted(reached.units)
+        return sorted(relevant_to_plans(problem, reached))
+
+    def has_no_lasting_tree(self) -> bool:
+        """Whether it is proved that rules allow no tree even if items last, and so no plan."""
+        rules, problem = self.program.understood, self.problem
+        if rules is None or not rules.only_limits:
+            return False
+        kitchen = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
+        lasting = replace(problem, kitchen=kitchen, items=None)
+        settings = self.settings._replace(bounded=None)
+        return solve_lasting(lasting, (Objective.UNITS,), settings).status is Status.INFEASIBLE
+
+    def take(self, plan: Plan) -> bool:
+        """Make a plan the incumbent if it is allowed and better; return whether it is."""
+        costs = self.problem.costs(plan)
+        if not self.allows(plan):
+            return False
+        if self.best is not None and costs.key(self.levels) >= self.best[1].key(self.levels):
+            return False
+        self.best = plan, costs
+        self.reporter.tree(costs)
+        return True
+
+    def allows(self, plan: Plan) -> bool:
+        """Whether a plan keeps exactly to limits and bounds, and contains none of the incomparable plans."""
+        counts, costs = Counter(plan), self.problem.costs(plan)
+        for limit in self.limits:
+            total = sum(
+                weight * (counts[u] > 0 if limit.used else counts[u]) for u, weight in limit.weights.items()
+            )
+            if (total < limit.bound) if limit.at_least else (total > limit.bound):
+                return False
+        better = all(costs.key([o]) < (-cost if multiplies(o) else cost,) for o, cost in self.below)
+        return better and not any(counts >= Counter(other) for other in self.incomparable)
+
+    def outcome(self, status: Status, proof: Proof | None) -> Outcome:
+        """Return the outcome with the incumbent, which is replayed first; raises :class:`BugError`."""
+        plan, costs = self.best or (None, None)
+        if plan is not None and costs is not None:
+            self._require_runs(plan, costs)
+            if status is Status.OPTIMAL:
+                self.bounds = {objective: costs.measure(objective) for objective in self.levels}
+        return Outcome(
+            self.problem,
+            self.objectives,
+            status,
+            plan,
+            costs,
+            self.bounds if plan is not None else {},
+            self.seconds,
+            proof=proof,
+            stopped=None if proof else self.deadline.stopped or "counts that have no order",
+        )
+
+    def _require_runs(self, plan: Plan, costs: Costs) -> None:
+        """Require that a plan executes and has the stated costs, by an independent replay."""
+        replay = counted_run(self.problem, plan)
+        if replay.lacking is not None:
+            raise BugError(f"the plan {list(plan)} lacks {replay.lacking}")
+        if self.problem.costs(plan) != costs:
+            raise BugError(f"the plan {list(plan)} does not cost {costs}")
+        objects = self.problem.network.objects
+        copies = {objects[o]: count for o, count in self.problem.copies_taken(plan).items()}
+        if copies != replay.stock:
+            raise BugError(f"the plan {list(plan)} takes {replay.stock} of the stock and not {copies}")
+
+    def spent(self, phase: str, began: float) -> None:
+        """Add the time since ``began`` to the seconds of a phase."""
+        self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began

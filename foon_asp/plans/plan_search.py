@@ -1,0 +1,105 @@
+"""Search for the best plan: counts of executions by branch and bound, an order of them, and the proof."""
+
+import time
+from collections.abc import Sequence
+
+from foon_asp.asp.outcome import Outcome, Proof, Status
+from foon_asp.asp.reporter import Reporter
+from foon_asp.asp.settings import Settings
+from foon_asp.asp.solver import NOT_ASKED
+from foon_asp.plans.count_bound import BetterError
+from foon_asp.plans.counting import Counting
+from foon_asp.plans.plan_question import Plan, PlanQuestion
+from foon_asp.plans.whole_program import Stopped
+from foon_asp.problem import Objective, Problem, multiplies
+
+
+def solve_used_up(
+    problem: Problem,
+    objectives: Sequence[Objective] = (Objective.UNITS,),
+    settings: Settings | None = None,
+    reporter: Reporter | None = None,
+) -> Outcome:
+    """Find the best plan under a lexicographic list of objectives, and prove it.
+
+    Raises :class:`UserError` naming a feature that is not built for items that are used up.
+    """
+    question = PlanQuestion(problem, objectives, settings or Settings(), reporter or Reporter())
+    return solve_question(question)
+
+
+def solve_question(question: PlanQuestion) -> Outcome:
+    """Return the outcome of a question: its best plan, as far as it is found and proved."""
+    try:
+        with question.deadline.watched("cutting the network", late=True):
+            outcome = _solve(question)
+    except (Stopped, KeyboardInterrupt) as stop:
+        if isinstance(stop, KeyboardInterrupt):
+            question.deadline.interrupt()
+        status = Status.UNKNOWN if question.best is None else Status.FEASIBLE
+        outcome = question.outcome(status, None)
+    if question.settings.asks_for_statistics and not question.searched:
+        question.reporter.statistics(NOT_ASKED)
+    return outcome
+
+
+def _solve(question: PlanQuestion) -> Outcome:
+    began = time.perf_counter()
+    if not question.apply_rules():
+        return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
+    question.deadline.doing = "cutting the network"
+    units = question.cut()
+    question.spent("cut", began)
+    return question.outcome(Status.INFEASIBLE, Proof.CUTS) if units is None else _search(question, units)
+
+
+def _search(question: PlanQuestion, units: list[int]) -> Outcome:
+    counting = Counting(question, units)
+    if not units:  # every goal is available: only the empty plan is irredundant
+        asked = not question.program.own or question.problem.counts_amounts
+        if asked and counting.order({}) is None:
+            return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
+        return question.outcome(Status.OPTIMAL if question.take(()) else Status.INFEASIBLE, Proof.CUTS)
+    began = time.perf_counter()
+    with question.deadline.watched("counting executions"):
+        counts = counting.bound.counts([counting.measure(objective) for objective in question.levels])
+    question.spent("bound", began)
+    plan = None
+    if counts is not None:
+        plan = counting.order(counts)
+        if plan is None or not question.allows(plan):
+            plan = counting.any_order(counts)
+    elif counting.bound.none():
+        return question.outcome(Status.INFEASIBLE, Proof.COUNTS)
+    if plan is not None and question.take(plan):
+        counting.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
+        counting = _below_cutoff(question, counting, plan)
+    elif question.has_no_lasting_tree():
+        return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
+    elif counting.none_is_left():
+        return question.outcome(Status.INFEASIBLE, Proof.COUNTS)
+    while True:
+        try:
+            began = time.perf_counter()
+            with question.deadline.watched("counting executions"):
+                counting.prove()
+            return question.outcome(Status.OPTIMAL, Proof.COUNTS)
+        except BetterError:
+            continue
+        finally:
+            question.bounds = counting.proved()
+            question.spent("bound", began)
+
+
+def _below_cutoff(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
+    """Exclude units that alone cost more than a plan, where costs are too large to count unrounded."""
+    objective = question.levels[0]
+    if multiplies(objective) or counting.measure(objective).exact is None:
+        return counting
+    cutoff = question.problem.costs(plan).measure(objective)
+    units = [unit for unit in counting.units if question.problem.figure(objective, unit) <= cutoff]
+    if not units or len(units) == len(counting.units):
+        return counting
+    fewer = Counting(question, units)
+    fewer.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
+    return fewer

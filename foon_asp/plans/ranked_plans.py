@@ -1,0 +1,93 @@
+"""Plans in which items are used up in order of their costs, one by one; none holds another."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+
+from foon_asp.asp.outcome import Status
+from foon_asp.asp.reporter import Reporter
+from foon_asp.asp.settings import Bounded, Settings
+from foon_asp.plans.conditions import Counts
+from foon_asp.plans.counting import Counting
+from foon_asp.plans.plan_question import Plan, PlanQuestion
+from foon_asp.plans.plan_search import solve_question, solve_used_up
+from foon_asp.plans.whole_program import Stopped
+from foon_asp.problem import Costs, Objective, Problem
+
+
+class RankedPlans:
+    """The plans of a question, the best first, under a lexicographic list of objectives.
+
+    Plans with at least the executions of an earlier one are excluded. ``complete`` and ``pending`` are as in
+    :class:`foon_asp.asp.ranking.Ranked`, which ranks trees.
+    """
+
+    def __init__(
+        self, problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
+    ) -> None:
+        self._problem, self._objectives = problem, tuple(objectives)
+        self._settings, self._reporter = settings._replace(deadline=settings.begun), reporter
+        self.complete = False
+        self.pending: list[tuple[Plan, Costs]] = []
+
+    def __iter__(self) -> Iterator[tuple[Plan, Costs]]:
+        """Iterate over plans, each proved best among the plans that contain no earlier one."""
+        yielded: list[Mapping[int, int]] = []
+        while True:
+            settings = self._settings._replace(bounded=Bounded(incomparable=tuple(yielded)))
+            reporter = Reporter() if yielded else self._reporter
+            outcome = solve_used_up(self._problem, self._objectives, settings, reporter)
+            plan, costs = outcome.units, outcome.costs
+            if plan is None or costs is None or outcome.status is not Status.OPTIMAL:
+                self.complete = outcome.status is Status.INFEASIBLE
+                self.pending = [] if plan is None or costs is None else [(plan, costs)]
+                return
+            yield plan, costs
+            if not plan:  # every other plan contains it
+                self.complete = True
+                return
+            yielded.append(Counter(plan))
+
+
+def best_plans(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    settings: Settings,
+    reporter: Reporter,
+    max_plans: int,
+) -> tuple[list[tuple[Plan, Costs]], bool, bool]:
+    """Return at most ``max_plans`` best plans with different counts of executions, each with its costs.
+
+    Also returns whether the first is proved optimal, and whether there are no others.
+    """
+    question = PlanQuestion(problem, objectives, settings, reporter)
+    outcome = solve_question(question)
+    if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:
+        incumbents = (
+            [] if outcome.units is None or outcome.costs is None else [(outcome.units, outcome.costs)]
+        )
+        return incumbents, False, outcome.status is Status.INFEASIBLE
+    units, best = question.cut() or [], outcome.costs
+    counting = Counting(question, units)
+    counting.bound.derivation = [a for a, unit in enumerate(units) if unit in outcome.units]
+    plans_by_counts = {frozenset(Counter(outcome.units).items()): outcome.units}
+
+    def ask(counts: Counts) -> None:
+        plan = counting.order(counts)
+        if plan is not None and problem.costs(plan).key(question.levels) == best.key(question.levels):
+            plans_by_counts.setdefault(frozenset(Counter(plan).items()), plan)
+            if len(plans_by_counts) > max_plans:
+                raise Stopped
+
+    complete = True
+    try:
+        if units:
+            counting.bound.every([counting.level(objective, best) for objective in question.levels], ask)
+    except (Stopped, KeyboardInterrupt) as stop:
+        complete = False
+        if isinstance(stop, KeyboardInterrupt):
+            question.deadline.interrupt()
+    return (
+        [(plan, problem.costs(plan)) for plan in list(plans_by_counts.values())[:max_plans]],
+        True,
+        complete,
+    )

@@ -1,0 +1,255 @@
+"""A linear program over whole numbers: solved in floats by HiGHS, bounded in whole numbers."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from foon_asp.hypergraph.highs_run import libraries, run, silent_highs
+
+PARTS = (720720, 2**40)
+"""Denominators of rounded weights; the first that suffices is used, as most weights are simple fractions."""
+
+INTEGRALITY = 1e-6
+"""Integrality tolerance, for choosing where to branch."""
+
+_GAP = 1e-6  # relative violation of rows allowed where floats find neither a solution nor a proof
+
+
+class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
+    """Time is up, or floats led nowhere."""
+
+
+class Solved(NamedTuple):
+    """A relaxed solution ``x``, ``None`` without one, and a proved lower ``bound``.
+
+    A solution with a bound of -infinity may fail rows by a little. The bound is infinite where it is proved
+    that there is no solution, and -infinite where nothing is.
+    """
+
+    x: list[float] | None
+    bound: float | Fraction
+
+
+class Relaxation(NamedTuple):
+    """A relaxed solution ``x`` in floats, ``None`` without one, and the ``weights`` of the rows.
+
+    The weights are the duals or, without a solution, a Farkas combination of the rows. ``columns`` and
+    ``rows`` are those of the basis: between them is the square system that the weights solve.
+    """
+
+    x: list[float] | None
+    weights: list[float]
+    columns: list[int]
+    rows: list[int]
+
+
+class WholeProgram:
+    """An integer program: columns between ``lower`` and ``upper`` (``None`` is no bound), and rows.
+
+    Each row states that its columns, times whole coefficients, add up to at least a number. ``expired`` is
+    called now and then: when time is up, solving a relaxation raises :class:`Stopped`.
+    """
+
+    def __init__(self, columns: int, expired: Callable[[], bool] = lambda: False) -> None:
+        self._library, self._np = libraries()
+        self._highs: Any = None
+        self._expired = expired
+        self.lower: list[int] = [0] * columns
+        self.upper: list[int | None] = [None] * columns
+        self._rows: list[tuple[dict[int, int], int]] = []
+        self._sent: int  # rows that HiGHS has
+        self._changed: set[int] = set()
+
+    @property
+    def columns(self) -> int:
+        """The number of columns."""
+        return len(self.lower)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether some column has nothing between its bounds."""
+        return any(upper is not None and self.lower[c] > upper for c, upper in enumerate(self.upper))
+
+    def column(self, lower: int, upper: int | None) -> int:
+        """Add a column, and return its number."""
+        self.lower.append(lower)
+        self.upper.append(upper)
+        self._highs = None
+        return len(self.lower) - 1
+
+    def row(self, parts: dict[int, int], least: int) -> int:
+        """Add a row, and return its number."""
+        self._rows.append((parts, least))
+        return len(self._rows) - 1
+
+    def open_row(self, columns: Iterable[int], least: int) -> int:
+        """Add a row of some columns whose coefficients are set by :meth:`change`, and return its number."""
+        return self.row(dict.fromkeys(columns, 0), least)
+
+    def change(self, row: int, parts: dict[int, int]) -> None:
+        """Change the coefficients of the columns of a row; those not in ``parts`` become 0."""
+        current = self._rows[row][0]
+        new = {column: parts.get(column, 0) for column in current}
+        if new != current:
+            self._rows[row] = new, self._rows[row][1]
+            self._changed.add(row)
+
+    def cap(self, column: int, upper: int) -> None:
+        """Bound a column from above, if it is not bounded more tightly."""
+        current = self.upper[column]
+        self.upper[column] = upper if current is None else min(current, upper)
+
+    def with_bounds(
+        self, column: int, lower: int | None, upper: int | None
+    ) -> tuple[list[int], list[int | None]]:
+        """Return the bounds of all columns with one changed."""
+        lowers, uppers = list(self.lower), list(self.upper)
+        if lower is not None:
+            lowers[column] = lower
+        if upper is not None:
+            uppers[column] = upper
+        return lowers, uppers
+
+    def solve(self, objective: Mapping[int, int], cutoff: float = math.inf) -> Solved:
+        """Return the solution and bound of the relaxation; a bound above ``cutoff`` is enough."""
+        if self.is_empty:
+            return Solved(None, math.inf)
+        highs = self._run(objective)
+        if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
+            solution = highs.getSolution()
+            # very large costs may leave no dual solution
+            weights = list(solution.row_dual) if solution.dual_valid else [0.0] * len(self._rows)
+            return Solved(list(solution.col_value), self._bound(objective, weights, cutoff))
+        ray = [abs(weight) for weight in highs.getDualRay()[2]]
+        largest = max(ray, default=0.0)
+        if largest and self._bound({}, [weight / largest for weight in ray], 0) > 0:
+            return Solved(None, math.inf)
+        return Solved(self._nearly(), -math.inf)
+
+    def _nearly(self) -> list[float] | None:
+        """Return a solution that may violate rows a little, where floats find none and prove nothing.
+
+        Rows with large coefficients may leave so small a feasible region that it is lost in floats.
+        """
+        highs, count = self._highs, len(self._rows)
+        rows, infinite = self._np.arange(count, dtype="int32"), self._np.full(count, self._library.kHighsInf)
+        least = self._np.array([float(least) for _, least in self._rows])
+        highs.changeRowsBounds(count, rows, least - _GAP * self._np.maximum(1.0, abs(least)), infinite)
+        self._run_to_the_end(highs)
+        optimal = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
+        x = list(highs.getSolution().col_value) if optimal else None
+        self._highs = None
+        return x
+
+    def relaxation(self, objective: Mapping[int, float]) -> Relaxation:
+        """Return the solution of the relaxation in floats, with the weights of its rows and its basis."""
+        highs = self._run(objective)
+        if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
+            solution, basis = highs.getSolution(), highs.getBasis()
+            basic = self._library.HighsBasisStatus.kBasic
+            return Relaxation(
+                list(solution.col_value),
+                list(solution.row_dual),
+                [column for column, status in enumerate(basis.col_status) if status == basic],
+                [row for row, status in enumerate(basis.row_status) if status != basic],
+            )
+        return Relaxation(None, [abs(weight) for weight in highs.getDualRay()[2]], [], [])
+
+    def row_of(self, row: int) -> tuple[dict[int, int], int]:
+        """Return a row: its coefficients, and the least sum."""
+        return self._rows[row]
+
+    def whole_optimum(self, objective: Mapping[int, int]) -> list[float] | None:
+        """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or when time is up."""
+        highs = self._send(objective)
+        count = self.columns
+        whole = self._library.HighsVarType.kInteger
+        highs.changeColsIntegrality(
+            count, self._np.arange(count, dtype="int32"), self._np.array([whole] * count)
+        )
+        highs.setOptionValue("presolve", "on")
+        ended = not self._expired() and run(highs, self._expired, whole=True)
+        optimal = ended and highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
+        values = list(highs.getSolution().col_value) if optimal else None
+        self._highs = None
+        return values
+
+    def _run(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
+        """Solve the relaxation with HiGHS, from scratch where the warm start fails; return the instance."""
+        highs = self._send(objective)
+        self._run_to_the_end(highs)
+        if highs.getModelStatus() != self._library.HighsModelStatus.kOptimal and not highs.getDualRay()[1]:
+            self._highs = None
+            highs = self._send(objective)
+            self._run_to_the_end(highs)
+        return highs
+
+    def _run_to_the_end(self, highs: Any) -> None:
+        """Solve a relaxation with HiGHS; raises :class:`Stopped` where time is up."""
+        if not run(highs, self._expired):
+            raise Stopped
+
+    def _send(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
+        """Return the HiGHS instance, brought up to date with rows, bounds and costs."""
+        np, inf = self._np, self._library.kHighsInf
+        count = self.columns
+        if self._highs is None:
+            self._highs = silent_highs()
+            for option, value in _OPTIONS.items():
+                self._highs.setOptionValue(option, value)
+            self._highs.addVars(count, np.zeros(count), np.full(count, inf))
+            self._sent = 0
+        highs = self._highs
+        for parts, least in self._rows[self._sent :]:
+            columns = np.array(list(parts), dtype="int32")
+            highs.addRow(float(least), inf, len(parts), columns, np.array(list(parts.values()), dtype=float))
+        for row in self._changed:
+            for column, coefficient in self._rows[row][0].items():
+                highs.changeCoeff(row, column, float(coefficient))
+        self._sent = len(self._rows)
+        self._changed.clear()
+        all_columns = np.arange(count, dtype="int32")
+        upper = [inf if bound is None else bound for bound in self.upper]
+        highs.changeColsBounds(
+            count, all_columns, np.array(self.lower, dtype=float), np.array(upper, dtype=float)
+        )
+        costs = np.zeros(count)
+        for column, cost in objective.items():
+            costs[column] = cost
+        highs.changeColsCost(count, all_columns, costs)
+        return highs
+
+    def _bound(
+        self, objective: Mapping[int, int], weights: Sequence[float], cutoff: float
+    ) -> float | Fraction:
+        """Return the Lagrangian bound that weights of rows prove, whatever they are, in whole numbers."""
+        best: float | Fraction = -math.inf
+        for parts in PARTS:
+            scaled = [max(0, round(weight * parts)) if abs(weight) < 1e15 else 0 for weight in weights]
+            total = 0
+            reduced_costs = dict.fromkeys(range(self.columns), 0)
+            for column, cost in objective.items():
+                reduced_costs[column] = cost * parts
+            for (row, least), weight in zip(self._rows, scaled, strict=True):
+                if weight:
+                    total += weight * least
+                    for column, coefficient in row.items():
+                        reduced_costs[column] -= weight * coefficient
+            for column, reduced_cost in reduced_costs.items():
+                cheapest = self.lower[column] if reduced_cost >= 0 else self.upper[column]
+                if cheapest is None:
+                    break
+                total += reduced_cost * cheapest
+            else:
+                best = max(best, Fraction(total, parts))
+                if best > cutoff:
+                    break
+        return best
+
+
+_OPTIONS: dict[str, bool | str | float] = {
+    "presolve": "off",
+    "solver": "simplex",
+    "threads": 1,
+}

@@ -1,0 +1,28 @@
+"""How long motions take, as users state it."""
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+
+from foon_asp.errors import UserError
+from foon_asp.problem.number import Number, exact
+from foon_asp.text.tables import DURATIONS, Duration
+
+Durations = str | PathLike[str] | Mapping[str, Number | Duration]
+"""The path of a table, or seconds or a :class:`Duration` by motion."""
+
+
+def stated_durations(stated: Durations | None) -> dict[str, Duration]:
+    """Return the stated durations by motion; raises :class:`UserError` for one that is not above 0."""
+    if isinstance(stated, str | PathLike):
+        return dict(DURATIONS.read(Path(stated)))
+    return {motion: duration_of(duration, motion) for motion, duration in (stated or {}).items()}
+
+
+def duration_of(stated: Number | Duration, motion: str) -> Duration:
+    """Return the stated duration of a motion; raises :class:`UserError` for one that is not above 0."""
+    number, passive = stated if isinstance(stated, Duration) else (stated, False)
+    seconds = exact(number, f"the duration of {motion!r}")
+    if seconds <= 0:
+        raise UserError(f"found the duration {stated} of {motion!r}, expected one above 0")
+    return Duration(seconds, passive)

@@ -1,0 +1,142 @@
+"""Units of every optimal tree and of some, proved without a list of the trees."""
+
+from collections.abc import Iterator
+from enum import StrEnum
+from fractions import Fraction
+from typing import Unpack
+
+from foon_asp.asp.tree_union import tree_union
+from foon_asp.network import counted
+from foon_asp.problem import Problem
+from foon_asp.questions.answer import Answer, WithAnswer
+from foon_asp.questions.arguments import Objectives, asked_with, at_least, chosen_objectives
+from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import CommonOptions, settings_of
+from foon_asp.questions.contract import asked_in_python, not_built
+from foon_asp.questions.result import Ending
+from foon_asp.results.table import Block
+from foon_asp.results.values import Mention
+from foon_asp.results.values_of import head_of, mention_of
+from foon_asp.text.json_value import schema_name
+
+
+class Membership(StrEnum):
+    """In which of the trees a unit is."""
+
+    EVERY = "every"
+    SOME = "some"
+    UNKNOWN = "unknown"
+
+
+_HEADINGS = {
+    Membership.EVERY: "in every one",
+    Membership.SOME: "in some, not in every one",
+    Membership.UNKNOWN: "not decided before a limit",
+}
+
+
+class UnitOfTrees(Mention, frozen=True, kw_only=True):
+    """A unit, and in which of the trees it is.
+
+    Attributes:
+        trees: Whether ``every`` tree has it, or only ``some``; ``unknown`` where a limit came first.
+    """
+
+    trees: Membership
+
+
+class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-union")):
+    """The units of every optimal tree, and those of some.
+
+    Attributes:
+        within: How much worse than the best tree a tree may be by the first objective, in percent; 0 for
+            optimal trees.
+        complete: Whether all units are listed, and of each it is proved in which trees it is.
+        units: Those of every tree first, then those of some, by id.
+        answer: The best tree.
+
+    Example:
+        >>> found = foon_asp.unit_union(foon_asp.load().problem("ice"), within=50)
+        >>> [unit.motion for unit in found.units if unit.trees == "some"], found.complete
+        (['twist', 'crush', 'twist', 'pound', 'pour'], True)
+    """
+
+    ROWS = "units"
+
+    within: int
+    complete: bool
+    units: tuple[UnitOfTrees, ...]
+    answer: Answer
+
+    @property
+    def ending(self) -> Ending:
+        """``DONE`` if everything is proved, ``NEGATIVE`` if no tree exists."""
+        return self.answer.ending if self.complete else Ending.LIMIT
+
+    def show(self) -> Iterator[Block]:
+        """Return the cost of the best tree, and the units under a heading each."""
+        yield from (*self.goal_lines(), *self.answer.headlines())
+        if self.answer.costs is None:
+            return
+        trees = f"trees up to {self.within} % worse" if self.within else "optimal trees"
+        for membership, heading in _HEADINGS.items():
+            units = [unit for unit in self.units if unit.trees is membership]
+            if units or membership is Membership.EVERY:
+                proved = "" if membership is Membership.UNKNOWN else ", proved"
+                yield ""
+                yield f"{trees}, {heading}{proved}: {counted(len(units), 'unit')}"
+            yield from (f"  {unit.id}  {unit}" for unit in units)
+
+
+@asked_in_python
+def unit_union(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    within: int = 0,
+    **options: Unpack[CommonOptions],
+) -> UnitUnion:
+    """Find the units of every optimal tree and those of some, without a list of the trees.
+
+    A tree that is worse than the best one counts only if it needs each of its units.
+
+    Parameters:
+        objectives: What is best: one objective, or several in a list, the most important first.
+        within: How much worse by the first objective a tree may be, in percent. 10 allows 11 units if 10 are
+            best, or 0.9 times the best success.
+
+    Returns:
+        The ``units``, each with ``trees``; ``complete`` tells whether all of it is proved.
+
+    Raises:
+        UserError: for a wrong argument or constraint, or for constraints together with ``within``.
+
+    Example:
+        >>> found = foon_asp.unit_union(foon_asp.load().problem("macaroni"))
+        >>> {str(unit.trees) for unit in found.units}, len(found.units)
+        ({'every'}, 9)
+    """
+    at_least(within, 0, "within")
+    chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
+    problem = asked_with(problem, settings)
+    if problem.items is not None:
+        raise not_built("alternatives --union")
+    found = tree_union(problem, chosen, settings, caller().reporter, Fraction(within, 100))
+    network = problem.network
+
+    def membership(unit: int) -> Membership:
+        if unit in found.undecided:
+            return Membership.UNKNOWN
+        return Membership.EVERY if unit in found.every else Membership.SOME
+
+    listed = sorted(
+        found.some | found.undecided, key=lambda unit: (membership(unit) is not Membership.EVERY, unit)
+    )
+    mentions = [(mention_of(network, unit), membership(unit)) for unit in listed]
+    return UnitUnion(
+        **head_of(problem, chosen),
+        within=within,
+        complete=not found.undecided and found.best.proof is not None,
+        units=tuple(UnitOfTrees(m.id, m.motion, m.source, trees=trees) for m, trees in mentions),
+        answer=Answer.of(found.best),
+    )

@@ -1,0 +1,154 @@
+"""From a state: which units lead to the goals, and what lacks."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from os import PathLike
+from typing import Any, Unpack
+
+from foon_asp.asp import Settings, Status
+from foon_asp.dataset.paths import as_path
+from foon_asp.network import ObjectNode, counted
+from foon_asp.problem import Problem
+from foon_asp.problem.relevance import reach, relevant
+from foon_asp.questions.answer import Answer, WithAnswer, answered
+from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.caller import asked_by, caller
+from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.contract import asked_in_python, not_built
+from foon_asp.questions.result import Ending
+from foon_asp.questions.shopping_list import shopping_list
+from foon_asp.results.table import Block
+from foon_asp.results.values import Node, Unit
+from foon_asp.results.values_of import head_of, node_of, nodes_of, unit_as
+from foon_asp.text.json_value import schema_name
+from foon_asp.text.line_parser import parse_node
+
+_MAX_SHOWN = 10  # units that are listed for people
+
+
+class WayOn(Unit, frozen=True, kw_only=True):
+    """A unit that leads to the goals.
+
+    Attributes:
+        lacks: The inputs that it needs and that are not in the state; without any, it can run now.
+    """
+
+    lacks: tuple[Node, ...]
+
+
+class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
+    """The units that lead from a state to the goals, and what lacks.
+
+    Attributes:
+        reached: Whether the goals are in the state.
+        lacks: The fewest object nodes to add to the state so that the goals can be made, as a shopping list
+            has them; empty if they can be made without, null if nothing helps, or a limit came first.
+        units: The units that some irredundant tree from the state has, once what lacks is there; those that
+            can run now come first, and of these those of the best tree.
+        answer: The best tree from the state, once what lacks is there; null without one.
+
+    Example:
+        >>> ways = foon_asp.ways_on(foon_asp.load().problem("ice"), ["ice; crushed; in [drinking glass]"])
+        >>> ways.reached, ways.units
+        (True, ())
+    """
+
+    ROWS = "units"
+
+    reached: bool
+    lacks: tuple[Node, ...] | None
+    units: tuple[WayOn, ...]
+
+    @property
+    def ending(self) -> Ending:
+        """As the best tree was found; ``NEGATIVE`` if something lacks."""
+        if self.lacks:
+            return Ending.NEGATIVE
+        return Ending.NEGATIVE if self.answer is None else self.answer.ending
+
+    def show(self) -> Iterator[Block]:
+        """Return what lacks, the units that can run now, those that cannot yet, and the best tree."""
+        yield from self.goal_lines()
+        if self.reached:
+            yield "the state has it: nothing to do"
+            return
+        if self.lacks is None:
+            yield f"no tree exists from this state, and nothing was found that would help ({self.conditions})"
+            return
+        if self.lacks:
+            yield f"no tree exists from this state ({self.conditions}); it lacks"
+            yield from (f"  {node}" for node in self.lacks)
+        now = [unit for unit in self.units if not unit.lacks]
+        number = counted(len(now), "unit") if now else "no unit"
+        yield f"{number} that can run now lead{'' if len(now) > 1 else 's'} to the goals"
+        yield from (f"  {unit.id}  {unit.motion}    [{unit.source[0]}]" for unit in now[:_MAX_SHOWN])
+        if len(now) > _MAX_SHOWN:
+            yield f"  ... and {len(now) - _MAX_SHOWN} more"
+        if later := len(self.units) - len(now):
+            yield f"{counted(later, 'unit')} that cannot run yet; --format json says what each lacks"
+        if self.answer is not None:
+            yield "from here:" if not self.lacks else "once that is there:"
+            yield from self.answer.findings()
+
+
+@asked_in_python
+def ways_on(
+    problem: Problem,
+    state: str | PathLike[str] | Iterable[str | ObjectNode],
+    objectives: Objectives = "units",
+    **options: Unpack[Posed],
+) -> WaysOn:
+    """Find the units that lead from a state to the goals, and what lacks.
+
+    Whatever is in the state can be used again and again. A verifier of plans that a language model proposes
+    asks this after each step (as in arXiv 2503.21564).
+
+    Parameters:
+        problem: The problem: the data, and the goals. Its kitchen is not used.
+        state: What is there: a file, as of a kitchen, or object nodes.
+        objectives: What the best tree is best by, the most important first.
+
+    Returns:
+        The ``units`` that lead to the goals, each with the inputs that it lacks; what the state ``lacks``,
+        and the best tree as the ``answer``.
+
+    Raises:
+        UserError: for a state that cannot be read, or a problem whose items are used up.
+
+    Example:
+        >>> problem = foon_asp.load().problem("ice")
+        >>> ways = foon_asp.ways_on(problem, ["ice; cubed; in [drinking glass]", "muddler; clean"])
+        >>> [str(node) for node in ways.lacks], [unit.motion for unit in ways.units if not unit.lacks]
+        (['drinking glass; contains {ice}'], [])
+    """
+    if problem.items is not None:
+        raise not_built("trace --state")
+    named: Any = as_path(state) if isinstance(state, str | PathLike) else tuple(state)
+    problem = whole(problem.vary(kitchen=named))
+    chosen, limits = chosen_objectives(problem, objectives), Settings(deadline=begin(options))
+    answer: Answer | None = answered(problem, chosen, limits)
+    lacks: tuple[Node, ...] | None = ()
+    if answer is not None and answer.status is Status.INFEASIBLE:
+        with asked_by(caller()._replace(deadline=limits.begun)):
+            shopping = shopping_list(problem, chosen, lists=1)
+        lacks = shopping.lists[0].items if shopping.lists else None
+        answer = shopping.answer
+    added = {o for node in lacks or () if (o := problem.network.object_id(parse_node(node.node))) is not None}
+    return WaysOn(
+        **head_of(problem, chosen),
+        reached=problem.kitchen.issuperset(problem.goals),
+        lacks=lacks if lacks is None else tuple(node_of(problem.network, o) for o in sorted(added)),
+        units=tuple(_units(problem, replace(problem, kitchen=problem.kitchen | added), answer)),
+        answer=answer,
+    )
+
+
+def _units(problem: Problem, stocked: Problem, answer: Answer | None) -> Iterator[WayOn]:
+    """Yield the units that lead to the goals of a stocked problem, in the order of :class:`WaysOn`."""
+    best = frozenset() if answer is None else frozenset(answer.ids or ())
+    lacking = {
+        unit: [o for o in problem.needs[unit] if o not in problem.kitchen]
+        for unit in relevant(stocked, reach(stocked))
+    }
+    for unit in sorted(lacking, key=lambda unit: (bool(lacking[unit]), unit not in best, unit)):
+        yield unit_as(WayOn, problem.network, unit, lacks=nodes_of(problem.network, lacking[unit]))
