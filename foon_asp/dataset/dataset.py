@@ -291,8 +291,15 @@ class Dataset:
         return replace(self, measures=measures)
 
     def standing_in(self, table: StandInTable | None) -> "Dataset":
-        """Return the same data with stand-ins by a table, ``None`` for none."""
-        return replace(self, stand_ins=table)
+        """Return the same data with stand-ins by a table, ``None`` for none.
+
+        With stand-ins, the goals assumed are those of the first file: the others are what helps it.
+        """
+        goals = self.listed
+        if table is not None and self.goals_from and len(goals) > 1:
+            copies = next(iter(self.whole_network.sources), ())
+            goals = [goal for goal in goals if copies and goal.source.file == copies[0].file] or goals
+        return replace(self, stand_ins=table, listed=goals)
 
     def varied(
         self,

@@ -210,7 +210,7 @@ _DONE = (
         "quartered",
         "crushed",
     ),
-    *("peeled", "mashed", "ground", "melted", "beaten", "whipped", "kneaded", "washed"),
+    *("peeled", "mashed", "ground", "melted", "beaten", "whipped", "kneaded", "hot"),
 )
 _WORDS: Mapping[tuple[Edit, str], Fraction | None] = {
     **{(Edit.FEWER_STATE, state): None for state in _DONE},
