@@ -60,9 +60,9 @@ class GroundProgram:
             self._messages += numbers_beyond(self._control)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Return the arguments of all atoms of each predicate, given by name and arity; these are numbers.
+        """Return the arguments of all atoms of each predicate, by name and arity; all arguments are numbers.
 
-        For stratified rules, whose atoms grounding alone derives.
+        Only for stratified rules, whose atoms grounding alone derives.
         """
         atoms = self._control.symbolic_atoms
         return [

@@ -121,7 +121,7 @@ def shared_out(
 
 
 def stalled(values: Sequence[float], lacks: float) -> bool:
-    """Return whether the last solutions closed hardly any of the gap ``lacks``."""
+    """Return whether the last LP solutions hardly reduced the gap ``lacks`` between the bound and enough."""
     return len(values) > _STALLED and values[-1] - values[-1 - _STALLED] < _GROWS * lacks
 
 
@@ -235,7 +235,7 @@ class _Sharing:
         return any_added
 
     def _by_target(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
-        """Return cutters of single targets that need few of the actions, and one of all other targets."""
+        """Return a :class:`Cutter` for each target that needs few actions, and one for all other targets."""
         count, targets = len(self._actions), self._cutter.targets
         alone: list[Cutter] = []
         others: list[int] = []
@@ -269,7 +269,7 @@ class _Sharing:
         )
 
     def _whole(self, row: int) -> frozenset[int]:
-        """Return the objects of a cut by their numbers in the whole graph, where it has the same landmark."""
+        """Return a row's cut as objects of the whole graph, widened to the same landmark there."""
         if row not in self._whole_cuts:
             objects = self._achievers.widened(self._cuts[row])
             self._whole_cuts[row] = frozenset(self._objects[o] for o in objects)

@@ -56,8 +56,8 @@ class Reduced(NamedTuple):
     the units remaining at the time. ``interrupted`` is true where ctrl-C ended it, or time was up before any
     reduction: ``units`` means nothing then. ``subproblem`` is the gap-bounded subproblem, which holds
     whatever rules trees have to keep to. ``shared`` is the optimal cost partition, if one was computed.
-    ``cases`` are the actions branched on. ``tight`` are the tight cuts of the LP solutions by which units were
-    left out, over the units remaining at the time.
+    ``cases`` are the actions branched on. ``tight`` are the tight cuts of the LP solutions by which units
+    were left out, over the units remaining at the time.
     """
 
     tree: frozenset[int] | None

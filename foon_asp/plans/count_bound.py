@@ -117,7 +117,7 @@ class CountBound:
         return x
 
     def none(self) -> bool:
-        """Return whether it is proved that no counts satisfy the conditions, so that there is no plan."""
+        """Return whether it is proved that no counts satisfy all conditions, so that no plan exists."""
         model = self._model(())
         while True:
             solved = model.program.solve({})
@@ -400,7 +400,7 @@ def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
 
 
 def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[_Bounds]:
-    """Yield bounds of child nodes that together exclude just the whole values of some columns."""
+    """Yield the bounds of child nodes which together exclude only the current whole values of the columns."""
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):
         value = round(x[column])

@@ -187,7 +187,7 @@ class Counting:
         return True
 
     def proved(self) -> dict[Objective, int | Fraction]:
-        """Return the proved lower bound of the first objective; empty where there is none or rates multiply.
+        """Return the proved lower bound of the first objective; empty where none is proved or rates multiply.
 
         Costs are rounded down, so a bound on rounded costs is valid.
         """
@@ -198,7 +198,7 @@ class Counting:
         return {objective: int(least) if objective.row.whole else least}
 
     def _best_within_caps(self, level: Level) -> bool:
-        """Prove with clingo that no plan is better, where all better plans have executions within caps.
+        """Prove with clingo that no plan is better, where the counts of all better plans are bounded by caps.
 
         Returns whether it is proved. Raises :class:`BetterError` if a plan is better.
         """
@@ -284,7 +284,7 @@ class Counting:
 
 
 def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
-    """Return the rank of each figure among the different figures, -1 for the neutral one."""
+    """Return the rank of each figure among the distinct figures; -1 for the neutral figure."""
     numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
     return [-1 if figure == idle else numbers[figure] for figure in figures]
 

@@ -44,7 +44,7 @@ class Executions:
 def _execution_of(
     items: UsedUp | None, rule: ContainerRule, utensils: frozenset[str], network: Network | None
 ) -> Callable[[FunctionalUnit], Execution]:
-    """Return the function from a unit to one execution of it, which remembers what it returned.
+    """Return a cached function from a unit to its execution.
 
     ``network`` is that of the units, where its level is below 3.
     """
@@ -55,7 +55,7 @@ def _execution_of(
 
 @lru_cache(maxsize=4)
 def _by_the_rule(rule: ContainerRule, utensils: frozenset[str]) -> Callable[[FunctionalUnit], Execution]:
-    """Return a function as above, the same one for all trees that are compared or checked one by one."""
+    """Return :func:`_execution_of` for the plain rule, shared by all trees that are checked."""
     return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None))
 
 

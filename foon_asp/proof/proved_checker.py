@@ -28,7 +28,7 @@ def program() -> Path | None:
 
 
 def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
-    """Ask the proved checker about a certificate whose form and digests :func:`verify` has checked.
+    """Run the proved checker on a certificate whose form and digests :func:`verify` has checked.
 
     Returns:
         ``accepted``, or else why it is not checked, in words.

@@ -1,4 +1,4 @@
-"""Prices of many stand-ins: as the table has them, but by integers and without what explains them."""
+"""Fast prices of many stand-ins, in integers, without the edits that explain them."""
 
 import math
 from collections import Counter, defaultdict
@@ -36,7 +36,7 @@ class NodePrices:
         return None if price is None else int(price * self.scale)
 
     def of(self, served: int) -> dict[int, int]:
-        """Return the nodes that may serve in place of one, by id, with their prices."""
+        """Return the nodes that may stand in for a served node, by id, with their prices."""
         servers = self._of.get(served)
         if servers is None:
             servers = self._of[served] = dict(self._priced(served))
