@@ -73,6 +73,7 @@ def write_table(file: Path, rows: Iterable[AnswerRow], objectives: Iterable[Obje
 
 
 def _parquet(rows: list[Json], types: dict[str, Any]) -> bytes:
+    """Return rows as the bytes of a Parquet file."""
     import pyarrow  # noqa: PLC0415 (an extra)
     from pyarrow import parquet  # noqa: PLC0415
 

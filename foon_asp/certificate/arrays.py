@@ -189,6 +189,7 @@ class Arrays:
                 yield self.problem.figure(objective, unit)
 
     def _cost(self, rate: Fraction | None, *counts: int | Fraction) -> Vector:
+        """Return a cost as a vector, from the rate and the other costs of an action."""
         cost: list[Fraction] = []
         remaining = iter(counts)
         for objective in self.objectives:

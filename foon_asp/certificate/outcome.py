@@ -174,6 +174,7 @@ def _tree(outcome: Outcome, units: Sequence[int]) -> str:
 
 
 def _figures(problem: Problem, units: Sequence[int]) -> str:
+    """Return the costs of a tree in words, for the message about a contradiction."""
     costs = problem.costs(units)
     figures = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
     figures.append(f"{costs.kitchen} kitchen items")

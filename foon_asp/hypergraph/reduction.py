@@ -210,6 +210,10 @@ class _Reducer:
         self.proved = False  # whether the tree is optimal because its cost is optimal for the goals alone
 
     def reduce(self, guard: Callable[[], AbstractContextManager[object]]) -> Reduced:
+        """Reduce the network in stages, from cheap to expensive, and return the result.
+
+        The ``guard`` interrupts the longer stages.
+        """
         ended = settled = hopeless = False
         try:
             h_values = self._by_extending(guard)
@@ -599,6 +603,7 @@ class _Reducer:
         return frozenset(a for a in actions if a < self.graph.units)
 
     def _result(self, settled: bool) -> Reduced:
+        """Return the result of the reductions so far."""
         tree = self._units(self.tree)
         early = isinstance(self.remaining, range)  # time was up before any reduction
         units = tree if settled or early else tree | self._units(self.remaining)

@@ -103,6 +103,7 @@ def behaviour_tree_text(name: str, branches: Sequence[Branch], is_used_up: bool)
 
 
 def _reactive_sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
+    """Add a reactive sequence with the steps of a branch to an element, for items that last."""
     sequence = ElementTree.SubElement(parent, "ReactiveSequence", name=escaped(name))
     for step in steps:
         fallback = ElementTree.SubElement(sequence, "Fallback", name=_step_name(step))
@@ -114,6 +115,7 @@ def _reactive_sequence(parent: ElementTree.Element, name: str, steps: Iterable[R
 
 
 def _sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
+    """Add a sequence with the steps of a branch to an element, for items that are used up."""
     sequence = ElementTree.SubElement(parent, "Sequence", name=escaped(name))
     for step in steps:
         _condition(sequence, step.needs)
@@ -131,6 +133,7 @@ def _condition(parent: ElementTree.Element, nodes: Iterable[Node]) -> None:
 
 
 def _action(parent: ElementTree.Element, step: RobotStep) -> None:
+    """Add the action of a step, with its ports."""
     numbers = {"rate": step.rate, "duration": step.duration}
     ElementTree.SubElement(
         parent,

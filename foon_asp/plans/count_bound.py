@@ -83,6 +83,7 @@ class CountBound:
         return counts
 
     def _counts(self, measures: Sequence[Measure], rounds: int, assumed_cap: int) -> Counts | None:
+        """Return counts of least cost as :meth:`counts` does, under an assumed cap of counts."""
         counts: Counts | None = None
         for _ in range(rounds):
             model = self._model(measures, assumed_cap)
@@ -229,6 +230,7 @@ class CountBound:
                 return solved
 
     def _model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
+        """Return a new relaxation with all known conditions."""
         every = (*measures, *(level.measure for level in self._levels))
         different = {id(measure): measure for measure in every}
         model = CountModel(

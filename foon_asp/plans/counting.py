@@ -70,6 +70,7 @@ class Counting:
         return self._measures[objective]
 
     def _measured(self, objective: Objective) -> Measure:
+        """Return the measure of an objective, computed from the costs of units."""
         row, figures = objective.row, self._figures(objective)
         if multiplies(objective):
             classes = _classes(figures, Fraction(1))
@@ -93,6 +94,7 @@ class Counting:
 
     @cached_property
     def _rates(self) -> RateScale:
+        """Return the scale of the rates of units."""
         try:
             return rate_scale(self._problem.different_rates(self.units))
         except ValueError:
@@ -119,6 +121,7 @@ class Counting:
         return level._replace(max_cost=math.ceil(level.cost) - 1)
 
     def _level(self, objective: Objective, cost: Fraction) -> Level:
+        """Return a level for a cost by an objective."""
         measure = self.measure(objective)
         if multiplies(objective):
             return Level(measure, -cost, self._rates.weigh(cost))
@@ -213,6 +216,7 @@ class Counting:
         return ended.exhausted and ended.units is not None
 
     def _is_better(self, counts: Counts) -> bool:
+        """Return whether some order of the counts is a plan; it becomes the incumbent then."""
         self._orders_sought += 1
         if self._orders_sought > _MAX_UNORDERED:
             raise _ManyError

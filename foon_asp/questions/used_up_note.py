@@ -9,9 +9,9 @@ from foon_asp.proof.used_up_run import used_up_run
 
 
 def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
-    """Return one line where items last, and the tree would not run if each were used once; else none.
+    """Return a note that the tree would not run with each item used once; empty if it would.
 
-    Nor is there one where what is missing never was there.
+    It is empty too where items are used up already, and where the missing node never existed.
     """
     units = tuple(tree)
     if problem.items is not None:

@@ -43,6 +43,7 @@ class NodePrices:
         return servers
 
     def _priced(self, served: int) -> Iterator[tuple[int, int]]:
+        """Yield the nodes that may stand in for one node, with their prices."""
         objects, by_label = self._objects, self._by_label
         node = objects[served]
         labels = (node.label, *self._labels.get(node.label, ()))
@@ -122,6 +123,7 @@ class NodePrices:
         return total
 
     def _of_relations(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
+        """Return the price of different relations, ``None`` for never."""
         surplus = Counter(relation.object for relation in ours - theirs)
         lacking = Counter(relation.object for relation in theirs - ours)
         same = (surplus & lacking).total()

@@ -39,7 +39,7 @@ def repeated_note(repeated: Sequence[RepeatedNode]) -> list[str]:
 
 
 def refuse_repeated(repeated: Sequence[RepeatedNode]) -> None:
-    """Raise :class:`UserError` if a unit means two of a node, which items used up cannot count yet."""
+    """Raise :class:`UserError` if a unit needs two of a node, which used-up items do not support yet."""
     for node, source, meant in repeated:
         if meant:
             raise UserError(
