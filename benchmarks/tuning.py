@@ -29,6 +29,7 @@ from foon_asp.hypergraph import tuning
 
 CLASSES = ("PRESOLVE", "CUTS", "RELAXATION", "PROOF", "PRICES")
 GENERATED = ("recipe-like", "deep", "adversarial")
+LEAST = 0.2  # seconds of the processor, in which a set has to differ for that to count
 KITCHEN = Path(__file__).resolve().parents[1] / "data" / "kitchen"
 
 
@@ -64,8 +65,9 @@ def run(asked: list[Callable[[], Any]]) -> Run:
 def moved(before: Run, after: Run, noise: float) -> str:
     """Return what differs, empty where nothing does."""
     remarks = []
-    if abs(after.seconds / before.seconds - 1) > noise:
-        remarks.append(f"seconds x {after.seconds / before.seconds:.2f}")
+    factor, difference = after.seconds / before.seconds, abs(after.seconds - before.seconds)
+    if abs(factor - 1) > noise and difference > LEAST:
+        remarks.append(f"seconds x {factor:.2f}")
     if after.proved != before.proved:
         remarks.append(f"proved {sum(before.proved)} -> {sum(after.proved)}")
     differing = sum(a != b for a, b in zip(before.units, after.units, strict=True))

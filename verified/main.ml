@@ -37,13 +37,37 @@ let node value = match list value with
 type data = { foon : C.foon; count_of_nodes : int; coins : Z.t; network_rates : Q.t list; sources : Json.t list }
 
 let read_data value goals implied =
-  let nodes, motions, inputs, outputs = match list (get "network" value) with
-    | [Number level; nodes; motions; inputs; outputs] when Z.equal level Z.(~$3) ->
-      (list nodes, list motions, list inputs, list outputs)
-    | _ -> unknown "a network below level 3" in
+  let nodes, motions, inputs, outputs, below = match list (get "network" value) with
+    | _ :: nodes :: motions :: inputs :: outputs :: below -> (list nodes, list motions, list inputs, list outputs, below)
+    | _ -> refuse "expected a network" in
   let side l = List.map id (list l) in
-  let unit motion (ins, outs) = { C.motion = named motion; inputs = side ins; outputs = side outs } in
-  let units = List.map2 unit motions (List.combine inputs outputs) in
+  let detail number (ins, outs) = { C.its_number = Z.of_int number; ins = side ins; outs = side outs } in
+  let sides = List.combine inputs outputs in
+  (* below level 3, each unit and node stands for some of another network *)
+  let detailed, merged, details = match below with
+    | [] -> (nodes, List.mapi (fun i _ -> i + 1) nodes, List.mapi (fun i s -> [detail (i + 1) s]) sides)
+    | [whole; stands_for] ->
+      let detailed, ins, outs = match list whole with
+        | [Number three; nodes; _; ins; outs] when Z.equal three Z.(~$3) -> (list nodes, list ins, list outs)
+        | _ -> refuse "expected a network of level 3" in
+      let places = Hashtbl.create 1000 in
+      List.iteri (fun i n -> Hashtbl.replace places (canonical n) (i + 1)) nodes;
+      let lowest = match get "network" value with List (Number n :: _) -> Z.equal n Z.one | _ -> false in
+      let merge n = match list n with
+        | [label; states; relations; _] ->
+          let kept = if lowest then [label; List []; List []; List []] else [label; states; relations; List []] in
+          (match Hashtbl.find_opt places (canonical (List kept)) with
+           | Some place -> place
+           | None -> refuse "a node has become none")
+        | _ -> refuse "expected an object node" in
+      let all = Array.of_list (List.combine ins outs) in
+      let of_unit n = let i = Z.to_int (number n) in
+        if i < 0 || i >= Array.length all then refuse "expected the id of a unit" else detail (i + 1) all.(i) in
+      (detailed, List.map merge detailed, List.map (fun l -> List.map of_unit (list l)) (list stands_for))
+    | _ -> refuse "expected a network" in
+  let unit (motion, (ins, outs)) details =
+    { C.motion = named motion; inputs = side ins; outputs = side outs; details } in
+  let units = List.map2 unit (List.combine motions sides) details in
   let rates = match get "rates" value with
     | Null -> []
     | known -> List.map (fun r -> let m, q = pair r in (named m, fraction q)) (list known) in
@@ -58,7 +82,8 @@ let read_data value goals implied =
   let coins = Z.mul (Z.of_int 100) (lcm_of (List.map snd (by_motion @ by_unit))) in
   let in_coins = List.map (fun (k, q) -> (k, whole (Q.mul q (Q.of_bigint coins)))) in
   let foon = {
-    C.nodes = map_of (numbered 1 (List.map node nodes)); units = map_of (numbered 1 units);
+    C.nodes = map_of (numbered 1 (List.map node nodes)); detailed_nodes = map_of (numbered 1 (List.map node detailed));
+    merged = map_of (numbered 1 (List.map Z.of_int merged)); units = map_of (numbered 1 units);
     kitchen = C.of_list (side (get "kitchen" value)); wanted = goals; implied;
     utensils = C.of_list (List.map named (list (get "utensils" value)));
     rates = map_of (List.map (fun (m, q) -> (m, (q.Q.num, q.Q.den))) possible);

@@ -115,6 +115,7 @@ class StandInTable(NamedTuple):
     def _edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
+        """Yield the edits between two nodes: kind, parts of served and serving node, price."""
         if (serving, served) in self.pairs:
             yield Edit.NODE, str(served), str(serving), self.pairs[serving, served]
             return
@@ -143,6 +144,7 @@ class StandInTable(NamedTuple):
     def _of_contents(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
+        """Yield the edits between the contents of two nodes."""
         if serving.contents == served.contents:
             return
         ours, theirs = Counter(served.ingredients), Counter(serving.ingredients)

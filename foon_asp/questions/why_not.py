@@ -216,7 +216,7 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
 
     @property
     def ending(self) -> Ending:
-        """Done where there is a tree, also under the rules."""
+        """``DONE`` if there is a tree, also under the rules."""
         if not self.tree_exists:
             return Ending.NEGATIVE
         return Ending.DONE if self.clash is None else self.clash.ending
@@ -395,9 +395,10 @@ def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]
 
 
 def _tree(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str]:
-    """Return the dead ends as an indented tree, each opened up once: its first unit, and its lacks.
+    """Return the dead ends as lines of a tree.
 
-    ``numbers`` are the numbers of the roots. Of other dead ends, the nearest to the goals are opened up.
+    Below a node are its first achiever and the inputs it lacks. A node is expanded once. ``numbers`` are
+    the numbers of the roots. Of the other dead ends, those nearest to the goals are expanded.
     """
     makers = {end.object: end.makers for end in explanation.dead_ends}
     opened: set[Node] = set()

@@ -1,4 +1,4 @@
-"""Prices of many stand-ins: as the table has them, but by integers and without what explains them."""
+"""Fast prices of many stand-ins, in integers, without the edits that explain them."""
 
 import math
 from collections import Counter, defaultdict
@@ -38,7 +38,7 @@ class NodePrices:
         return None if price is None else int(price * self.scale)
 
     def of(self, served: int) -> dict[int, int]:
-        """Return the nodes that may serve in place of one, by id, with their prices."""
+        """Return the nodes that may stand in for a served node, by id, with their prices."""
         servers = self._of.get(served)
         if servers is None:
             servers = self._of[served] = self.of_node(self._objects[served])
@@ -122,6 +122,7 @@ class NodePrices:
         return total
 
     def _of_relations(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
+        """Return the price of different relations, ``None`` for never."""
         surplus = Counter(relation.object for relation in ours - theirs)
         lacking = Counter(relation.object for relation in theirs - ours)
         same = (surplus & lacking).total()

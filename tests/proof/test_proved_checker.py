@@ -168,6 +168,19 @@ def test_certificates_of_the_universal_network(judge: Judge, universal: Path, tm
                 assert judge(content, subject) == ("accepted", "")
 
 
+@pytest.mark.parametrize("part", [40, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("level", [1, 2, 3])
+def test_certificates_of_the_bundled_goals(judge: Judge, level: int, part: int, tmp_path: Path) -> None:
+    foon = foon_asp.load(level=level)
+    subject = foon.dataset.subject()
+    for goal in list(foon.goals)[::part]:
+        for containers in ContainerRule:
+            problem = foon.problem(goal, containers=containers)
+            foon_asp.solve(problem, ["inputs", "success"], certificate=tmp_path / "proof.json")
+            content = json.loads((tmp_path / "proof.json").read_text())
+            assert judge(content, subject) == ("accepted", "")
+
+
 def test_verify_asks_both_checkers(cli: Cli, judge: Judge, tmp_path: Path) -> None:
     del judge  # skips where it is not built
     proof = tmp_path / "proof.json"

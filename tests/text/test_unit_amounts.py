@@ -21,9 +21,9 @@ def file(folder: Path, text: str, name: str = "wood.jsonl") -> Path:
     return path
 
 
-def sticks(path: Path, **named: Path) -> int:
+def sticks(path: Path, unit_amounts: Path | None = None) -> int:
     """Return how many units seven sticks take."""
-    problem = foon_asp.load(path, **named).problem("stick", amounts=7)
+    problem = foon_asp.load(path, unit_amounts=unit_amounts).problem("stick", amounts=7)
     costs = foon_asp.solve(problem).costs
     assert costs is not None
     return costs.units
