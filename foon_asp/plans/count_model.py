@@ -51,11 +51,11 @@ class CountModel:
             self.stock = {o: program.column(0, count) for o, count in flows.start.items() if count}
         for o, change, least in flows.balances():
             self.conditions[program.row(*self._with_stock(o, change, least))] = Balance(o)
-        for action, asked in enumerate(flows.asks):
-            for o in (o for o, n in asked.items() if n > 1):
+        for action, preconditions in enumerate(flows.asks):
+            for o in (o for o, n in preconditions.items() if n > 1):
                 others = (a for a in achievers_of.get(o, ()) if a != action)
                 row = {achiever: flows.adds[achiever][o] for achiever in others}
-                supply = program.row(*self._with_stock(o, {**row, size + action: -asked[o]}, 0))
+                supply = program.row(*self._with_stock(o, {**row, size + action: -preconditions[o]}, 0))
                 self.conditions[supply] = Supply(o, action)
         items = self.items = dict[int, int]()
         for action in range(size):
