@@ -115,6 +115,7 @@ def _require_no_amounts(problem: Problem) -> None:
 
 
 def _written(program: Program, facts: str) -> BareProgram:
+    """Return a program for bare clingo with these facts and the program's rules as text."""
     files = tuple(file for file in program.files if isinstance(file, Path))
     rules = (
         stated_rules

@@ -143,6 +143,7 @@ def certify_infeasible(
 
 
 def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
+    """Return a prover over the arrays of a question, which starts with known cuts."""
     rules = arrays if arrays.ruled.barred or arrays.asks else None
     return Prover(
         arrays.graph,

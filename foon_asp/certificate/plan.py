@@ -121,10 +121,10 @@ class _Question:
     # --- finding
 
     def prove(self, objective: Objective, before: Sequence[Objective]) -> tuple[Any, Vector | None] | None:
-        """Return a proof that no plan as good by the objectives before costs less than the incumbent.
+        """Return a proof that no plan as good by earlier objectives costs less than the incumbent.
 
-        Also returns the bound, where by the first objective only a smaller one is proved. ``None`` without a
-        proof.
+        Also returns the bound, where only a smaller bound is proved by the first objective. ``None``
+        without a proof.
         """
         kept = [self._level(earlier) for earlier in before]
         if any(level is None for level in kept):
@@ -305,7 +305,7 @@ class _Question:
 
 
 class _Stated:
-    """The JSON of proofs by counts."""
+    """Writer of proofs by counts as JSON."""
 
     def __init__(
         self,

@@ -68,7 +68,7 @@ def _constants(context: click.Context, prefix: str) -> Iterable[str]:
 
 
 def _constants_of(constraint: str, context: click.Context, prefix: str) -> Iterable[str]:
-    """Return the constants of a ready-made constraint, or the values of a constant for motions or labels."""
+    """Return the constants of a ready-made constraint, or after ``=`` the values of one: motions, labels."""
     name, equals, value = prefix.partition("=")
     if not equals:
         parameters = {entry.name: entry.parameters for entry in library_constraints()}

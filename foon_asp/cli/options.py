@@ -180,7 +180,10 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 
 
 def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:
-    """Return the deadline of the current command: from the start of a process that runs only this command."""
+    """Return the deadline of the current command.
+
+    It begins with the process if that runs no other command.
+    """
     context = click.get_current_context()
     began = context.obj if isinstance(context.obj, float) else None
     deadline = Deadline(time_limit, memory_limit, began)

@@ -126,6 +126,7 @@ def _with_article(kind: str) -> str:
 
 
 def _summary(renaming: Renaming, files: int, written: bool) -> str:
+    """Return a summary of a renaming in words: the mentions, the files, and what to do next."""
     kind, old, new = renaming.rename
     mentions = f"{counted(renaming.mentions, 'mention')} in {counted(files, 'file')}"
     text = f"the {kind} {old!r} becomes {new!r}: {mentions}"

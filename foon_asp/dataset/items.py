@@ -62,7 +62,7 @@ def items_of(
 
 
 def require_contents(level: int) -> None:
-    """Raise :class:`UserError` below level 3, where nothing says which items are used up."""
+    """Raise :class:`UserError` below level 3, where contents do not show which items are used up."""
     if level < 3:
         raise UserError(
             f"items are used up at level 3 only, and this is level {level}: whether an input stays depends "
@@ -71,6 +71,7 @@ def require_contents(level: int) -> None:
 
 
 def _exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
+    """Return whether labels and nodes stay, from a file or a mapping of names."""
     if isinstance(stays, str | PathLike):
         exceptions = STAYS.read(Path(stays))
     else:
@@ -89,6 +90,7 @@ def _exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
 
 
 def _copies(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
+    """Return the number of copies of nodes in the stock, from a file or a mapping of names."""
     if isinstance(stock, str | PathLike):
         copies = read_stock(Path(stock))
     else:

@@ -72,7 +72,7 @@ class Source:
         return self._network.different_motions
 
     def motion_places(self) -> Iterable[tuple[str, Place]]:
-        """Return motions with sources of units that have them, among them the first of each motion."""
+        """Return motions with sources of their units, among them the first source of each motion."""
         return first_places(self._network)
 
     def whole(self) -> Network:
@@ -84,7 +84,7 @@ class Source:
         return self._network
 
     def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
-        """Return a network with at least some units and object nodes."""
+        """Return a network that has at least these units and object nodes."""
         return self._network
 
     def cone(
@@ -105,7 +105,10 @@ class Source:
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> "UnitDistances | None":
-        """Return the distances of all units, without ``utensils``; ``None`` if the network is in memory."""
+        """Return the distance of each unit: a lower bound on the cost of trees with it.
+
+        Units do not need the ``utensils``. ``None`` if the network is in memory.
+        """
         return None
 
     def true_digests(self) -> dict[str, str]:

@@ -101,7 +101,10 @@ class StoreSource(Source):
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> "UnitDistances":
-        """Return the distances of all units, which do without the ``utensils``."""
+        """Return the distance of each unit: a lower bound on the cost of trees with it.
+
+        Units do not need the ``utensils``.
+        """
         from foon_asp.store.unit_distances import UnitDistances  # noqa: PLC0415 (few answers need numpy)
 
         outline = self.names.outline

@@ -72,6 +72,7 @@ def repeated_object(context: Context) -> Iterator[Diagnostic]:
 
 
 def _repeated_nodes(context: Context, copy: Copy) -> Iterator[Diagnostic]:
+    """Yield a finding for each node that a copy of a unit lists twice on one side."""
     sheet = context.sheets[copy.sheet]
     for side, blocks in zip(("inputs", "outputs"), context.node_lines(copy), strict=True):
         firsts: dict[object, int] = {}
@@ -107,7 +108,7 @@ def second_relation(context: Context) -> Iterator[Diagnostic]:
 def _clashes(
     sheet: Sheet, is_clash: Callable[[_Attribute, _Attribute], bool]
 ) -> Iterator[tuple[str, _Attribute, _Attribute, list[int]]]:
-    """Yield each label with two attributes under it that clash, and the lines that have the second."""
+    """Yield each label with two clashing attributes, and the lines that have the second one."""
     lines_by_clash: dict[tuple[str, _Attribute, _Attribute], list[int]] = {}
     for block in sheet.longer_blocks:
         for number, (index, second) in enumerate(block.attributes):

@@ -75,10 +75,10 @@ class NamedAction(Value, frozen=True):
     """An action of the planning task.
 
     Attributes:
-        unit: The unit that it executes; null for one that takes a kitchen item.
+        unit: The unit that it executes; null for an action that takes a kitchen item.
         inputs: The names of the inputs.
         outputs: The names of the outputs.
-        cost: What it costs in the planning task.
+        cost: Its cost in the planning task.
     """
 
     name: str
@@ -180,7 +180,7 @@ def read_name_map(file: Path) -> NameMap:
 
 
 def _read(tree: Mapping[str, Any]) -> NameMap:
-    """Return the name map of a JSON tree; a part that lacks or has another type is an error of Python."""
+    """Return the name map of a JSON tree; a missing or wrong part raises the errors of Python."""
     nodes = {entry["name"]: read_node_json(entry["object"]) for entry in tree["objects"]}
     units = {
         action["name"]: FunctionalUnit.of(

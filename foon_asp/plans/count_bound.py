@@ -106,6 +106,7 @@ class CountBound:
         return counts
 
     def _counts(self, measures: Sequence[Measure], rounds: int, assumed_cap: int) -> Counts | None:
+        """Return counts of least cost as :meth:`counts` does, under an assumed cap of counts."""
         counts: Counts | None = None
         for _ in range(rounds):
             model = self._model(measures, assumed_cap)
@@ -140,7 +141,7 @@ class CountBound:
         return x
 
     def none(self) -> bool:
-        """Return whether it is proved that no counts satisfy the conditions, so that there is no plan."""
+        """Return whether it is proved that no counts satisfy all conditions, so that no plan exists."""
         model = self._model(())
         while True:
             solved = model.program.solve({})
@@ -252,6 +253,7 @@ class CountBound:
                 return solved
 
     def _model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
+        """Return a new relaxation with all known conditions."""
         every = (*measures, *(level.measure for level in self._levels))
         different = {id(measure): measure for measure in every}
         model = CountModel(
@@ -438,7 +440,7 @@ def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
 
 
 def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[_Bounds]:
-    """Yield bounds of child nodes that together exclude just the whole values of some columns."""
+    """Yield the bounds of child nodes which together exclude only the current whole values of the columns."""
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):
         value = round(x[column])

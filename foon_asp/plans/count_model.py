@@ -97,7 +97,10 @@ class CountModel:
         return self._count_indicators[action, count][0]
 
     def unforced_count(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
-        """Return an action, count and indicator where the action reaches the count and the indicator is 0."""
+        """Return an action that is executed at least ``count`` times while the indicator of this count is 0.
+
+        The result is the action, the count and the indicator; ``None`` where every indicator is right.
+        """
         for (action, count), (column, _) in self._count_indicators.items():
             if action in counts and counts[action] >= count and not round(x[column]):
                 return action, count, column

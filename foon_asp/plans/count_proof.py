@@ -92,7 +92,10 @@ class PlanProver(CountBound):
         self._landmarks += landmarks
 
     def _prove_part(self, model: CountModel, depth: int) -> CountProof:
-        """Return the proof of a node, and lower the claim where less is proved of it."""
+        """Return the proof of a node of the branching.
+
+        The claim is lowered to its bound where that is smaller.
+        """
         program = model.program
         model.tighten()
         if program.is_empty:

@@ -74,6 +74,7 @@ class Counting:
         return self._measures[objective]
 
     def _measured(self, objective: Objective) -> Measure:
+        """Return the measure of an objective, computed from the costs of units."""
         row, figures = objective.row, self._figures(objective)
         if multiplies(objective):
             classes = _classes(figures, Fraction(1))
@@ -97,6 +98,7 @@ class Counting:
 
     @cached_property
     def _rates(self) -> RateScale:
+        """Return the scale of the rates of units."""
         try:
             return rate_scale(self._problem.different_rates(self.units))
         except ValueError:
@@ -123,6 +125,7 @@ class Counting:
         return level._replace(max_cost=math.ceil(level.cost) - 1)
 
     def _level(self, objective: Objective, cost: Fraction) -> Level:
+        """Return a level for a cost by an objective."""
         measure = self.measure(objective)
         if multiplies(objective):
             return Level(measure, -cost, self._rates.weigh(cost))
@@ -191,7 +194,7 @@ class Counting:
         return True
 
     def proved(self) -> dict[Objective, int | Fraction]:
-        """Return the proved lower bound of the first objective; empty where there is none or rates multiply.
+        """Return the proved lower bound of the first objective; empty where none is proved or rates multiply.
 
         Costs are rounded down, so a bound on rounded costs is valid.
         """
@@ -202,7 +205,7 @@ class Counting:
         return {objective: int(least) if objective.row.whole else least}
 
     def _best_within_caps(self, level: Level) -> bool:
-        """Prove with clingo that no plan is better, where all better plans have executions within caps.
+        """Prove with clingo that no plan is better, where the counts of all better plans are bounded by caps.
 
         Returns whether it is proved. Raises :class:`BetterError` if a plan is better.
         """
@@ -217,6 +220,7 @@ class Counting:
         return ended.exhausted and ended.units is not None
 
     def _is_better(self, counts: Counts) -> bool:
+        """Return whether some order of the counts is a plan; it becomes the incumbent then."""
         self._orders_sought += 1
         if self._orders_sought > _MAX_UNORDERED and not self._problem.counts_amounts:
             raise _ManyError
@@ -344,7 +348,7 @@ class Counting:
 
 
 def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
-    """Return the rank of each figure among the different figures, -1 for the neutral one."""
+    """Return the rank of each figure among the distinct figures; -1 for the neutral figure."""
     numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
     return [-1 if figure == idle else numbers[figure] for figure in figures]
 

@@ -132,7 +132,7 @@ class PlanQuestion:
         return True
 
     def allows(self, plan: Plan) -> bool:
-        """Whether a plan keeps exactly to limits and bounds, and contains none of the incomparable plans."""
+        """Whether a plan keeps to limits and bounds, exactly, and includes none of the incomparable plans."""
         counts, costs = Counter(plan), self.problem.costs(plan)
         for limit in self.limits:
             total = sum(

@@ -56,7 +56,7 @@ def _execution_of(
     network: Network | None,
     amounts: Amounts,
 ) -> Callable[[FunctionalUnit], Execution]:
-    """Return the function from a unit to one execution of it, which remembers what it returned.
+    """Return a cached function from a unit to its execution.
 
     ``network`` is that of the units, where its level is below 3.
     """

@@ -12,7 +12,10 @@ from foon_asp.proof.execution import Executions
 
 
 class Copy(NamedTuple):
-    """One copy of an object ``node``: ``made`` is the position of the step that made it, if one did."""
+    """A copy of an object ``node``.
+
+    ``made`` is the position of the step that made it, ``None`` for the kitchen.
+    """
 
     node: ObjectNode
     made: int | None
@@ -55,9 +58,9 @@ class Replay(NamedTuple):
 
 
 def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
-    """Return the replay of a plan from the kitchen of a problem with consumable items, up to its goals.
+    """Replay a plan with consumable items from the kitchen of a problem, up to its goals.
 
-    The kitchen never runs out, but for what the stock counts. A repeated unit runs again.
+    Kitchen items never run out, except those that the stock counts. A repeated unit runs again.
     """
     return _Kitchen(problem).run(list(plan))
 

@@ -54,14 +54,14 @@ class Means(NamedTuple):
     tools: Mapping[ToolName, int | None]
 
     def waited_for(self, problem: Problem, label: str) -> bool:
-        """Return whether objects of a label are tools that a step may have to wait for."""
+        """Return whether a step may have to wait for objects of a label, as tools in limited number."""
         if label in self.tools:
             return self.tools[label] is not None
         named = any(isinstance(name, ObjectNode) and name.label == label for name in self.tools)
         return named or label in problem.utensils
 
     def is_free(self, label: str) -> bool:
-        """Return whether several steps can use one object with a label at once."""
+        """Return whether several steps can share one object of a label at the same time."""
         return label in self.tools and self.tools[label] is None
 
     def name(self, node: ObjectNode, label: str) -> ToolName:
@@ -148,7 +148,7 @@ def timetable_fault(
 
 
 class _Run:
-    """A kitchen in which steps start and end."""
+    """The state of the kitchen while steps start and end."""
 
     def __init__(
         self, problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
@@ -232,5 +232,5 @@ class _Run:
 
 
 def _hands(step: TimedStep) -> list[int | Tool]:
-    """Return the tools and the agent of a step."""
+    """Return the resources that a step occupies: its tools and its agent."""
     return [*step.tools] + ([] if step.agent is None else [step.agent])

@@ -37,14 +37,14 @@ class UsedUpRun(NamedTuple):
 
 
 def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
-    """Return an order in which the steps of a tree, each once, run from the kitchen to the goals.
+    """Return an order in which each step of a tree runs once, from the kitchen to the goals.
 
-    Items are used up as the problem says, or, where they last in it, by the rule of docs/plans.md, and what
-    is in the kitchen never runs out. A unit that is listed several times is as many steps. Below level 3
-    nothing is searched, since consumption depends on contents.
+    Items are used up as the problem says. Where its items last, the rule of docs/plans.md decides, and
+    kitchen items never run out. A unit that is listed several times is as many steps. Below level 3 nothing
+    is searched, since consumption depends on contents.
 
     Parameters:
-        problem: What the tree is for.
+        problem: The problem that the tree is for.
         tree: The units in the order listed.
     """
     if problem.network.level < 3:
@@ -160,7 +160,7 @@ class _OrderSearch:
         return None
 
     def _ready(self, dead: set[int]) -> Iterator[int]:
-        """Yield the steps that can be next, up to the first that takes nothing from another."""
+        """Yield the steps that can be next; the last is the first that takes no copy from a waiting step."""
         end = len(self._steps)
         step = end if self._done in dead else self._next[end]
         while step != end and self.looks_left > 0:
@@ -175,7 +175,7 @@ class _OrderSearch:
             step = self._next[step]
 
     def _missing(self, done: Sequence[int]) -> Shortage | None:
-        """Return what a step that waits is missing, since steps that were done used it up."""
+        """Return the copy that a waiting step is missing because earlier steps used it up."""
         step = self._next[-1]
         while step != len(self._steps):
             for node, amount in self._steps[step].preconditions.items():

@@ -351,7 +351,10 @@ class PlanCheck(Check):
                 yield max(0, math.floor(limit.max_sum / amount))
 
     def _cap(self, unit: int, level: int, less: bool) -> int | None:
-        """Return a bound on the count of a unit in plans that cost no more by an objective, or ``less``."""
+        """Return a bound on the count of a unit in plans that cost at most the incumbent.
+
+        With ``less``, in plans that cost less.
+        """
         per_execution, max_cost = self.kept(unit, level), self.limit(level)
         if per_execution == 0:
             return None
@@ -460,7 +463,7 @@ class _Conditions:
             self.levels.append((number, weight))
 
     def _read(self, key: str, numbers: int = 1) -> Iterator[tuple[list[int], Amount]]:
-        """Yield the weights of conditions under a key, each named by ``numbers`` numbers."""
+        """Yield the weighted conditions under a key, each named by a tuple of ``numbers`` numbers."""
         read = partial(self.check.weight, level=self.level)
         return self.check.read_weights(key, self.proof.get(key, []), read, numbers)
 
@@ -509,7 +512,7 @@ class _Conditions:
         return initial
 
     def _demand(self, weight: Amount, factor: int | Fraction) -> None:
-        """Add to the right-hand side."""
+        """Add an amount to the right-hand side."""
         self.constant = self._added(self.constant, weight, factor)
 
     def _bring(self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction) -> None:

@@ -46,7 +46,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         order: Positions of units, from 1, in an order that executes, as far as one does.
         used_up: Whether the tree, each step done once, runs where items are used up; null for a plan.
         costs: What the tree costs by every objective; null where the network does not have all of its units.
-        not_in_network: The positions, from 1, of units that are not in the network.
+        not_in_network: The positions, from 1, of the units that are not in the network.
         breaks: Under rules: those that the tree breaks; null if it does not execute or has units of its own.
 
     Example:

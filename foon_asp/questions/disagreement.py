@@ -1,4 +1,4 @@
-"""A disagreement between engines as one file, with all that it takes to ask the question again."""
+"""A disagreement between engines in one file, with all data needed to reproduce it."""
 
 import platform
 from collections.abc import Iterable
@@ -48,8 +48,8 @@ def disagreement_name(outcome: Outcome) -> str:
 def disagreement_json(request: Asked, disagreement: DisagreementError) -> Json:
     """Return a disagreement in plain values: question, data and rules as text, and both answers.
 
-    Rules have in them what they include. ``bare_clingo`` has the program that clingo was given, and its
-    arguments.
+    Included files are part of the text of rules. ``bare_clingo`` has the program that clingo was given, and
+    its arguments.
     """
     outcome, settings = request.outcome, request.settings
     problem, answer = outcome.problem, disagreement.answer

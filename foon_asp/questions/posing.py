@@ -32,7 +32,7 @@ class Command(Protocol):
         """Whether the command names a network."""
 
     def given(self, option: str) -> bool:
-        """Return whether an option, by name, stands on the command line itself."""
+        """Return whether an option, by name, is on the command line itself."""
 
     def unnamed_goals(self) -> list[ObjectNode]:
         """Return the goals that are answered one by one where none is named."""
@@ -41,7 +41,7 @@ class Command(Protocol):
         """Add networks that are named without an option; the data are read anew."""
 
     def reading(self) -> AbstractContextManager[object]:
-        """Stop what is read in a ``with`` block at the limits of the command."""
+        """Return a context in which reading stops at the limits of the command."""
 
 
 DATA = (
@@ -97,7 +97,7 @@ def the_data(command: Command) -> "tuple[Foon]":
 
 
 def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
-    """Return whether a picture is of a tree for goals: some are named, or a recipe alone, as for ``solve``.
+    """Return whether a picture is of a tree: goals are named, or only a recipe is, as for ``solve``.
 
     Raises :class:`UserError` for a recipe with several goals, since a picture is of one tree.
     """
@@ -113,5 +113,5 @@ def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
 
 
 def no_data(command: Command, **named: object) -> tuple[object, ...]:
-    """Return the values of the question's own options; its command has no options for data."""
+    """Return only the values of the question's own options, for a command without options for data."""
     return tuple(named.values())

@@ -32,7 +32,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Removal(StrEnum):
-    """The kind of part left out: a unit, all units of a motion, one kitchen item, or two."""
+    """The kind of part left out: a unit, all units of a motion, a kitchen item, or two items."""
 
     UNIT = "unit"
     MOTION = "motion"

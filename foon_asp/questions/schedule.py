@@ -339,6 +339,7 @@ def schedule(
 
 
 def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, ...]]) -> Iterator[TimedStep]:
+    """Yield the steps of a schedule as values."""
     for number, (unit, step, earlier) in enumerate(zip(tree.units, timed, after, strict=False), 1):
         named = tree.step_unit(number)
         made = [node for node in unit.outputs if node not in unit.inputs] or unit.outputs
@@ -363,7 +364,10 @@ def _status(solution: BestSchedule) -> Status:
 
 
 def _in_order(tree: Tree) -> Tree:
-    """Return a tree in an order that executes; if items last and no order does, in the order listed."""
+    """Return a tree in an order that executes, or else in the listed order.
+
+    If items are used up, an order is required.
+    """
     if tree.problem.items is None:
         simulation = simulate_for(tree.problem, tree)
         order = simulation.order if simulation.verdict is Verdict.REORDERED else range(len(tree))
@@ -409,7 +413,10 @@ def _durations(
 def _known_durations(
     tree: Tree, stated: Durations | None, from_video: bool, default: Number | None
 ) -> dict[str, Duration]:
-    """Return the known durations by motion: stated, of clips, or the default; warnings name the last two."""
+    """Return the known durations by motion.
+
+    They are those stated, those of clips, or the default; warnings name the last two kinds.
+    """
     durations = stated_durations(stated)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
     if from_video:
@@ -439,6 +446,7 @@ def _known_durations(
 
 
 def _tools(stated: Tools | None) -> dict[ToolName, int | None]:
+    """Return the stated numbers of tools by label or node; ``None`` is an unlimited number."""
     if stated is None:
         return {}
     if isinstance(stated, str | PathLike):

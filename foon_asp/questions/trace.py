@@ -88,7 +88,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
 
     @property
     def ending(self) -> Ending:
-        """As the new plan was found, if a step failed; else done when the plan runs."""
+        """The ending of the new plan, if a step failed; else ``DONE`` if the plan runs."""
         if self.answer is not None:
             return self.answer.ending
         return Ending.DONE if self.stopped is None else Ending.NEGATIVE
@@ -163,7 +163,7 @@ def _stock(problem: Problem) -> dict[ObjectNode, int]:
 
 
 def _states(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]:
-    """Yield how many copies there are, in the beginning and after each step."""
+    """Yield the number of copies of each node, at the beginning and after each step."""
     stock = _stock(problem)
     counts = Counter({node: n for node, n in stock.items() if problem.at_hand(node)})
     changes = [((), ()), *((step.came, step.gone) for step in replay.steps)]

@@ -265,7 +265,7 @@ def amount_text(amount: int | UnsetType) -> str:
 
 
 class Lack(Value, frozen=True):
-    """A copy that is missing.
+    """A missing copy of an object node.
 
     Attributes:
         position: The step that lacks it, from 1; null for a goal, in the end.
@@ -336,7 +336,7 @@ class CostedTree(Value, frozen=True):
 
 
 def steps_not_in(steps: Sequence[Step], others: Iterable[Step]) -> list[Step]:
-    """Return the steps whose units are not among ``others``, counting repeats (multiset difference)."""
+    """Return the steps whose units are not in ``others``, counting repeats (multiset difference)."""
     missing = Counter(step.id for step in steps) - Counter(step.id for step in others)
     rows = []
     for step in steps:

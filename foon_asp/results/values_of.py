@@ -53,7 +53,7 @@ class Head(TypedDict):
 
 
 def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
-    """Return the question about a problem: its goals, the rules that they are asked under, objectives."""
+    """Return the question of a document about goals: its goals, conditions and objectives."""
     network = problem.network
     return {
         "goals": goals_of(network, problem.goals),
@@ -87,18 +87,18 @@ def node_of(network: Network, o: int) -> Node:
 
 
 def node_as(kind: type[N], network: Network, o: int, **fields: Any) -> N:
-    """Return the object node that has an id as a kind of node, with the fields that this kind has more."""
+    """Return the object node of an id as a ``kind`` of node, with the additional fields of this kind."""
     return kind(network.object_number(o), *_parts(network.objects[o]), **fields)
 
 
 def named_node(network: Network, node: ObjectNode) -> Node:
-    """Return an object node that a network may have or not."""
+    """Return an object node as a value, whether or not the network has it."""
     o = network.object_id(node)
     return Node(None if o is None else network.object_number(o), *_parts(node))
 
 
 def place_of(source: Source) -> Place:
-    """Return where a unit was read."""
+    """Return the place where a unit was read, as a value."""
     return Place(source.file, source.line, tuple(source.videos))
 
 
@@ -113,7 +113,7 @@ def unit_of(network: Network, unit: int) -> Unit:
 
 
 def unit_as(kind: type[U], network: Network, unit: int, **fields: Any) -> U:
-    """Return the unit that has an id as a kind of unit, with the fields that this kind has more."""
+    """Return the unit of an id as a ``kind`` of unit, with the additional fields of this kind."""
     return kind(
         network.unit_number(unit),
         network.motions[unit],
@@ -126,7 +126,7 @@ def unit_as(kind: type[U], network: Network, unit: int, **fields: Any) -> U:
 
 
 def listed_unit(network: Network, unit: FunctionalUnit, source: Source) -> Unit:
-    """Return a unit that was listed at a place, and that a network may have or not."""
+    """Return a unit that was listed at a place as a value, whether or not the network has it."""
     number = network.unit_id(unit)
     inputs, outputs = (
         tuple(named_node(network, node) for node in nodes) for nodes in (unit.inputs, unit.outputs)
@@ -202,7 +202,7 @@ def costed_tree(problem: Problem, units: Collection[int], costs: Costs) -> Coste
 def used_up_of(problem: Problem, tree: Iterable[FunctionalUnit] | None) -> UsedUpRun | None:
     """Return whether a tree runs where items are used up.
 
-    ``None`` without a tree, and where items are used up anyway.
+    ``None`` without a tree, and where the items of the problem are used up already.
     """
     if tree is None or problem.items is not None:
         return None
@@ -233,6 +233,7 @@ def copies_of(network: Network, counts: Mapping[ObjectNode, int]) -> tuple[Copie
 
 @functools.lru_cache(maxsize=10_000)  # units that are near each other share most of their nodes
 def _parts(node: ObjectNode) -> tuple[str, str, tuple[str, ...], tuple[Relation, ...], tuple[Contents, ...]]:
+    """Return the parts of an object node as values."""
     relations = tuple(Relation(*relation) for relation in sorted(node.relations))
     contents = tuple(
         Contents(contents_of.word, tuple(contents_of.ingredients)) for contents_of in node.contents
@@ -279,6 +280,7 @@ def _origin(
     needed: bool,
     bought: Collection[int],
 ) -> Origin:
+    """Return the origin of an input of a step."""
     if o in problem.kitchen:
         return _BOUGHT if o in bought else _KITCHEN
     makes = makers.get(o, ())

@@ -106,7 +106,7 @@ class StoreBuilder:
         return unit
 
     def last_outputs(self, units: Mapping[int, Source]) -> list[ListedObject]:
-        """Return the outputs that the last unit of each file is for, as entries of a goals file.
+        """Return the final outputs of the last unit of each file, as entries of a goals file.
 
         ``units`` are the ids of the last units, each with its source.
         """
@@ -214,11 +214,12 @@ class StoreBuilder:
         return [(self._nodes["".join(node_columns(node))], amount) for node, amount in side.items()]
 
     def _by_id(self, prices: Mapping[FunctionalUnit, Fraction]) -> dict[int, Fraction]:
-        """Return the prices of units that were added, by id."""
+        """Return prices by the ids of units, for all units that were added."""
         by_id = ((self.unit_id(unit), price) for unit, price in prices.items())
         return {unit: price for unit, price in by_id if unit is not None}
 
     def _node_id(self, node: ObjectNode) -> int:
+        """Return the id of a node, which is added if it is new."""
         number = self._latest.get(node)
         if number is None:
             columns = node_columns(node)
@@ -232,6 +233,7 @@ class StoreBuilder:
         return number
 
     def _add_node(self, number: int, node: ObjectNode, columns: NodeColumns) -> None:
+        """Add a node to the rows that are written next."""
         in_kitchen = False
         for key in lookup_keys(node) if self._kitchen else ():
             for entry in self._entries.get(key, ()):
@@ -244,6 +246,7 @@ class StoreBuilder:
         self._insert("node", number, label, *columns[1:], int(in_kitchen), 0)
 
     def _node(self, number: int) -> ObjectNode:
+        """Return the node with an id."""
         label, *columns = self._database.execute(
             "SELECT name, states, relations, contents FROM node JOIN label ON label.id = label "
             "WHERE node.id = ?",
@@ -252,6 +255,7 @@ class StoreBuilder:
         return node_of(decoded_label(label), *columns)
 
     def _origin(self, file: str, videos: tuple[str, ...]) -> int:
+        """Return the id of a file with its videos, which is added if it is new."""
         number = self._origins.get((file, videos))
         if number is None:
             number = self._origins[file, videos] = len(self._origins)
@@ -292,5 +296,5 @@ class StoreBuilder:
 
 
 def _unit_key(motion: str, inputs: Iterable[int], outputs: Iterable[int]) -> str:
-    """Return the identity of a unit as a text, in which the order of its nodes does not count."""
+    """Return the identity of a unit as text; the order of its nodes does not count."""
     return f"{sorted(inputs)}{sorted(outputs)}{motion}"

@@ -107,9 +107,9 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
 
 @contextlib.contextmanager
 def _written(store: Path) -> Iterator[sqlite3.Connection]:
-    """Yield a new database, to be renamed to the store when all went well and to be removed when not.
+    """Yield a new database; it replaces the store at a normal end, and is removed after an error.
 
-    One file beside the store, which a later import takes over when this process is killed.
+    It is one file beside the store, which a later import takes over when this process is killed.
     """
     store = Path(os.path.realpath(store))  # a link stays one
     partial = store.with_name(f".{store.name}.partial")

@@ -329,6 +329,8 @@ class Store:
             self._origins[number] = str(decoded(file)), tuple(decoded(videos))
 
     def _sources(self, rows: Iterable[tuple[int, int, int, int]]) -> dict[int, tuple[Source, ...]]:
+        """Return the sources of units, by id, from rows of the database."""
+
         def source(_: int, origin: int, line: int, column: int) -> Source:
             file, videos = self._origins[origin]
             return Source(file, int(line), int(column), videos)
@@ -396,7 +398,7 @@ class Store:
     def needs(
         self, units: Sequence[int], containers: ContainerRule, utensils: frozenset[str]
     ) -> list[list[int]]:
-        """Return for each of the units the nodes that it needs under a container rule and its utensils."""
+        """Return for each of the units the nodes that it needs under a container rule with some utensils."""
         self.read_units(units)
         inputs = [self._unit(unit)[1] for unit in units]
         self.read_nodes(set(chain.from_iterable(inputs)))
@@ -433,7 +435,7 @@ class Store:
     @reporting_damage
     @uncollected()
     def part(self, units: Iterable[int], objects: Iterable[int] = ()) -> Network:
-        """Read units with their nodes, and the given further nodes, as a part of the whole network."""
+        """Read units with their nodes, and further nodes, as a part of the whole network."""
         unit_ids = sorted(set(units))
         self.read_units(unit_ids)
         rows = [self._unit(unit) for unit in unit_ids]
@@ -509,5 +511,5 @@ class Store:
 
 
 def _price(from_file: bool) -> str:
-    """Return the SQL expression of a unit's price: stated, or ``from_file`` the listed one before it."""
+    """Return the SQL expression of a unit's price: the stated one; ``from_file``, the listed one first."""
     return "coalesce(listed, stated)" if from_file else "stated"

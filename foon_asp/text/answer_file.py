@@ -102,7 +102,7 @@ def _document(text: str) -> Json | None:
 
 
 def _with_tree(document: Json) -> Json:
-    """Return the answer with the tree: the document itself, or the answer in that of another question."""
+    """Return the answer that has the tree: the document itself, or the answer inside it."""
     inner_answer = document.get("answer")
     answer, kind = inner_answer if isinstance(inner_answer, dict) else document, ""
     for name in (document.get("schema"), answer.get("schema")):
@@ -120,6 +120,7 @@ def _executions(value: Json) -> Iterator[tuple[FunctionalUnit, Source]]:
 
 
 def _unit(value: Json) -> tuple[FunctionalUnit, Source]:
+    """Return a unit and its source from an answer in JSON."""
     inputs, outputs = (tuple(map(read_node_json, value[key])) for key in ("inputs", "outputs"))
     source = value["source"][0]
     if not isinstance(value["motion"], str) or not isinstance(source, dict):

@@ -20,7 +20,7 @@ from foon_asp.text.writer import write_line
 
 
 class Lost(NamedTuple):
-    """The number of losses of one kind, and the place of the first."""
+    """The losses of one kind: their number, and the place of the first one."""
 
     occurrences: int
     first: Source
@@ -60,7 +60,7 @@ class Converter:
         return self._reading.left_out
 
     def learn(self, text: str) -> None:
-        """Record the ids of a text that will be converted, so that others keep clear of them."""
+        """Record the ids of a text that will be converted, so that new ids differ from them."""
         if self.target is Dialect.IDS:
             for line in format_of(text).lines(text):
                 self._numbering.learn(line)
@@ -101,6 +101,7 @@ class Converter:
         return with_own_mark(converted)
 
     def _objects(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
+        """Convert a list of objects."""
         blocks = [with_container(*entry) for entry in format_.objects(text, file, self._reading)]
         if format_.has_comments:
             lost.comments(text, ())

@@ -228,7 +228,7 @@ def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[
 
 
 def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrices | None:
-    """Return the prices of a file and those that networks state of their units; the file takes precedence.
+    """Return the prices of units, from a file and as stated in networks; the file takes precedence.
 
     Raises :class:`InputError` for copies of a unit that disagree, where the file has no price for it.
     """

@@ -50,7 +50,7 @@ class Format(Protocol):
     machine_written: bool = False
 
     def recognises(self, text: str, file: str) -> bool:
-        """Whether a text is in this format; of a long one, its beginning is enough."""
+        """Whether a text is in this format; the beginning of a long text is enough."""
 
     def dialect(self, text: str) -> Dialect:
         """Return the dialect of a text, even if parts of it cannot be understood."""

@@ -88,6 +88,7 @@ def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, li
 
 
 def _blocks(unit: dict[str, object], key: str, source: Source, remarks: list[str]) -> tuple[ObjectBlock, ...]:
+    """Return the object blocks of one side of a unit."""
     objects = unit[key]
     if not isinstance(objects, list):
         raise ValueError(f'found no list as "{key}", expected a list of objects')
@@ -106,6 +107,7 @@ def _names(state: StateLine, container: str) -> bool:
 
 
 def _motion(value: object, remarks: list[str]) -> MotionLine:
+    """Return the motion line of a unit, with the fields that its JSON has."""
     if not isinstance(value, dict):
         value = {"motion_label": value}
     check_keys(value, _MOTION_KEYS)

@@ -26,7 +26,7 @@ _NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
 
 
 class JsonWriter:
-    """A writer of one of the forms, which reads each part back to find changed meanings and losses."""
+    """A writer of one of the JSON forms, which reads each part back to find changed meanings and losses."""
 
     holds_prices = holds_amounts = True
     holds_no_inputs = False
@@ -84,6 +84,7 @@ def _listed(text: str) -> ObjectBlock:
 
 
 def _unit(node: str, motion: str) -> ListedUnit:
+    """Return a unit of one node and one motion, read back from JSON."""
     text = f'[{{"input_nodes":[{node}],"motion_node":{motion},"output_nodes":[{node}]}}]'
     reading = Reading()
     units = list(read_json_units(text, "", reading))
@@ -92,7 +93,7 @@ def _unit(node: str, motion: str) -> ListedUnit:
 
 
 def _raise_first_error(reading: Reading) -> None:
-    """Raise :class:`CannotHoldError` for an error; warnings were made before, or count as losses."""
+    """Raise :class:`CannotHoldError` for the first error among diagnostics; warnings are ignored."""
     for diagnostic in reading.diagnostics:
         if diagnostic.severity is Severity.ERROR:
             raise CannotHoldError(diagnostic.message)
@@ -208,6 +209,7 @@ def _number(digits: str) -> object:
 
 
 def _text(value: object) -> str:
+    """Return plain values as a JSON text of published layout."""
     if isinstance(value, JsonNumber):
         return value.text
     if isinstance(value, dict):

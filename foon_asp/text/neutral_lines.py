@@ -39,7 +39,7 @@ class NeutralLines(FoonJson):
     suffix = NEUTRAL_SUFFIXES[0]
 
     def recognises(self, text: str, file: str) -> bool:
-        """Whether the file is named as neutral ones are, or its first line is one of their units."""
+        """Whether a file has the suffix of neutral files, or its first line is a neutral unit."""
         if file.endswith(NEUTRAL_SUFFIXES):
             return True
         start = len(text[:1_000]) - len(text[:1_000].lstrip("\ufeff \t\r\n"))
@@ -57,7 +57,7 @@ class NeutralLines(FoonJson):
         return Dialect.NEUTRAL
 
     def lists_objects(self, text: str) -> bool:
-        """Return false."""
+        """Return false: neutral files have units only."""
         return False
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
@@ -103,7 +103,7 @@ class NeutralLines(FoonJson):
 
 
 def _priced(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator[ReadUnit]:
-    """Yield units, and record their prices; of copies, the cheapest counts."""
+    """Yield units, and record their prices; the lowest price of all copies counts."""
     exact = cache(read_price)
     for unit, price in units:
         if price:

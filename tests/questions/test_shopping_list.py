@@ -164,7 +164,7 @@ def test_lists_by_tree_against_brute_force(rule: ContainerRule, seeds: range) ->
         most = rng.choice((1, 3, 40))
         found = shopping_list(problem, objectives, prices=named, lists=most)
         left = good_lists(problem, sold, lambda _: True)
-        expected: list[frozenset[int]] = []
+        expected: list[tuple[Fraction | int, int]] = []
         while left and len(expected) < most:
             costs = {}
             for items in left:
