@@ -239,6 +239,7 @@ class Branching:
             self._total, self.incumbent = total, frozenset(actions)
 
     def _try_guesses(self, shares: Any, node: _Node) -> None:
+        """Make derivations that the heuristic proposes the incumbent, where they are better."""
         self.effort -= 2 * len(self._actions)
         solution = dict(zip(self._actions, shares.tolist(), strict=True))
         for derivation in self._guess(solution, {self._actions[a] for a in node.forbidden}):
@@ -299,6 +300,7 @@ class Branching:
         return proof, (barred - node.above_cutoff) | overloaded
 
     def _packing(self, node: _Node) -> tuple[Packing, set[int]]:
+        """Return the cost partition of a node, and the forbidden actions that its proof relies on."""
         weights: list[tuple[Cut, tuple[Fraction]]] = []
         self._length_budget -= _PACKING_LENGTH
         for row, weight in self._carrying(node):

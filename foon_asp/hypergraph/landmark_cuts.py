@@ -15,10 +15,11 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 
 
 class WeightedCut(NamedTuple):
-    """A cut with its landmark ``members``, its action of least reduced cost, and that cost as its weight.
+    """A cut with its landmark ``members``, its weight, and the cheapest landmark action.
 
-    ``own`` are its objects without those of the cut ``after`` it, whose landmark actions all need one of its
-    objects.
+    ``weight`` is the reduced cost of the ``cheapest`` action. Cuts form chains: each landmark action of the
+    cut ``after`` this one needs an object of that cut, so that cut's objects belong to this cut as well;
+    ``own`` are the other objects.
     """
 
     own: frozenset[int]
@@ -53,10 +54,11 @@ class Cuts(NamedTuple):
 
 
 class _Level:
-    """Objects that every derivation makes, and the goal zone of the cuts of the last of them.
+    """Objects that every derivation makes, and the goal zone around the last of them.
 
-    ``edge`` are actions that achieve an object of the zone, need none of its objects and have a reduced cost
-    above 0. ``cut`` is the latest cut of this zone, or else the cut that follows the whole level.
+    The goal zone is the set of objects from which its cuts are made. ``edge`` are actions that achieve an
+    object of the zone, need none of its objects and have a reduced cost above 0. ``cut`` is the latest cut
+    of this zone, or else the cut that follows the whole level.
     """
 
     def __init__(self, objects: Sequence[int], after: WeightedCut | None) -> None:
@@ -72,9 +74,9 @@ class _Level:
 
 
 class _Target:
-    """A target with a stack of levels, each of objects made before the level below.
+    """A target with a stack of levels; the objects of each level are made before those of the level below.
 
-    ``behind`` are the objects of the zones of all levels but the topmost.
+    ``outer_zones`` are the objects in the zones of all levels except the topmost.
     """
 
     def __init__(self, target: int) -> None:

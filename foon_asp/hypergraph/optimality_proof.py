@@ -54,7 +54,7 @@ class Hopeless(NamedTuple):
 
 
 class Broken(NamedTuple):
-    """A rule that every derivation with the used actions breaks, under the branches taken."""
+    """The end of a branch: every derivation with the used actions breaks a rule."""
 
     rule: int
 
@@ -68,7 +68,10 @@ class Branch(NamedTuple):
 
 
 class CostFixing(NamedTuple):
-    """Reduced-cost fixing: ``actions`` are above the cutoff by ``packing``; ``others`` does without them."""
+    """Reduced-cost fixing.
+
+    ``packing`` shows ``actions`` above the cutoff, and ``others`` is the proof without them.
+    """
 
     actions: tuple[int, ...]
     packing: Packing
@@ -103,13 +106,13 @@ class Rules(Protocol):
     """Rules on derivations that neither targets nor limits express."""
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        """Return by rule the actions in no derivation with the actions used and none of ``without``."""
+        """Return by rule the actions excluded by the used actions, where ``without`` are excluded."""
 
     def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
         """Return actions of a derivation that together break a rule; empty where it keeps to all rules."""
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
-        """Return a limit not returned before that a derivation exceeds; ``None`` if it keeps to all."""
+        """Return a limit that a derivation exceeds, each once; ``None`` where there is no other."""
 
 
 class CheaperError(Exception):

@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 class Execution(NamedTuple):
     """The ports of an action: one execution of a functional unit.
 
-    ``step`` is the number of the step, ``unit`` the id of the functional unit. Object nodes have their names
-    in PDDL, such as ``o46-ice-cubed-in-drinking-glass``: those that have to be there (``needs``), those that
-    are there afterwards (``makes``), and the roles of :class:`RobotStep`. ``rate`` and ``duration``, in
-    seconds, are ``None`` where they are not known.
+    ``step`` is the number of the step, ``unit`` the id of the functional unit, ``motion`` its motion. Object
+    nodes have their names in PDDL, such as ``o46-ice-cubed-in-drinking-glass``: those that have to be there
+    (``needs``), those that are there afterwards (``makes``), and by role what the motion is done to
+    (``acted_on``) and with (``tools``), and what inputs and outputs are in, on or at (``origins``,
+    ``destinations``). ``rate`` and ``duration``, in seconds, are ``None`` where they are not known.
 
     Example:
         >>> foon_asp.Execution(1, 26, "twist", ("o43-ice",), ("o46-ice",)).motion
@@ -92,6 +93,7 @@ def _text(file: Path) -> str:
 
 
 def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsAvailable) -> "Behaviour":
+    """Return the behaviour of an XML element, with its children."""
     from py_trees import behaviours, composites, decorators  # noqa: PLC0415
 
     name = element.get("name", element.get("ID", element.tag))
@@ -120,6 +122,7 @@ def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsA
 
 
 def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
+    """Return a behaviour without children: ``ask`` returns success, failure, or ``None`` while it runs."""
     from py_trees.behaviour import Behaviour  # noqa: PLC0415
     from py_trees.common import Status  # noqa: PLC0415
 
@@ -132,6 +135,7 @@ def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
 
 
 def _execution(element: ElementTree.Element) -> Execution:
+    """Return the execution in the ports of an action."""
     ports = element.attrib
     needs, makes, acted_on, tools, origins, destinations = (
         _names(element, port) for port in ("needs", "makes", "acted_on", "tools", "from", "to")

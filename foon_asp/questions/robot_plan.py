@@ -78,7 +78,7 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
 
 
 def _clips(problem: Problem, plan: Collection[int]) -> Iterator[ListedClips]:
-    """Return the clips in the files of a plan that are still there."""
+    """Return the annotated clips from the files of a plan that still exist."""
     places = (source for unit in plan for source in problem.network.sources[unit])
     files = dict.fromkeys(Path(source.file) for source in places)
     return listed_clips((file for file in files if file.is_file()), caller().lenient)

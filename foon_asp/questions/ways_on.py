@@ -46,6 +46,11 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
         units: The units that some irredundant tree from the state has, once what lacks is there; those that
             can run now come first, and of these those of the best tree.
         answer: The best tree from the state, once what lacks is there; null without one.
+
+    Example:
+        >>> ways = foon_asp.ways_on(foon_asp.load().problem("ice"), ["ice; crushed; in [drinking glass]"])
+        >>> ways.reached, ways.units
+        (True, ())
     """
 
     ROWS = "units"
@@ -56,7 +61,7 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
 
     @property
     def ending(self) -> Ending:
-        """As the best tree was found; ``NEGATIVE`` if something lacks."""
+        """The ending of the best tree; ``NEGATIVE`` if something lacks."""
         if self.lacks:
             return Ending.NEGATIVE
         return Ending.NEGATIVE if self.answer is None else self.answer.ending
@@ -101,6 +106,7 @@ def ways_on(
     Parameters:
         problem: The problem: the data, and the goals. Its kitchen is not used.
         state: What is there: a file, as of a kitchen, or object nodes.
+        objectives: What the best tree is best by, the most important first.
 
     Returns:
         The ``units`` that lead to the goals, each with the inputs that it lacks; what the state ``lacks``,
