@@ -250,3 +250,14 @@ def test_retries_are_refused_where_they_mean_nothing(cli: Cli) -> None:
     assert (ran.code, "retries of one goal" in ran.err) == (2, True)
     with pytest.raises(UserError, match="retries"):
         foon_asp.solve(foon_asp.load().problem("ice"), retries=-1)
+
+
+def test_a_limit_leaves_the_tree_without_a_policy(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    def endless(*_: object) -> None:
+        while True:
+            pass
+
+    monkeypatch.setattr("foon_asp.questions.retry_policy.best_policy", endless)
+    ran = cli("solve", "--goal", "ice", "--retries", "1", "--time-limit", "1")
+    assert (ran.code, "optimal by units" in ran.out) == (3, True)
+    assert "no policy for retries: stopped at the time limit" in ran.out
