@@ -111,7 +111,7 @@ class _World:
 
     def is_necessary(self, unit: int, state: State, units: Iterable[int]) -> bool:
         """Return whether the other units cannot make the goals from a state."""
-        return not self.reaches(state, (each for each in units if each != unit))
+        return not self.reaches(state, (other for other in units if other != unit))
 
 
 def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:

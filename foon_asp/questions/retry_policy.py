@@ -33,9 +33,9 @@ def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unp
     for limit in ("time_limit", "memory_limit"):  # hold for the whole question
         options.pop(limit, None)  # type: ignore[misc]
     with asked_by(caller()._replace(deadline=settings.begun)):
-        found = alternatives(problem, Objective.SUCCESS, best=_MAX_TREES, **options)
+        others = alternatives(problem, Objective.SUCCESS, best=_MAX_TREES, **options)
     trees = [answer.ids]
-    for tree in found.trees:
+    for tree in others.trees:
         units = problem.network.units_of_numbers(tree.ids)
         if len(trees) < _MAX_TREES and set(units) not in map(set, trees):
             trees.append(units)
