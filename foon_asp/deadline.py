@@ -254,7 +254,7 @@ class Deadline:
                 self._within.interrupt()
 
     def enough(self) -> None:
-        """Stop the question because its answer is proved; a deadline that this is within continues."""
+        """Stop the question because its answer is proved; an outer deadline (``within``) continues."""
         self._stopped_by = self._stopped_by or _PROVED
 
     def out_of_memory(self) -> None:
@@ -308,9 +308,9 @@ class Deadline:
 
 @contextlib.contextmanager
 def none_lost() -> Iterator[None]:
-    """Repeat interrupts that Python loses in a ``with`` block of the main thread.
+    """Resend interrupts that Python loses in a ``with`` block of the main thread.
 
-    An exception in a destructor is not raised but reported, so an interrupt in one is sent again.
+    Python only reports an exception in a destructor, so an interrupt in a destructor is sent again.
     """
     previous_hook = sys.unraisablehook
     main = threading.main_thread().ident or 0
@@ -424,7 +424,7 @@ class Watch:
                 raise KeyboardInterrupt
 
     def _end(self) -> None:
-        """Stop the watch, and wait until it is not sending an interrupt."""
+        """Stop the watch; return once it can send no more interrupt."""
         self._finished = True
         self._wake.put(None)
         while self._thread in _targets:  # an interrupt is being sent

@@ -43,6 +43,7 @@ def encodable(text: str, encoding: str = "utf-8") -> str:
 
 
 def _has(encoding: str, letter: str) -> bool:
+    """Return whether an encoding has a letter."""
     try:
         letter.encode(encoding)
     except UnicodeEncodeError:
@@ -59,6 +60,7 @@ def _without_command(match: re.Match[str]) -> str:
 
 
 def _code(letter: str) -> str:
+    r"""Return the escape of a letter, ``\\uXXXX``."""
     number = ord(letter)
     if number > 0xFFFF:  # two halves, as in JSON
         number -= 0x10000

@@ -37,13 +37,37 @@ let node value = match list value with
 type data = { foon : C.foon; count_of_nodes : int; coins : Z.t; network_rates : Q.t list; sources : Json.t list }
 
 let read_data value goals implied =
-  let nodes, motions, inputs, outputs = match list (get "network" value) with
-    | [Number level; nodes; motions; inputs; outputs] when Z.equal level Z.(~$3) ->
-      (list nodes, list motions, list inputs, list outputs)
-    | _ -> unknown "a network below level 3" in
+  let nodes, motions, inputs, outputs, below = match list (get "network" value) with
+    | _ :: nodes :: motions :: inputs :: outputs :: below -> (list nodes, list motions, list inputs, list outputs, below)
+    | _ -> refuse "expected a network" in
   let side l = List.map id (list l) in
-  let unit motion (ins, outs) = { C.motion = named motion; inputs = side ins; outputs = side outs } in
-  let units = List.map2 unit motions (List.combine inputs outputs) in
+  let detail number (ins, outs) = { C.its_number = Z.of_int number; ins = side ins; outs = side outs } in
+  let sides = List.combine inputs outputs in
+  (* below level 3, each unit and node stands for some of another network *)
+  let detailed, merged, details = match below with
+    | [] -> (nodes, List.mapi (fun i _ -> i + 1) nodes, List.mapi (fun i s -> [detail (i + 1) s]) sides)
+    | [whole; stands_for] ->
+      let detailed, ins, outs = match list whole with
+        | [Number three; nodes; _; ins; outs] when Z.equal three Z.(~$3) -> (list nodes, list ins, list outs)
+        | _ -> refuse "expected a network of level 3" in
+      let places = Hashtbl.create 1000 in
+      List.iteri (fun i n -> Hashtbl.replace places (canonical n) (i + 1)) nodes;
+      let lowest = match get "network" value with List (Number n :: _) -> Z.equal n Z.one | _ -> false in
+      let merge n = match list n with
+        | [label; states; relations; _] ->
+          let kept = if lowest then [label; List []; List []; List []] else [label; states; relations; List []] in
+          (match Hashtbl.find_opt places (canonical (List kept)) with
+           | Some place -> place
+           | None -> refuse "a node has become none")
+        | _ -> refuse "expected an object node" in
+      let all = Array.of_list (List.combine ins outs) in
+      let of_unit n = let i = Z.to_int (number n) in
+        if i < 0 || i >= Array.length all then refuse "expected the id of a unit" else detail (i + 1) all.(i) in
+      (detailed, List.map merge detailed, List.map (fun l -> List.map of_unit (list l)) (list stands_for))
+    | _ -> refuse "expected a network" in
+  let unit (motion, (ins, outs)) details =
+    { C.motion = named motion; inputs = side ins; outputs = side outs; details } in
+  let units = List.map2 unit (List.combine motions sides) details in
   let rates = match get "rates" value with
     | Null -> []
     | known -> List.map (fun r -> let m, q = pair r in (named m, fraction q)) (list known) in
@@ -58,7 +82,8 @@ let read_data value goals implied =
   let coins = Z.mul (Z.of_int 100) (lcm_of (List.map snd (by_motion @ by_unit))) in
   let in_coins = List.map (fun (k, q) -> (k, whole (Q.mul q (Q.of_bigint coins)))) in
   let foon = {
-    C.nodes = map_of (numbered 1 (List.map node nodes)); units = map_of (numbered 1 units);
+    C.nodes = map_of (numbered 1 (List.map node nodes)); detailed_nodes = map_of (numbered 1 (List.map node detailed));
+    merged = map_of (numbered 1 (List.map Z.of_int merged)); units = map_of (numbered 1 units);
     kitchen = C.of_list (side (get "kitchen" value)); wanted = goals; implied;
     utensils = C.of_list (List.map named (list (get "utensils" value)));
     rates = map_of (List.map (fun (m, q) -> (m, (q.Q.num, q.Q.den))) possible);
@@ -67,6 +92,10 @@ let read_data value goals implied =
   let network_rates = List.filter_map (fun m -> List.assoc_opt (name m) rates) used in
   let sources = match get "sources" value with Null -> [] | l -> list l in
   { foon; count_of_nodes = List.length nodes; coins; network_rates; sources }
+
+(* The checker knows rates above 0: a motion without one has no success. *)
+let never_zero data =
+  if List.exists (fun q -> Q.sign q = 0) data.network_rates then unknown "a motion that never succeeds"
 
 (* --- rules *)
 
@@ -80,7 +109,8 @@ let read_rules data values =
   let asking r = incr nodes; (Z.of_int !nodes, r) in
   let plain r = (Z.zero, r) in
   let read number value =
-    let str key = named (get key value) and num key = natural (get key value) in
+    let str key = named (get key value) in
+    let num key = let n = Json.number (get key value) in if Z.sign n < 0 then unknown "limits below 0" else n in
     let strs key = List.map named (list (get key value)) in
     let limit r = [(Z.of_int (-number - 1), r)] in
     let by_names least = match !sources with
@@ -92,7 +122,7 @@ let read_rules data values =
     | "forbid_motion" -> [plain (C.Forbid_motion (str "forbidden_motion"))]
     | "forbid_object" -> [plain (C.Forbid_object (str "forbidden_object"))]
     | "forbid_ingredient" -> [plain (C.Forbid_ingredient (strs "allergen"))]
-    | "least_rate" -> [plain (C.Least_rate (num "least_rate"))]
+    | "least_rate" -> never_zero data; [plain (C.Least_rate (num "least_rate"))]
     | "only_sources" -> by_names Z.one
     | "at_least_videos" -> by_names (num "least_videos")
     | "motion_only_with" -> [plain (C.Motion_only_with (str "tied_motion", str "tied_utensil"))]
@@ -143,9 +173,10 @@ let objective data word =
   | "inputs+ingredients" -> (C.Inputs_and_ingredients, Z.one)
   | "kitchen" -> (C.Kitchen, Z.one)
   | "price" -> (C.Price, data.coins)
+  | "dissimilarity" -> (C.Dissimilarity, Z.one)
   | "attempts" -> let n = fractions () in (C.Attempts n, n)
   | "success" ->
-    if List.exists (fun q -> Q.sign q = 0) data.network_rates then unknown "a motion that never succeeds";
+    never_zero data;
     (C.Success, Z.one)
   | _ -> refuse "an objective is unknown"
 
@@ -293,6 +324,7 @@ let check data certificate =
    | _ -> refuse "expected the format 'foon-asp certificate'");
   if not (Z.equal (number (get "version" certificate)) (Z.of_int 5)) then refuse "expected version 5 of the format";
   exactly keys certificate;
+  if List.mem_assoc "stand-ins" (pairs data) then unknown "stand-ins";
   check_digests data certificate;
   if not (ascending (List.map text (list (get "not_covered" certificate)))) then refuse "expected names in order";
   if pairs (get "measures" certificate) <> [] then unknown "measures of your own";
@@ -370,7 +402,7 @@ let () =
     with
     | Refused message -> ("refused: " ^ message, 1)
     | Unknown message -> ("not checked: the proved checker does not know " ^ message, 3)
-    | Invalid_argument _ -> ("refused: lists that should be equally long are not", 1)
-    | Stack_overflow -> ("not checked: branches nested too deeply", 3) in
+    | Invalid_argument _ | Failure _ -> ("refused: its lists or numbers do not belong together", 1)
+    | Stack_overflow | Z.Overflow | Out_of_memory -> ("not checked: it is too large for the proved checker", 3) in
   print_endline answer;
   exit code

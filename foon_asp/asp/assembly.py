@@ -145,9 +145,9 @@ def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]
 
 
 def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
-    """Return the program of a small question, or to a store, whose rules are all ready-made, without clingo.
+    """Return the program of a question whose rules are all ready-made, without clingo; ``None`` for others.
 
-    ``None`` for other questions.
+    The question has to be small, or to be about a store.
     """
     rules = _ready_made_rules(settings)
     if rules is None or problem.items is not None:
@@ -222,7 +222,10 @@ def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
 
 
 def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
-    """Return predicates read by user rules that lack facts in some questions, with their first argument."""
+    """Return the predicates that user rules read and that lack facts in some questions.
+
+    Each comes with its first argument.
+    """
     predicates: set[tuple[str, str]] = set()
     for encoding in encodings:
         if not _is_ours(encoding) and not _OF_SOME_QUESTIONS.isdisjoint(encoding.used):
@@ -266,10 +269,10 @@ def reach_of_rules(settings: Settings) -> ReachOfRules:
 
 
 def hold_for_parts(settings: Settings) -> bool:
-    """Whether every part of a tree that keeps to the added rules keeps to them, too.
+    """Whether the added rules are antimonotone, so that they hold for every subtree as well.
 
-    Also within a part of the network, and where more object nodes are available than the kitchen of the rules
-    has. Raises as :func:`assemble` does.
+    This has to be so within a part of the network as well, and where more object nodes are available than
+    the kitchen of the rules has. Raises as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False
@@ -280,13 +283,19 @@ def hold_for_parts(settings: Settings) -> bool:
 
 
 def leave_unsettled(settings: Settings) -> bool:
-    """Whether added rules do more than remove and require units; raises as :func:`assemble` does."""
+    """Whether added rules do more than remove and require units, so that clingo has to enforce them.
+
+    Raises as :func:`assemble` does.
+    """
     rules = _ready_made_rules(settings) or _understood(settings)
     return rules is not None and bool(rules.unsettled)
 
 
 def varying_available(settings: Settings) -> "Rules | None":
-    """Return the added rules for questions where more is available; raises as :func:`assemble` does."""
+    """Return the added rules for questions in which more object nodes are available.
+
+    Raises as :func:`assemble` does.
+    """
     rules = _understood(settings)
     return None if rules is None else rules.varying({("available", 1)})
 
@@ -294,8 +303,7 @@ def varying_available(settings: Settings) -> "Rules | None":
 def need_whole_network(problem: Problem, settings: Settings) -> bool:
     """Whether added rules may be about units beyond those that the goals can need.
 
-    Of a store, the part that the goals can need is enough where every rule is local and none requires units
-    that no goal needs.
+    A part of a store is enough where every rule is local and none requires units that no goal needs.
     """
     if not settings.constraints and settings.replaced is None:
         return False
@@ -335,7 +343,7 @@ def _is_own(constraint: Constraint) -> bool:
 
 
 def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the options of clingo: the user's, and the default ones of other names."""
+    """Return the options of clingo: the user's, and each default whose name the user did not set."""
     names = [option.partition("=")[0] for option in options]
     for option, name in zip(options, names, strict=True):
         if not (name.startswith("--") and len(name) > 2) and not name.startswith("-t"):

@@ -41,7 +41,7 @@ def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
 def require_local(settings: Settings) -> None:
     """Require that constraints are local, since every unit is in the network twice.
 
-    Raises :class:`UserError` with the place of a rule that is not.
+    Raises :class:`UserError` with the place of a rule that is not local.
     """
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
     from foon_asp.rules.rules import Rules  # noqa: PLC0415

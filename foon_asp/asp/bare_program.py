@@ -59,6 +59,7 @@ def bare_program(
         penalty = write_least_penalty(len(levels(tuple(objectives))) + 1)
     program = assemble(settings, lambda _: None, used_up=problem.items is not None)
     if problem.items is not None:
+        _require_no_amounts(problem)
         if soft:
             raise UserError("soft constraints are not built for items that are used up")
         executions = most_executions(problem, objectives, settings)
@@ -107,7 +108,14 @@ def bare_plans(
     return _written(program, facts + write_objectives(objectives)), caps
 
 
+def _require_no_amounts(problem: Problem) -> None:
+    """Raise :class:`UserError` where amounts are counted: in the encodings each execution has one copy."""
+    if problem.counts_amounts:
+        raise UserError("amounts are not built for bare clingo, whose encodings have one copy of each output")
+
+
 def _written(program: Program, facts: str) -> BareProgram:
+    """Return a program for bare clingo with these facts and the program's rules as text."""
     files = tuple(file for file in program.files if isinstance(file, Path))
     rules = (
         stated_rules

@@ -57,6 +57,7 @@ class Breaking:
         return tuple(rule for rule in self._rules if ways.get(rule.number))
 
     def _tree(self, problem: Problem, tree: Collection[int]) -> Run:
+        """Run clingo on a tree, with constraints that count the rules that it breaks."""
         used = set(tree)
         units = sorted(used if self.local else used.union(reach(problem).units))
         by = levels((Objective.UNITS,))
@@ -65,6 +66,7 @@ class Breaking:
         return prepared.run(write_tree(numbers) + write_least_penalty(1), predicates=[("_broken", 2)])
 
     def _plan(self, problem: Problem, plan: Collection[int]) -> Run:
+        """Run clingo on a plan, with constraints that count the rules that it breaks."""
         counts, program = Counter(plan), self._program
         text = write_facts(problem, sorted(counts), Scales(problem, counts), program.looked_at)
         text += write_times({problem.network.unit_number(unit): (n, n) for unit, n in counts.items()})

@@ -100,7 +100,7 @@ def _statements(rules: Loaded) -> list[AST]:
 
 @contextmanager
 def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
-    """Translate errors in a text with the rules into places in the files."""
+    """Return a context in which errors in the rewritten text are reported at their places in the files."""
     try:
         yield
     except InputError as error:
@@ -118,7 +118,7 @@ def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
 
 
 def _look_over(rules: Loaded, deadline: Deadline) -> None:
-    """Raise the errors of a constraint while places are known, before it is rewritten as text."""
+    """Raise the errors of a constraint while their places are known: later it is only rewritten text."""
     read_encoding(rules)
     try:  # without facts, for unsafe variables alone
         ground((rules,), "", (), deadline, endless=True).close()

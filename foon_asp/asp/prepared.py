@@ -62,7 +62,7 @@ class Prepared:
 
     @cached_property
     def holds(self) -> Postconditions:
-        """The checks of the answers."""
+        """The postcondition checks for answers to this question."""
         return Postconditions(self.kept or self.problem, self.levels, self.settings, self.program.own)
 
     @cached_property
@@ -96,7 +96,7 @@ class Prepared:
             return facts + writing.write_required([map(number, sorted(remaining & units)) for units in sets])
 
     def keeps(self, units: Collection[int]) -> bool | None:
-        """Whether a tree keeps to all user rules, which are local.
+        """Whether a tree keeps to all user rules; all of them are local.
 
         ``None`` where a limit came first. Raises :class:`UserError` for a fault in a rule.
         """

@@ -84,6 +84,7 @@ class Ranked:
             yield self._next_in_order(waiting)
 
     def _tree(self, numbers: frozenset[int]) -> _Tree:
+        """Return a tree from the public numbers of its units, with exact and rounded costs."""
         network = self.problem.network
         units = [network.unit_of_number(number) for number in sorted(numbers)]
         ids = [unit for unit in units if unit is not None]

@@ -27,7 +27,7 @@ class Reporter:
         """Receive clingo's statistics of one search, where its option ``--stats`` asks for them.
 
         Parameters:
-            text: A line for each of them; one that says so where clingo was not asked anything.
+            text: A line for each statistic; a single line where clingo did not run.
         """
 
     def tree(self, costs: Costs) -> None:

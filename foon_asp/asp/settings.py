@@ -33,12 +33,12 @@ class Relaxed(NamedTuple):
 class Bounded(NamedTuple):
     """Upper bounds on the costs of a tree, as built-in encodings.
 
-    ``files`` are encodings of ``encodings/questions`` and ``rules`` the facts that they read. The bounds are
-    antimonotone: every subtree of a tree that meets them does, too, so that units that the goals do not need
-    cannot matter. ``below`` are sets of costs, in each of which a tree has to be below one: those of
-    objectives with fractions, written once their scale is known. Where items are used up there are no rules
-    and files, and each set has one cost; ``incomparable`` has executions by unit of known plans,
-    none of which a plan may contain.
+    ``files`` are encodings of ``encodings/questions`` and ``rules`` the facts that they read. The bounds
+    are antimonotone: every subtree of a tree that meets them does, too, so that units that the goals do not
+    need cannot matter. ``below`` are sets of costs by objectives with fractions; a tree has to be below one
+    cost of each set. They are written once their scale is known. Where items are used up there are no rules
+    and files, and each set has one cost; ``incomparable`` are the executions by unit of known plans, none
+    of which a plan may contain.
     """
 
     rules: str = ""

@@ -96,7 +96,7 @@ class _IncumbentListener(Listener):
         self.reporter.bound(self.levels[0], costs.first(bound))
 
     def ended(self, run: "Run") -> None:
-        """Report the statistics of a run of clingo."""
+        """Receive the statistics of a finished run of clingo, and report them."""
         if run.statistics:
             self.clingo_ran = True
             self.reporter.statistics(run.statistics)
@@ -280,9 +280,10 @@ class _Solver:
     def _with_open_preconditions(self, subproblem: Subproblem, tree: Units) -> "Run | None":
         """Search the relaxation in which units outside ``explored`` have open preconditions.
 
-        Every tree that keeps to the rules has a part that is feasible there. So an infeasible relaxation
-        proves that there is no tree, and a best tree without open preconditions is optimal. Every tree has a
-        unit of each landmark, too. ``None`` where the relaxation decides nothing within ``_MAX_ROUNDS``.
+        Every tree that keeps to the rules has a part that is feasible in the relaxation. So an infeasible
+        relaxation proves that there is no tree, and a best tree without open preconditions is optimal.
+        Every tree has a unit of each landmark, too. ``None`` where the relaxation decides nothing within
+        ``_MAX_ROUNDS``.
         """
         from foon_asp.encoding.facts import write_known, write_objectives, write_required  # noqa: PLC0415
 
@@ -694,9 +695,9 @@ class _Solver:
 
 
 def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
-    """Return the cuts of the best bound, those found before any reduced-cost fixing, and those in between.
+    """Return the cuts of the best bound: those found before reduced-cost fixing, and those between fixings.
 
-    Excluded actions may cross many of the former; among the latter all units count.
+    Excluded actions may cross many of the former; the latter count all units.
     """
     if reduced is None:
         return []

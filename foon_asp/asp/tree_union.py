@@ -22,11 +22,11 @@ _JUST_ABOVE = Fraction(1, 10**30)  # a cost that is this much above a limit is a
 
 
 class TreeUnion(NamedTuple):
-    """The units of some and of every tree.
+    """The units of some tree and of every tree.
 
-    ``some`` are units that some tree has, ``every`` those that every tree has, by id. ``undecided`` are units
-    of which it is not known, because a limit came first: whether some tree has one that is not in ``some``,
-    and whether every tree has one that is in ``some``.
+    ``some`` are units that some tree has, ``every`` those that every tree has, by id. A limit may leave
+    units ``undecided``: units outside ``some`` that a tree may have, and units in ``some`` that every tree
+    may have.
     """
 
     best: Outcome
@@ -72,7 +72,7 @@ class _Union:
         self._best = best
         self._some, self._every = set(best.units), set(best.units)
         self._number = prepared.problem.network.unit_number
-        self._settled = "" if not worse else "_without_spare.\n"
+        self._settled = "" if not worse else "_without_spare(1).\n"
         self._avoided = 0
 
     def run(self) -> TreeUnion:
@@ -94,7 +94,7 @@ class _Union:
         return TreeUnion(self._best, some, every, frozenset(undecided))
 
     def _candidates(self) -> tuple[int, ...]:
-        """Return the units that a tree up to the limit can have, with more of them where rules are added."""
+        """Return the units that a tree up to the limit can have; with added rules a superset."""
         prepared, deadline = self._prepared, self._prepared.deadline
         if not prepared.program.own or prepared.unsettled or not prepared.settings.reductions:
             return prepared.units
@@ -121,7 +121,7 @@ class _Union:
         return tuple(sorted({*kept, *self._some}))
 
     def _limit(self) -> Fraction:
-        """Return a value of the first objective that is worse than all that count, by almost nothing."""
+        """Return a value of the first objective just worse than the values of all trees that count."""
         first = self._prepared.levels[0]
         best = Fraction(self._costs.measure(first))
         if multiplies(first):
@@ -129,7 +129,10 @@ class _Union:
         return best * (1 + self._worse) + _JUST_ABOVE
 
     def _next(self, question: str) -> bool | None:
-        """Take in another tree that answers a question; ``False`` if none does, ``None`` at a limit."""
+        """Find another tree that changes the result, and add its units.
+
+        Returns ``False`` where there is none, ``None`` at a limit.
+        """
         problem, by = self._prepared.problem, self._prepared.levels
         while True:
             text = write_objectives(by) + question + self._settled
@@ -156,7 +159,7 @@ class _Union:
             return True
 
     def _is_beyond(self, tree: Sequence[int]) -> bool:
-        """Whether all trees that are left cost more than those that count, by the weights of this one."""
+        """Whether all remaining trees cost too much to count, by the weights of this tree."""
         prepared, costs = self._prepared, self._prepared.problem.costs(tree)
         scales = prepared.scales
         for objective in prepared.levels[:1] if self._worse else prepared.levels:
@@ -171,7 +174,7 @@ class _Union:
         return False
 
     def _counts(self, tree: Collection[int]) -> bool:
-        """Whether a tree is one of those in question, by its exact costs."""
+        """Whether a tree is within the cost limit, by its exact costs."""
         by, costs = self._prepared.levels, self._prepared.problem.costs(tree)
         if not self._worse:
             return costs.key(by) == self._costs.key(by)
@@ -179,7 +182,7 @@ class _Union:
         return figure > limit if multiplies(by[0]) else figure < limit
 
     def _without_spare(self, tree: Sequence[int]) -> frozenset[int]:
-        """Return a part of a tree that is a tree, without redundant units."""
+        """Return an irredundant subtree of a tree."""
         problem, kept = self._prepared.problem, set(tree)
         for unit in reversed(tree):
             restriction = Restriction(lambda u, kept=kept, unit=unit: u == unit or u not in kept)  # type: ignore[misc]

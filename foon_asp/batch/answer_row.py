@@ -99,6 +99,7 @@ def _row(question: BatchQuestion, **answer: Any) -> AnswerRow:
 
 
 def _answered(question: BatchQuestion, outcome: Outcome) -> AnswerRow:
+    """Return the row of a question from its outcome."""
     problem, units = outcome.problem, outcome.units
     row = _row(
         question,

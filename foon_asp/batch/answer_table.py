@@ -25,9 +25,9 @@ _ARROW: Final = {
 
 
 def columns(objectives: Iterable[Objective]) -> Iterator[tuple[str, Any]]:
-    """Return the columns by name and type: the fields of a row, and for figures one for each objective.
+    """Return the columns by name and type: the fields of a row, and a column of costs for each objective.
 
-    A figure that need not be a whole number is a decimal, beside a column with the exact number as text.
+    A cost that may be a fraction is a decimal, with another column for the exact number as text.
     """
     objectives = tuple(objectives)
     for field in msgspec.structs.fields(AnswerRow):
@@ -44,7 +44,10 @@ def columns(objectives: Iterable[Objective]) -> Iterator[tuple[str, Any]]:
 
 
 def check_table(file: Path, rows: Path) -> None:
-    """Raise :class:`UserError` where a table cannot be written, or a file would be lost that is not ours."""
+    """Raise :class:`UserError` where a table cannot be written, or would replace another file.
+
+    Another file is one that is no table of answers.
+    """
     if file.suffix == ".parquet":
         try:
             import pyarrow  # noqa: F401, PLC0415 (an extra)
@@ -70,6 +73,7 @@ def write_table(file: Path, rows: Iterable[AnswerRow], objectives: Iterable[Obje
 
 
 def _parquet(rows: list[Json], types: dict[str, Any]) -> bytes:
+    """Return rows as the bytes of a Parquet file."""
     import pyarrow  # noqa: PLC0415 (an extra)
     from pyarrow import parquet  # noqa: PLC0415
 

@@ -45,7 +45,7 @@ class Asker(Protocol):
     """Open data that pose questions as problems, any number of times."""
 
     def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
-        """Return the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
+        """Return the goals for which the word ``@goals`` or ``@makeable`` stands, in one-line notation."""
 
     def problem(self, question: BatchQuestion) -> Problem:
         """Pose a question as a problem; raises :class:`UserError` for an unknown goal or kitchen."""

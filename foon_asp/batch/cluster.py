@@ -27,11 +27,11 @@ def answer_on_cluster(
 ) -> Iterator[AnswerRow]:
     """Answer questions on the workers of a scheduler, under ``settings``; return rows as they come.
 
-    A worker opens the data once, and keeps them until others are asked for. The files have to be there under
-    the same names as here. What a task leaves or dies of is asked in tasks of one question each. A question
-    whose worker dies again and again is asked with nothing else on the cluster, since what was on the same
-    worker may be at fault, and then is a row that says so. Raises :class:`UserError` where there is no
-    scheduler, or Dask is not installed.
+    A worker opens the data once and keeps them until a question about other data comes. The files need the
+    same names on every worker. Questions of a failed task are asked again, each in a task of its own. A
+    question whose worker dies repeatedly is asked while no other question runs on the cluster, since
+    another question on the same worker may be the cause; if its worker dies again, its row says so. Raises
+    :class:`UserError` where there is no scheduler, or Dask is not installed.
     """
     try:
         from distributed import Client, KilledWorker, as_completed  # noqa: PLC0415 (an extra, slow to import)

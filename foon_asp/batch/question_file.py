@@ -77,7 +77,7 @@ def each_question(questions: Iterable[BatchQuestion], asker: Asker) -> Iterator[
 
 
 def _combinations(value: object, time_limit: float | None) -> Iterator[BatchQuestion]:
-    """Return every combination of the values of a line; raises :class:`ValueError` for a wrong one."""
+    """Return every combination of the values of a line; raises :class:`ValueError` for a wrong value."""
     if not isinstance(value, dict) or "goal" not in value:
         raise ValueError('expected an object such as {"goal": "ice", "objective": ["units", "success"]}')
     if unknown := sorted(value.keys() - {*_KEYS}):

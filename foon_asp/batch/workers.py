@@ -23,10 +23,9 @@ def answer_all(
 ) -> Iterator[AnswerRow]:
     """Answer questions in processes, each with its own copy of the data; return rows as they come.
 
-    ``memory_limit`` is in bytes, for each process, ``grace`` in seconds. A process that dies, or does not
-    keep its limit, costs the question that it was at a row that says so, and another process takes its place.
-    Where data cannot be opened, what :class:`UserError` says of it is the row of every question: open them
-    once yourself before.
+    ``memory_limit`` is in bytes for each process, ``grace`` in seconds. A process that dies or exceeds its
+    limit is replaced, and the row of its question says so. Where the data cannot be opened, each row has
+    the message of :class:`UserError`: open the data once before.
     """
 
     def seconds(question: BatchQuestion) -> float | None:

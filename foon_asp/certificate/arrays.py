@@ -71,7 +71,7 @@ class Arrays:
 
     @cached_property
     def multiples(self) -> list[Fraction]:
-        """By coordinate the greatest common divisor of all costs; 0 where it is not used."""
+        """For each coordinate the greatest common divisor of all costs; 0 where it is not used."""
         multiples: list[Fraction] = []
         all_costs = set(self.costs)
         for objective in self.objectives:
@@ -100,7 +100,7 @@ class Arrays:
 
     @property
     def asks(self) -> bool:
-        """Whether limits by user rules are searched for during the proof."""
+        """Whether derivations are checked against limits by user rules during the proof."""
         return self._own is not None
 
     @property
@@ -111,7 +111,7 @@ class Arrays:
         }
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
-        """Return by constraint the units in no tree with the used actions and none of ``without``."""
+        """Return by constraint the units excluded by the used actions, where ``without`` are excluded."""
         return self.ruled.bars(self._units(used), without)
 
     def breaking(self, derivation: frozenset[int]) -> list[int]:
@@ -130,7 +130,7 @@ class Arrays:
         return frozenset(action for action in actions if action < len(self.problem.network))
 
     def parts(self, objective: Objective) -> int:
-        """Return the number of coordinates that an objective has in a cost."""
+        """Return how many coordinates of a cost vector belong to an objective."""
         return len(self.rates) if multiplies(objective) else 1
 
     def actions(self, units: Iterable[int]) -> list[int]:
@@ -142,9 +142,9 @@ class Arrays:
         return [*units, *taking, *map(self._steps.__getitem__, sorted(steps))]
 
     def cases(self, cases: Cases) -> Cases:
-        """Return the branching cases of an answer by the numbers of actions here, ``None`` for unknown ones.
+        """Return the branching cases of an answer, renumbered as actions; ``None`` for unknown cases.
 
-        In answers, the taking of an item is numbered by the object, after all units.
+        In answers, the action that takes an item is numbered by its object, after all units.
         """
         if cases is None:
             return None
@@ -189,6 +189,7 @@ class Arrays:
                 yield self.problem.figure(objective, unit)
 
     def _cost(self, rate: Fraction | None, *counts: int | Fraction) -> Vector:
+        """Return a cost as a vector, from the rate and the other costs of an action."""
         cost: list[Fraction] = []
         remaining = iter(counts)
         for objective in self.objectives:

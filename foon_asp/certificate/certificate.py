@@ -143,6 +143,7 @@ def certify_infeasible(
 
 
 def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
+    """Return a prover over the arrays of a question, which starts with known cuts."""
     rules = arrays if arrays.ruled.barred or arrays.asks else None
     return Prover(
         arrays.graph,
@@ -305,6 +306,7 @@ def subject_of(problem: Problem) -> verify.Subject:
     """Return the data that certificates of a problem over a whole network are about."""
     return verify.Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
+        amounts=problem.amounts,
         stand_ins=problem.stand_ins.table if problem.stand_ins else None,
     )
 

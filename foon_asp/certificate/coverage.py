@@ -40,7 +40,7 @@ class Coverage(NamedTuple):
 
     @property
     def partial(self) -> bool:
-        """Whether trees may have to keep to more constraints than ``rules``."""
+        """Whether some constraints are not covered, so that trees may have to keep to more than ``rules``."""
         return bool(self.not_covered) or any(rule["rule"] == OWN for rule in self.rules)
 
     def ruled(self, problem: Problem) -> Ruled:
@@ -53,7 +53,7 @@ class Coverage(NamedTuple):
         return self.ruled(problem).removed
 
     def beyond(self) -> list[str]:
-        """Return the names of the rules that may do more than remove units."""
+        """Return the names of rules that may do more than remove units."""
         return [rule["rule"] for rule in self.rules if not LIBRARY[rule["rule"]].removes]
 
 
@@ -122,7 +122,7 @@ def _value(written: str, kind: type) -> Any:
 
 
 def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
-    """Return the values that rules list by predicate; empty where they say anything else, unless they may."""
+    """Return the values that rules list as facts, by predicate; empty where the rules are not only facts."""
     from foon_asp.encoding import encoding  # noqa: PLC0415 - they load clingo
     from foon_asp.rules import stating  # noqa: PLC0415 - they load clingo
 
@@ -151,9 +151,9 @@ def _digest(content: bytes) -> str:
 
 
 def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()) -> tuple[Rule, ...]:
-    """Return the rules with only those claims of user rules that a proof needs: removed units, and limits.
+    """Return the coverage without the claims of user rules that a proof does not need.
 
-    The removal of units that are not ``members`` of any cut is left out.
+    The removals of units that are not ``members`` of any cut are left out; limits stay where they are used.
     """
     kept, stated = set(members), [_stated(*limit) for limit in limits]
     return tuple(

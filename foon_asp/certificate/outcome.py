@@ -25,13 +25,13 @@ def certify_outcome(
     expired: Callable[[], bool] = lambda: False,
     subject: Subject | None = None,
 ) -> tuple[Outcome, Certificate | None]:
-    """Return an answer marked with its certificate, and the certificate, ``None`` where none is found.
+    """Return an answer marked as certified, and the certificate; ``None`` where no certificate is found.
 
-    The answer is marked ``certificate`` where the whole of its claim is proved, and a plan that was found at
-    a limit is optimal then; where only the first of its objectives are, it says for each. Where more than a
-    bound is proved only by taking on trust what user rules remove and require, the answer is left as it is.
-    Raises :class:`BugError` when a tree that the solver called optimal is not, and when answer and
-    certificate cannot both be true. ``subject`` is the whole that its network is a part of, as for
+    The status ``certificate`` needs a certificate of the whole claim; a plan found at a limit becomes
+    optimal with one. A certificate of only the first objectives marks these. The answer stays unchanged
+    where more than a bound is proved only with trusted claims about user rules. Raises :class:`BugError`
+    when a tree that the solver called optimal is not, and when answer and certificate cannot both be true.
+    ``subject`` is the whole network, of which that of the answer is a part, as for
     :func:`~foon_asp.certificate.certify`.
     """
     began = time.perf_counter()
@@ -103,8 +103,8 @@ def _certified_plan(outcome: Outcome, covered: Coverage, expired: Callable[[], b
 def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
     """Return why an answer and a certificate cannot both be true; ``None`` where they can.
 
-    The certificate was verified, but not against the answer: that it speaks of the same goals and rule, and
-    proves nothing that the answer denies, is looked at here and not taken from how it was found.
+    The verifier has accepted the certificate, but does not know the answer: here its goals, rules and claim
+    are compared with those of the answer.
     """
     problem, content = outcome.problem, certificate.content
     goals = tuple(goal["id"] for goal in content["goals"])
@@ -140,7 +140,7 @@ def _costs_at_odds(
 
 
 def _read(arrays: Arrays, stated: Sequence[Any]) -> Vector:
-    """Read a bound as certificates state it back into a cost."""
+    """Return a cost from a bound as certificates write it."""
     vector: list[Fraction] = []
     for objective, stated_part in zip(arrays.objectives, stated, strict=True):
         if multiplies(objective):
@@ -169,11 +169,12 @@ def _contradiction(outcome: Outcome, settings: Settings, why: str) -> BugError:
 
 
 def _tree(outcome: Outcome, units: Sequence[int]) -> str:
-    """Return the description of a tree and its costs."""
+    """Return a text that describes a tree and its costs."""
     return f"the units {list(units)} ({_figures(outcome.problem, units)})"
 
 
 def _figures(problem: Problem, units: Sequence[int]) -> str:
+    """Return the costs of a tree in words, for the message about a contradiction."""
     costs = problem.costs(units)
     figures = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
     figures.append(f"{costs.kitchen} kitchen items")

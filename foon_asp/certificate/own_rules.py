@@ -84,7 +84,7 @@ def check_with_clingo(
 
 
 def _some_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, rules: str) -> bool:
-    """Return whether clingo finds a tree that keeps to additional rules, among all executable units."""
+    """Return whether clingo finds any tree, of all executable units, that keeps to additional rules."""
     ours = set(Objective)
     objectives = tuple(Objective(name) for name in content["objective"] if name in ours)
     try:
@@ -102,7 +102,10 @@ def _claim(used: list[int], without: list[int]) -> str:
 
 
 def _beyond(amounts: Mapping[str, Sequence[int]], max_sum: int) -> str:
-    """Return an aggregate that exceeds a limit; raises :class:`LimitError` for sums too large for clingo."""
+    """Return a clingo aggregate that is true where a limit is exceeded.
+
+    Raises :class:`LimitError` for sums too large for clingo.
+    """
     counted = [(int(amount), unit) for amount, units in amounts.items() for unit in units]
     if max(sum(amount for amount, _ in counted), abs(max_sum)) > _GREATEST:
         raise LimitError("clingo cannot add up what a limit counts")

@@ -83,7 +83,7 @@ def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
 
 
 def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
-    """Return the subjects of a question (problems, trees): one, or one for each of several assumed goals.
+    """Return the subjects of a question: one problem or tree, or one for each of several assumed goals.
 
     Assumed goals and kitchen items are reported to the user.
     """

@@ -69,7 +69,7 @@ class BatchData:
         return dataset.nearby(dataset.goals(question.goals), question.containers, items)
 
     def _with(self, kitchen: str | None) -> Dataset:
-        """Return the dataset with another kitchen (a file, or ``@starting``); ``None`` is its own."""
+        """Return the dataset with another kitchen: a file, or ``@starting``; ``None`` is its own kitchen."""
         if kitchen is not None and kitchen not in self._datasets:
             dataset = self._datasets[None]
             self._datasets[kitchen] = (

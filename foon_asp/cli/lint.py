@@ -38,7 +38,7 @@ def _codes(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
 
 
 def _explain(context: click.Context, _: click.Parameter, code: str | None) -> None:
-    """Show what a code means, and end."""
+    """Print the explanation of a code, and exit."""
     if code is None or context.resilient_parsing:
         return
     if code not in CATALOG:

@@ -45,6 +45,9 @@ _DATA_OPTIONS = (
         "--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name: JSON, or FOON objects."
     ),
     click.option("--unit-prices", type=_PATH, metavar="FILE", help="Prices of motions and of single units."),
+    click.option(
+        "--unit-amounts", type=_PATH, metavar="FILE", help="How many of a node units take and make."
+    ),
     lenient_option,
 )
 
@@ -177,7 +180,10 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 
 
 def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:
-    """Return the deadline of the current command: from the start of a process that runs only this command."""
+    """Return the deadline of the current command.
+
+    It begins with the process if that runs no other command.
+    """
     context = click.get_current_context()
     began = context.obj if isinstance(context.obj, float) else None
     deadline = Deadline(time_limit, memory_limit, began)
@@ -217,6 +223,7 @@ def read_dataset(
     utensils: Path | None,
     goals: Path | None,
     unit_prices: Path | None,
+    unit_amounts: Path | None,
     lenient: bool,
     level: int,
     measures: Sequence[Path] = (),
@@ -231,7 +238,7 @@ def read_dataset(
     """
     folder, network = with_sources(sources, folder, network)
     with reading():
-        files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
+        files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices, unit_amounts)
     with bytes_bar("reading", files.network), reading():
         dataset = read_data(files, lenient, level)
         if measures:

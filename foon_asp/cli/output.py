@@ -106,7 +106,7 @@ def safe_streams() -> Iterator[None]:
 
 
 def say_remarks(shown: bool) -> None:
-    """Show or drop everything that is written to standard error from now on."""
+    """Show, or drop, all text that is written to standard error from now on."""
     cast(SafeStream, sys.stderr).quiet = not shown
 
 
@@ -161,7 +161,7 @@ def write_parts(parts: Iterable[Block]) -> None:
 
 
 def say(text: str) -> None:
-    """Write a remark to standard error, wrapped at the width of a terminal."""
+    """Write a remark to standard error, wrapped to the width of a terminal."""
     width = shutil.get_terminal_size().columns if sys.stderr.isatty() else None
     click.echo(rendered(text.split("\n"), width), err=True, nl=False)
 

@@ -159,6 +159,7 @@ def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _bar(word: str, total: int, completed: int) -> Iterator[Callable[[int], None]]:
+    """Yield a function that advances a progress bar."""
     from rich.progress import BarColumn, DownloadColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 

@@ -44,7 +44,7 @@ def comparisons_question(
 ) -> Json:
     """Return the question of a file of rows: data (as a digest), searches, settings and rules.
 
-    A file with another question is refused when a comparison is resumed.
+    A comparison is resumed only from a file with the same question.
     """
     subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     data: list[object] = [subject.digests()]

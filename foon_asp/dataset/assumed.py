@@ -11,9 +11,9 @@ _SHOWN = 6  # assumed items that a unit makes too, named in the line
 
 
 def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) -> Iterator[str]:
-    """Yield one line on the starting kitchen: how many items the goals can use, and which of them units make.
+    """Yield one line on the starting kitchen, with the number of items that the goals can use.
 
-    ``verbose`` adds a line for each item.
+    It also says how many of these are made by units. ``verbose`` adds a line for each item.
     """
     used = {
         problem.network.object_number(o): problem.network.objects[o]

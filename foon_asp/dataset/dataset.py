@@ -48,7 +48,6 @@ from foon_asp.standins import with_stand_ins
 from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning
 from foon_asp.text.goal_name import entry_names, find_goal, listed_goal, listed_nodes
 from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.repeated_node import refuse_repeated
 from foon_asp.warning import warn
 
 if TYPE_CHECKING:  # plain answers do not need it
@@ -64,8 +63,8 @@ def ask(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
     """Return the problem of goals, by id in the network of ``data``, a part of the dataset ``origin``."""
-    if items is not None:
-        refuse_repeated(data.repeated)
+    if items is not None and data.amounts.conflict:
+        raise UserError(data.amounts.conflict)
     unrated = origin.unrated
     return Problem(
         data.network,
@@ -80,6 +79,7 @@ def ask(
         items=items,
         starting=data.starting,
         unrated=unrated,
+        amounts=data.amounts.units,
     )
 
 
@@ -116,7 +116,7 @@ class Dataset:
     def of(cls, data: Data, seconds: float = 0.0) -> Self:
         """Return the dataset of data that are in memory; ``seconds`` is how long reading them took."""
         return cls(
-            Source(data.network, seconds, data.left_out, data.repeated),
+            Source(data.network, seconds, data.left_out, data.repeated, data.amounts),
             Kitchen(data.kitchen),
             data.goals,
             data.rates,
@@ -143,7 +143,10 @@ class Dataset:
 
     @cached_property
     def unrated(self) -> str:
-        """The motions without a success rate, in words; empty where all have one, or no rates are known."""
+        """A text about the motions without a success rate.
+
+        Empty where all have one, or no rates are known.
+        """
         if self.rates is None or self.rates.keys() >= set(self.source.motions):
             return ""
         return unrated_text(self.source.motion_places(), self.rates)
@@ -176,6 +179,7 @@ class Dataset:
             self.starting,
             self.goals_from,
             self.source.repeated,
+            self.source.amounts,
         )
 
     def _unit_prices(self, network: Network) -> UnitPrices | None:
@@ -209,7 +213,10 @@ class Dataset:
         return [o for o in objects if self.source.starting.makers(o)]
 
     def for_goals(self, goals: Iterable[int]) -> "Dataset":
-        """Return the dataset with the kitchen for goals, which a starting kitchen withholds."""
+        """Return the dataset with the kitchen for some goals.
+
+        A starting kitchen omits goals that units make.
+        """
         if not self.starting:
             return self
         starting = self.source.starting
@@ -290,8 +297,15 @@ class Dataset:
         return replace(self, measures=measures)
 
     def standing_in(self, table: StandInTable | None) -> "Dataset":
-        """Return the same data with stand-ins by a table, ``None`` for none."""
-        return replace(self, stand_ins=table)
+        """Return the same data with stand-ins by a table, ``None`` for none.
+
+        With stand-ins, the goals assumed are those of the first file: the others are what helps it.
+        """
+        goals = self.listed
+        if table is not None and self.goals_from and len(goals) > 1:
+            copies = next(iter(self.whole_network.sources), ())
+            goals = [goal for goal in goals if copies and goal.source.file == copies[0].file] or goals
+        return replace(self, stand_ins=table, listed=goals)
 
     def varied(
         self,
@@ -299,7 +313,7 @@ class Dataset:
         removed: Collection[int],
         only: Collection[int] | None,
     ) -> "Dataset":
-        """Return the same data with object nodes, by id, added to the kitchen and removed from it.
+        """Return the same data with a changed kitchen: object nodes, by id, are added and removed.
 
         ``only``, unless ``None``, replaces the whole kitchen first.
         """
@@ -308,7 +322,7 @@ class Dataset:
         return self._varied(kitchen=Kitchen(only, added, removed), kitchen_items=(), starting=False)
 
     def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> "Dataset":
-        """Return the same data with some success rates and some prices of motions and units changed."""
+        """Return the same data with other success rates and prices for some motions and units."""
         if rates is None and unit_prices is None:
             return self
         motions, units, _ = prices = self.prices
@@ -319,7 +333,7 @@ class Dataset:
         return self._varied(rates=changed_rates(self.rates, rates, self.motions), prices=prices)
 
     def vary(self, changes: Changes) -> "Dataset":
-        """Return the same data with another kitchen, other rates or prices."""
+        """Return the same data with another kitchen, other success rates or other prices."""
         kitchen, adding, without, rates, unit_prices, measures = changes
         dataset = self.valued(rates, unit_prices)
         if measures is not None:
@@ -388,9 +402,21 @@ class Dataset:
             stated.pop("prices", None)
         if everything:
             data = self.data
-            return Subject(data.network, stocked.kitchen.ids, rates, self.utensils, data.unit_prices, stated)
+            kitchen, prices, trusted = stocked.kitchen.ids, data.unit_prices, ()
+            return Subject(
+                data.network, kitchen, rates, self.utensils, prices, stated, trusted, data.amounts.units
+            )
         network = source.touched()
-        return Subject(network, stocked.kitchen, rates, self.utensils, None, stated, tuple(sorted(stated)))
+        return Subject(
+            network,
+            stocked.kitchen,
+            rates,
+            self.utensils,
+            None,
+            stated,
+            tuple(sorted(stated)),
+            source.amounts.units,
+        )
 
     def subject_with_stand_ins(self, goals: Sequence[int], containers: str, everything: bool) -> "Subject":
         """Return the subject of a certificate about a network with the stand-ins for goals."""
@@ -458,8 +484,8 @@ class Dataset:
     ) -> Problem:
         """Return the problem of goals, in the same order, under a container rule.
 
-        With ``everything``, it has units too that no goal needs. ``items`` says how items are used up,
-        ``None`` that they last.
+        With ``everything``, its network also has units that no goal needs. ``items`` says how items are
+        used up; ``None``: items last.
         """
         dataset = self.for_goals(goals)
         if self.stand_ins is not None:
@@ -477,10 +503,10 @@ class Dataset:
     def nearby(
         self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = FIRST
     ) -> Problem:
-        """Return the problem of goals; of a store, about ``first`` units near them are read now.
+        """Return the problem of goals; of a store, only ``first`` units near the goals are read now.
 
-        Further units are read on access. Without a given kitchen, all units that the goals can need are read,
-        since the items of the starting kitchen are listed.
+        Further units are read on access. Without a given kitchen, all units that the goals can need are
+        read, since the items of the starting kitchen are listed.
         """
         cone = None
         if items is None and self.has_kitchen and self.stand_ins is None:
@@ -498,7 +524,10 @@ class Dataset:
         return ask(self.for_goals(goals)._data_of(network), _local_ids(network, goals), containers, self)
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
-        """Return the distances of all units of a store; ``None`` for text and with a starting kitchen."""
+        """Return the distance of each unit of a store: a lower bound on the cost of trees with it.
+
+        ``None`` where the data are text, and with a starting kitchen.
+        """
         if self.starting:
             return None
         implied = container_rule(containers) is ContainerRule.IMPLIED
@@ -511,8 +540,8 @@ class Dataset:
     ) -> tuple[Data, tuple[int, ...]]:
         """Return data with at least these goals, units by id, and the units and nodes of a tree.
 
-        The second value are the ids of the goals in that data. Raises :class:`UserError` for an id that no
-        unit has.
+        Also returns the ids of the goals in that data. Raises :class:`UserError` for an id that no unit
+        has.
         """
         units, names = list(units), self.names
         for unit in units:
@@ -528,7 +557,7 @@ class Dataset:
 
 
 def _local_ids(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
-    """Return the ids of goals in a network that may be a part of the whole one."""
+    """Return the ids of goals in ``network``, which may be a part of the whole one."""
     if not network.object_numbers:
         return tuple(goals)
     local_ids = {o: local_id for local_id, o in enumerate(network.object_numbers)}
@@ -541,7 +570,7 @@ def left_out(count: int) -> str:
 
 
 def _whole_goals(problem: Problem) -> tuple[int, ...]:
-    """Return the goals of a problem by id in the whole network."""
+    """Return the goals of a problem by their ids in the whole network."""
     from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
 
     problem = shown(problem)

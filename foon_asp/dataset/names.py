@@ -86,7 +86,10 @@ def item_id(dataset: Named, name: str | ObjectNode) -> int:
 
 
 def _label(name: str) -> str | None:
-    """Return the label that a name is, unread if it is not valid notation; ``None`` for a whole node."""
+    """Return the label that a name stands for, as written if it is not valid notation.
+
+    ``None`` for a node.
+    """
     try:
         named = parse_name(name)
     except LineError:
@@ -97,7 +100,7 @@ def _label(name: str) -> str | None:
 def changed_rates(
     rates: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None, motions: Collection[str]
 ) -> Mapping[str, Fraction] | None:
-    """Return success rates by motion with some of them changed; ``motions`` are those of the network."""
+    """Return success rates by motion with some changed; ``motions`` are all motions of the network."""
     if changed is None:
         return rates
     by_motion = dict(rates or {})
@@ -116,7 +119,10 @@ def changed_rates(
 def changed_prices(
     prices: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NamesAndUnits
 ) -> UnitPrices:
-    """Return prices of units with some changed; ``names`` has the units, and ``motions`` are theirs."""
+    """Return prices of units with some changed.
+
+    ``names`` looks units up, and ``motions`` are all motions of the network.
+    """
     by_motion, by_unit = dict(prices.motions), dict(prices.units)
     for named, value in changed.items():
         price = unit_price(value, f"the price of {str(named)!r}")

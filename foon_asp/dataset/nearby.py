@@ -27,7 +27,7 @@ class UnreadData(Protocol):
         """Return the problem of goals, for which about ``first`` units are read."""
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
-        """Return the distances of all units by an objective, ``None`` if they are not known."""
+        """Return the distance of each unit by an objective, ``None`` if they are not known."""
 
     def subject(self, everything: bool, goals: Iterable[int]) -> "Subject":
         """Return the subject of a certificate."""
@@ -69,7 +69,7 @@ class Nearby:
         return self.data.among(units, self.goals, self.containers)
 
     def unit_distances(self, objective: Objective) -> "UnitDistances | None":
-        """Return the distances of all units by an objective, ``None`` if they are not known."""
+        """Return the distance of each unit by an objective, ``None`` if they are not known."""
         return self.data.unit_distances(self.containers, objective)
 
     def subject(self) -> "Subject":
@@ -113,7 +113,10 @@ class Nearby:
         return sorted(map(problem.network.object_number, lacking))
 
     def grow(self, objects: Iterable[int], quickly: bool = False) -> None:
-        """Read a tenth more units, a fifth if ``quickly``, that lead to open objects, by id in the whole."""
+        """Read more units that lead to open objects, by id in the whole network.
+
+        The number of units read grows by a tenth, or by a fifth if ``quickly``.
+        """
         self._cone.grow(objects, len(self._cone.units) // (5 if quickly else 10) + 1)
         self._problem = self._relaxed = None
 
@@ -130,7 +133,7 @@ class Nearby:
 
 
 class _ReadLater:
-    """A field of a problem that is read on first access, unless the problem has its own value."""
+    """A field of a problem that is read at its first access, unless it was set."""
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name, self._own = name, f"_own_{name}"
@@ -211,7 +214,7 @@ class NearbyProblem(Problem):
 
 
 def shown(problem: Problem) -> Problem:
-    """Return a problem with the goals and kitchen of another, without reading more units."""
+    """Return a problem with the goals and the kitchen of another one; no more units are read."""
     if isinstance(problem, NearbyProblem):
         return problem.first or problem
     return problem

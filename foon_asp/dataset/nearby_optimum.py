@@ -105,7 +105,7 @@ def solve_nearby(
 
 
 def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
-    """Whether there is a tree without rules, or at a limit, may be."""
+    """Whether a tree exists without rules; true at a limit, where that is not known."""
     while True:
         relaxed = nearby.relaxed
         reached = reach(relaxed)
@@ -147,14 +147,14 @@ def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: se
 def least_with_more(
     costs: Costs, order: Sequence[Objective], extra_units: int = 1
 ) -> tuple[int | Fraction, ...]:
-    """Return a lower bound on the key of trees with more units than trees that cost ``costs`` or more."""
+    """Return a lower bound on the keys of trees with more units than a tree of these ``costs`` or worse."""
     least_costs = dict(zip(order, costs.key(order), strict=True))
     least_costs[Objective.UNITS] += extra_units
     return tuple(least_costs.values())
 
 
 class _OnlyWarnings(Reporter):
-    """Passes on warnings and bounds, which a part of a network shares with the whole."""
+    """Passes on only warnings and bounds, which hold for a part of a network as for the whole."""
 
     def __init__(self, reporter: Reporter) -> None:
         self.warning = reporter.warning  # type: ignore[method-assign]

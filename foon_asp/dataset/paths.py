@@ -17,5 +17,5 @@ def files(paths: Files) -> tuple[Path, ...]:
 
 
 def as_path(file: File) -> Path:
-    """Return the path of a file; one that is a path keeps its class, which says how it is shown."""
+    """Return the path of a file; a path keeps its class, which determines how messages show it."""
     return file if isinstance(file, Path) else Path(file)

@@ -92,7 +92,7 @@ class Encoding:
     statements: list[AST] = field(default_factory=list)
 
     def first_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
-        """Return the atoms over signatures, as predicate and first argument, empty if that is no name."""
+        """Return the atoms over signatures, as predicate and first argument; empty where that is no name."""
         symbols = (
             node.symbol for statement in self.statements for node in nodes(statement) if _is_atom(node)
         )
@@ -108,7 +108,7 @@ class Encoding:
         return [statement for statement in self.statements if statement.ast_type == ASTType.Definition]
 
     def saying(self, constant: str) -> set[Signature]:
-        """Return the predicates that rules derive with a constant as argument."""
+        """Return the predicates that rules derive with a certain constant as argument."""
         heads = (rule.head for rule in self.statements if rule.ast_type == ASTType.Rule)
         atoms = (
             head.atom.symbol for head in heads if head.ast_type == ASTType.Literal and _is_atom(head.atom)
@@ -268,10 +268,11 @@ def check_encodings(
 ) -> list[Diagnostic]:
     """Check the user's files: the constraints ``added``, and files in ``base`` that are not built-in.
 
-    ``others`` are further built-in files that are loaded. Returns warnings: undefined atoms, with the most
-    similar predicate that is defined, and terms that are compared with numbers and never are numbers. Raises
-    :class:`InputError` for statements that would change the set of trees or their order, or that clingo
-    would ignore silently: rules for built-in predicates, reserved names, and statements other than rules.
+    ``others`` are further built-in files that are loaded. Returns warnings about undefined atoms, with the
+    most similar defined predicate, and about terms that are compared with numbers but never are numbers.
+    Raises :class:`InputError` for statements that would change the set of trees or their order, or that
+    clingo would ignore silently: rules for built-in predicates, reserved names, and statements other than
+    rules.
     """
     errors: list[Diagnostic] = []
     defined = set(PUBLIC)
@@ -309,7 +310,7 @@ def check_encodings(
 
 
 def no_numbers(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
-    """Return terms above every number that numbers are compared with, each with a message.
+    """Return the terms that compare above every number because they are no numbers, each with a message.
 
     These are names that no ``#const`` sets, and texts as guards of a count or sum.
     """
@@ -470,7 +471,7 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
 def constant_value(name: str, default: str, value: str) -> str:
     """Return a value of a constant as a term, of the type of its default.
 
-    Raises :class:`UserError` for one of another type.
+    Raises :class:`UserError` for a value of another type.
     """
     if default.startswith('"'):
         return quote(string_constant(value))
@@ -558,7 +559,7 @@ def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ())
 
 
 def _left_out(message: str, term: str) -> str:
-    """Return why clingo would drop an instance of a rule or element."""
+    """Return the message that clingo would drop an instance of a rule or element."""
     no_value = f"a term has no value here: {term.removeprefix('(').removesuffix(')')}"
     if message == "tuple ignored" and _NEGATIVE.match(term):
         return (
@@ -579,7 +580,7 @@ def _left_out(message: str, term: str) -> str:
 def located(
     severity: Severity, code: str, message: str, source: Source, files: Sequence[Loaded] = ()
 ) -> Diagnostic:
-    """Return a diagnostic with its source line, from one of the files or texts, or the file of the source."""
+    """Return a diagnostic with its source line, found in the files and texts or in the source's own file."""
     for rules in files:
         if isinstance(rules, Stated) and rules.place == source.file:
             lines = rules.text.split("\n")

@@ -102,7 +102,10 @@ def _check_file(file: Path, errors: list[Diagnostic]) -> list[Path]:
 
 
 def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagnostic]) -> list[Path]:
-    """Append the errors of a text to ``errors``; return the files it includes, if it is of a ``file``."""
+    """Append the errors of a text to ``errors``.
+
+    Return the files that it includes, where it has a ``file``.
+    """
     lines = text.split("\n")
 
     def error(code: str, message: str, start: int) -> None:

@@ -121,6 +121,7 @@ def _weight(rate: Fraction, scale: int) -> int:
 
 
 def _exponents(rates: Collection[Fraction]) -> dict[Fraction, dict[int, int]]:
+    """Return for each rate its exponents in a coprime base of all rates."""
     base = coprime_base(number for rate in rates for number in rate.as_integer_ratio())
     numbers = {factor: number for number, factor in enumerate(base)}
     exponents: dict[Fraction, dict[int, int]] = {}

@@ -141,7 +141,7 @@ def write_facts_read(
 
 
 def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
-    """Yield the facts of utensils, goals, and available object nodes outside the kitchen that rules see."""
+    """Yield the facts of utensils and goals, and of available object nodes that user rules do not see."""
     name = problem.network.object_number
     labels = {problem.network.objects[o].label for o in nodes}
     yield from (f"utensil({quote(label)})." for label in sorted(labels & problem.utensils))
@@ -195,7 +195,10 @@ def _unit_atom(problem: Problem, unit: int) -> str:
 def _unit_atoms(
     problem: Problem, unit: int, scales: Scales | None, prices: Mapping[int, int] | None
 ) -> list[_Atom]:
-    """Return the facts about a unit without ``unit/1``; with ``prices``, also those for rules alone."""
+    """Return the facts about a unit without ``unit/1``.
+
+    With ``prices``, also facts that only user rules read.
+    """
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
     ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
@@ -344,7 +347,7 @@ def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> 
 
 
 def write_list(number: int, items: Iterable[int]) -> str:
-    """Return facts of a shopping list that was found before."""
+    """Return facts of a shopping list that was found before, so that it is not found again."""
     return f"_found_list({number}).\n" + "".join(f"_on_list({number},{o}).\n" for o in items)
 
 
@@ -402,7 +405,7 @@ def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Sca
 
 
 def write_assisted(twins: Mapping[int, int], max_assisted: int) -> str:
-    """Return facts that pair units of a person with those of the robot, and bound the former in a tree."""
+    """Return facts that pair each unit of a person with that of the robot, and bound a person's units."""
     facts = [f"_takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
     return "".join([*facts, f"_at_most_assisted({_check(max_assisted)}).\n"])
 
@@ -416,7 +419,7 @@ def write_required(sets: Sequence[Iterable[int]]) -> str:
 
 
 def write_known(numbers: Iterable[int]) -> str:
-    """Return facts of the units, by number, whose achievers are all present; others may lack inputs."""
+    """Return facts of the units, by number, whose achievers are all present; other units may lack inputs."""
     return "".join(f"_known({_check(number)}).\n" for number in numbers)
 
 
@@ -441,7 +444,7 @@ def write_in_all(units: Iterable[int]) -> str:
 
 
 def write_beside(plans: Sequence[Mapping[int, int]]) -> str:
-    """Return facts that exclude plans with at least the executions of known ones, by unit number."""
+    """Return facts that exclude plans with at least the executions of a known plan, by unit number."""
     return "".join(
         f"_avoid({number},{_check(unit)},{count}).\n"
         for number, plan in enumerate(plans)

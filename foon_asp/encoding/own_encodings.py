@@ -43,6 +43,7 @@ def digest(file: Path) -> str:
 
 
 def _unchanged(file: Path) -> Path:
+    """Return the path of a built-in encoding; raises :class:`UserError` if it was changed."""
     if not is_own(file):
         raise UserError(
             f"{file} was changed, but answers rely on its old content: restore it; to change what a tree is "

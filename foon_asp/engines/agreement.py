@@ -49,11 +49,11 @@ def find_engines() -> tuple[Engine, ...]:
 
 
 class Check(NamedTuple):
-    """The verdict of an engine: it agrees, or has not checked the answer (to disagree is an exception).
+    """The verdict of an engine: it agrees, or has not checked the answer; disagreement is an exception.
 
-    ``objectives`` are those by which it finds our tree optimal, the most important first. ``reason`` says why
-    it has checked nothing, and is ``None`` where it agrees. ``seconds`` is the time that it took. ``refuted``
-    is the claim of an engine of another ``package`` that disagrees and is wrong, and otherwise ``None``.
+    ``objectives`` are those by which it finds our tree optimal, the most important first. ``reason`` says
+    why it has checked nothing, and is ``None`` where it agrees. ``seconds`` is the time that it took.
+    ``refuted`` is a wrong claim of an engine of another ``package``, and otherwise ``None``.
     """
 
     engine: str

@@ -78,7 +78,7 @@ class Clingo:
     def best(self, extra_facts: str = "", with_second_opinion: bool = True) -> ClingoAnswer | None:
         """Return an optimal answer, or ``None`` where no answer exists.
 
-        ``extra_facts`` are read by the encoding of the second opinion, or without it by the program itself.
+        ``extra_facts`` are for the encoding of the second opinion, or without it for the program itself.
         """
         options = ("--opt-mode=opt", "--models=0", "--quiet=1")
         result, _, answers = self._run(extra_facts, options, bool(extra_facts) and with_second_opinion)
@@ -89,7 +89,7 @@ class Clingo:
         return answers[-1]
 
     def all_kinds(self, extra_facts: str, bounds: Sequence[int]) -> list[ClingoAnswer]:
-        """Return one answer of every kind (numbers of equal units) whose costs are at most ``bounds``."""
+        """Return one answer for each distinct count of equal units; only answers up to ``bounds``."""
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
         options = (mode, f"--models={MAX_KINDS + 1}", "--project=project")
         result, exhausted, answers = self._run(extra_facts, options, True)

@@ -60,9 +60,9 @@ class GroundProgram:
             self._messages += numbers_beyond(self._control)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Return the arguments of all atoms of each predicate, given by name and arity; these are numbers.
+        """Return the arguments of all atoms of each predicate, by name and arity; all arguments are numbers.
 
-        For stratified rules, whose atoms grounding alone derives.
+        Only for stratified rules, whose atoms grounding alone derives.
         """
         atoms = self._control.symbolic_atoms
         return [
@@ -146,6 +146,7 @@ def _wait(handle: SolveHandle, deadline: Deadline) -> None:
 
 
 def _used(model: Model) -> frozenset[int]:
+    """Return the numbers of the units in use in an answer."""
     units = set()
     for symbol in model.symbols(shown=True):
         if symbol.type is SymbolType.Function and symbol.match("use", 1):
@@ -157,6 +158,7 @@ def _used(model: Model) -> frozenset[int]:
 
 
 def _rows(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
+    """Return the arguments of all atoms of a predicate in an answer, if these are numbers."""
     atoms = (symbol.arguments for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return frozenset(
         tuple(argument.number for argument in arguments)

@@ -34,7 +34,7 @@ def _exact(text: Symbol, *values: Symbol) -> Symbol:
 
 
 def numbers_beyond(control: Control) -> Iterator[str]:
-    """Return messages in clingo's format for the overflows in a ground program."""
+    """Return messages in clingo's format about each overflow in a ground program."""
     for atom in control.symbolic_atoms.by_signature(*BEYOND):
         file, line, column, term = atom.symbol.arguments
         yield (

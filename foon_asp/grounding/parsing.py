@@ -28,7 +28,7 @@ def parse(rules: Loaded, add: Callable[[AST], None], logger: Callable[[MessageCo
 
 
 def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], None]) -> None:
-    """Add rules without a file to a program; messages about them have their place."""
+    """Add rules without a file to a program, under their name in messages."""
     with ProgramBuilder(control) as builder:
         parse(rules, builder.add, logger)
 

@@ -7,9 +7,9 @@ from typing import NamedTuple
 class Stated(NamedTuple):
     """The text of rules, and their name in messages.
 
-    ``place`` stands for the name of a file: ``rule 1``. For a ready-made constraint with constants of its
-    own, ``file`` is that constraint, with the same lines, ``written`` is the text of its option, and
-    ``renamed`` has pairs of the new and the original names of its constants.
+    ``place`` replaces the file name in messages, as in ``rule 1``. A ready-made constraint with constants
+    of its own has the same lines as its ``file``; ``written`` is the text of its option, and ``renamed``
+    has pairs of the new and the original names of its constants.
     """
 
     place: str

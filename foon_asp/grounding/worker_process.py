@@ -125,7 +125,7 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
 
 
 def _cause(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
-    """Return the error for a process that died: mostly of memory, else by rules beyond clingo."""
+    """Return the error for a process that died: mostly out of memory, else rules beyond clingo."""
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
         deadline.out_of_memory()
         return LimitError(deadline)

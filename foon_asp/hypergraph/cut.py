@@ -200,7 +200,7 @@ class _Growth:
         return refused
 
     def _learn(self, refused: list[int]) -> None:
-        """Record an object that alone reaches the targets, among objects that together do."""
+        """Record an object whose consequences alone include all targets, if ``refused`` has one."""
         for o in refused:
             new = None if len(refused) == 1 else self._spread([o])
             if new is None:

@@ -157,7 +157,7 @@ class Subproblem:
         return [*actions, *(units + o for o in self.problem.kitchen if counted)]
 
     def _able(self, actions: Collection[int]) -> Collection[int]:
-        """Return the actions that can run, without asking for costs, which others may not have."""
+        """Return the actions that can run; all costs count as 0, since not every action has a known cost."""
         return derive(self.graph, actions, lambda _: 0, h_add=False).h_actions
 
     def _units(self, actions: Iterable[int]) -> frozenset[int]:

@@ -106,7 +106,7 @@ def follow_h_add(task: Task, gap: Gap) -> Gap:
 
 
 def fix(task: Task, gap: Gap, cuts: Cuts) -> Gap:
-    """Leave out the candidates above the cutoff by reduced-cost fixing."""
+    """Exclude the candidates above the cutoff by reduced-cost fixing."""
     assert task.costs is not None
     reduced_cost, distance = reduced_costs_of(task.costs, cuts), task.cutoff(gap) - cuts.bound
     return gap.with_candidates(
@@ -115,16 +115,16 @@ def fix(task: Task, gap: Gap, cuts: Cuts) -> Gap:
 
 
 def prune_dominated(task: Task, gap: Gap) -> Gap:
-    """Leave out the candidates that others dominate, where that is wanted and costs are exact."""
+    """Exclude the candidates that others dominate, where that is wanted and costs are exact."""
     if task.costs is None or Reduction.DOMINATED not in task.reductions:
         return gap
     return gap.with_candidates(undominated(task.graph, gap.candidates, task.costs))
 
 
 def prune_beside_landmarks(task: Task, gap: Gap) -> Gap:
-    """Leave out the candidates that are of no use beside action landmarks, where that is wanted."""
-    few = len(gap.candidates) <= task.tuning.neighbourhood_actions
-    if Reduction.FORCED not in task.reductions or not few:
+    """Exclude the candidates that are of no use beside action landmarks, where that is wanted."""
+    large = len(gap.candidates) > task.tuning.neighbourhood_actions
+    if large or Reduction.FORCED not in task.reductions:
         return gap
     return gap.with_candidates(relevant_beside_landmarks(task.graph, gap.candidates))
 

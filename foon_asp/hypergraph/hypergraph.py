@@ -50,6 +50,7 @@ class Hypergraph:
         return tuple(sorted({a for o in objects for a in makers[o] if objects.isdisjoint(needs[a])}))
 
     def _owners(self, lists: Sequence[Sequence[int]]) -> list[list[int]]:
+        """Return for each object the indices of the lists that have it."""
         owners: list[list[int]] = [[] for _ in range(self.size)]
         for action, members in enumerate(lists):
             for o in set(members):

@@ -10,19 +10,16 @@ from collections import deque
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.hypergraph import Hypergraph
-
-_FRESH = 64  # cuts, or one for each target, after which the h-values are computed anew
-# how often h-values are computed for as many cuts as there are objects: each computation looks at all of the
-# objects, and more of them would make cuts quadratic (benchmarks/shapes.py, grid by kitchen)
-_GUIDES = 32
 
 
 class WeightedCut(NamedTuple):
-    """A cut with its landmark ``members``, its action of least reduced cost, and that cost as its weight.
+    """A cut with its landmark ``members``, its weight, and the cheapest landmark action.
 
-    ``own`` are its objects without those of the cut ``after`` it, whose landmark actions all need one of its
-    objects.
+    ``weight`` is the reduced cost of the ``cheapest`` action. Cuts form chains: each landmark action of the
+    cut ``after`` this one needs an object of that cut, so that cut's objects belong to this cut as well;
+    ``own`` are the other objects.
     """
 
     own: frozenset[int]
@@ -57,10 +54,11 @@ class Cuts(NamedTuple):
 
 
 class _Level:
-    """Objects that every derivation makes, and the goal zone of the cuts of the last of them.
+    """Objects that every derivation makes, and the goal zone around the last of them.
 
-    ``edge`` are actions that achieve an object of the zone, need none of its objects and have a reduced cost
-    above 0. ``cut`` is the latest cut of this zone, or else the cut that follows the whole level.
+    The goal zone is the set of objects from which its cuts are made. ``edge`` are actions that achieve an
+    object of the zone, need none of its objects and have a reduced cost above 0. ``cut`` is the latest cut
+    of this zone, or else the cut that follows the whole level.
     """
 
     def __init__(self, objects: Sequence[int], after: WeightedCut | None) -> None:
@@ -76,9 +74,9 @@ class _Level:
 
 
 class _Target:
-    """A target with a stack of levels, each of objects made before the level below.
+    """A target with a stack of levels; the objects of each level are made before those of the level below.
 
-    ``behind`` are the objects of the zones of all levels but the topmost.
+    ``outer_zones`` are the objects in the zones of all levels except the topmost.
     """
 
     def __init__(self, target: int) -> None:
@@ -128,7 +126,7 @@ def landmark_cuts(
     """
     search = _Search(graph, allowed, cost, guide_costs)
     queue = deque(_Target(o) for o in sorted(targets, key=search.guide_key, reverse=True))
-    next_guide = max(_FRESH, len(queue))  # how many cuts there are when the guide is asked
+    next_guide = max(tuning.CUTS.guided_cuts, len(queue))  # how many cuts there are when the guide is asked
     effort = 0
     try:
         while queue and effort < max_members and not expired():
@@ -141,7 +139,10 @@ def landmark_cuts(
                 search.guide_costs = guide(search.reduced_cost)
                 waiting = sum(len(level_above.objects) for level_above in target.levels)
                 next_guide = len(search.cuts) + max(
-                    _FRESH, len(queue), waiting, len(search.guide_costs) // _GUIDES
+                    tuning.CUTS.guided_cuts,
+                    len(queue),
+                    waiting,
+                    len(search.guide_costs) // tuning.CUTS.guides,
                 )
                 level.begin()
             cut = search.cut(level, target.outer_zones)

@@ -50,7 +50,7 @@ class Lexicographic:
     def sign(self, vector: Sequence[Fraction | int]) -> int:
         """Return -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly.
 
-        It can be 0 for a vector that is not: 7/10 * 7/10 is 49/100.
+        A vector that is not zero can cost nothing, because 7/10 * 7/10 divided by 49/100 is 1.
         """
         for level, coordinates in self._parts(vector):
             rates = self.levels[level]

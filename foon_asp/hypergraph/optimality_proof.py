@@ -14,24 +14,23 @@ import random
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, cmp_to_key, partial
+from itertools import islice
 from operator import mul
 from typing import NamedTuple, Protocol
 
-from foon_asp.hypergraph.cost_partition import PARTS, CostPartitioning, SharedCosts
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
 from foon_asp.hypergraph.covering import Covering
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.hypergraph.hypergraph import Hypergraph
+from foon_asp.hypergraph.landmark_relaxation import PARTS
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
 
 _SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
 _STEP = 0.99  # of the step of costs: bounds are rounded up
-_DISJOINT_CUTS = 40  # cuts with disjoint landmarks separated for one solution
-_ORDERS = 3  # orders in which cuts are grown before the relaxation counts as optimal
 _FINER = 1e-4  # factor from a cost level to the next in floats
-_MANY = 1000  # with more actions, rounded weights are tried before exact ones
-_GREEDY = 200  # known cuts that get weights greedily; the others get weights only from the LP
-_WORTH = 0.5  # of the actions: with more above the cutoff, they are fixed before anything else
 
 _EXCESS_COST_FACTOR = 1000  # times the goal of the proof: what exceeding a limit by 1 costs an LP solution
 
@@ -55,7 +54,7 @@ class Hopeless(NamedTuple):
 
 
 class Broken(NamedTuple):
-    """A rule that every derivation with the used actions breaks, under the branches taken."""
+    """The end of a branch: every derivation with the used actions breaks a rule."""
 
     rule: int
 
@@ -69,7 +68,10 @@ class Branch(NamedTuple):
 
 
 class CostFixing(NamedTuple):
-    """Reduced-cost fixing: ``actions`` are above the cutoff by ``packing``; ``others`` does without them."""
+    """Reduced-cost fixing.
+
+    ``packing`` shows ``actions`` above the cutoff, and ``others`` is the proof without them.
+    """
 
     actions: tuple[int, ...]
     packing: Packing
@@ -104,13 +106,13 @@ class Rules(Protocol):
     """Rules on derivations that neither targets nor limits express."""
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        """Return by rule the actions in no derivation with the actions used and none of ``without``."""
+        """Return by rule the actions excluded by the used actions, where ``without`` are excluded."""
 
     def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
         """Return actions of a derivation that together break a rule; empty where it keeps to all rules."""
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
-        """Return a limit not returned before that a derivation exceeds; ``None`` if it keeps to all."""
+        """Return a limit that a derivation exceeds, each once; ``None`` where there is no other."""
 
 
 class CheaperError(Exception):
@@ -242,7 +244,9 @@ class Prover:
                     derivation, goal, used, forbidden | above_cutoff, known_cuts, cases, at_root
                 )
 
-            many = len(cutter.actions) > _MANY or (at_root and forbidden != self._forbidden)
+            many = len(cutter.actions) > tuning.PROOF.rounded_actions or (
+                at_root and forbidden != self._forbidden
+            )
             step = self._step() if many else Fraction(0)
             alone = cases is not None and not at_root
             proof, widened = self._packed(
@@ -341,7 +345,7 @@ class Prover:
         """
         targets = set(cutter.targets)
         known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
-        cuts = [self._widened(cutter, cut) for cut in known_cuts[:_GREEDY]]
+        cuts = [self._widened(cutter, cut) for cut in known_cuts[: tuning.PROOF.greedy_cuts]]
         cuts = [cut for cut in cuts if used.isdisjoint(cut.members)]
         packing, reduced_costs = self._share_out((cut, None) for cut in cuts)
         if self._reaches(packing, goal):
@@ -383,7 +387,7 @@ class Prover:
                 return shared
             cutoff = (enough - 1) * PARTS - shared.bound
             above_cutoff = sum(reduced_cost > cutoff for reduced_cost in shared.reduced_costs.values())
-            if above_cutoff > _WORTH * len(cutter.actions):
+            if above_cutoff > tuning.PROOF.fixed_share * len(cutter.actions):
                 return shared
 
     def _step(self) -> Fraction:
@@ -412,7 +416,7 @@ class Prover:
         cutoff = (math.ceil(goal[0] / step) - 1) * step - sum(weight[0] for _, weight in packing.weights)
         remaining = ((a, reduced_costs.get(a, self._costs[a])[0]) for a in cutter.actions if a not in used)
         above_cutoff = frozenset(a for a, reduced_cost in remaining if reduced_cost > cutoff)
-        if len(above_cutoff) <= _WORTH * len(cutter.actions):
+        if len(above_cutoff) <= tuning.PROOF.fixed_share * len(cutter.actions):
             return None
         proof = others(above_cutoff, known_cuts)
         needed = above_cutoff.intersection(self._crossing(proof))
@@ -627,26 +631,21 @@ class _Node:
 
     def _separate(self) -> bool:
         """Add cuts that the LP solution violates; return whether there were any."""
-        return self._add_disjoint_cuts() or any(self._add_violated_cuts() for _ in range(_ORDERS))
+        return self._add_disjoint_cuts() or any(self._add_violated_cuts() for _ in range(tuning.PROOF.orders))
 
     def _add_disjoint_cuts(self) -> bool:
         """Add violated cuts with disjoint landmarks; return whether there were any."""
+        import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
+
+        shares = np.zeros(len(self._prover._costs))
+        shares[self._actions] = self.shares[: len(self._actions)]
+        costs = np.zeros(len(self._prover._costs))
+        costs[self._actions] = self._floats
         random_number = self._prover._random.random
-        shares = dict(zip(self._actions, self.shares, strict=False))
-        missed: list[Cut] = []
-        while len(missed) < _DISJOINT_CUTS:
-            random_costs = {
-                a: cost * (0.5 + random_number()) for a, cost in zip(self._actions, self._floats, strict=True)
-            }
-            cut = self._cutter.cut(
-                self._used, sorted(self._actions, key=lambda a: (-shares[a], random_costs[a]))
-            )
-            if cut is None or sum(shares[a] for a in cut.members) >= _SATISFIED:
-                break
-            missed.append(cut)
-            shares.update(dict.fromkeys(cut.members, 1.0))
-        self.admit(missed)
-        return bool(missed)
+        cuts = disjoint_violated_cuts(self._cutter, self._used, shares, costs, random_number, _SATISFIED)
+        violated = list(islice(cuts, tuning.RELAXATION.cuts))
+        self.admit(violated)
+        return bool(violated)
 
     def _add_violated_cuts(self) -> bool:
         """Add violated cuts grown around the incumbent less one action; return whether there were any.

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.garbage import uncollected
 from foon_asp.hypergraph import greedy_stages as greedy
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineError
 from foon_asp.hypergraph.extension import extended, extensions
 from foon_asp.hypergraph.gap import Gap, Stage
@@ -24,7 +25,7 @@ from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.reductions import ALL, Reduction
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
 from foon_asp.hypergraph.task import Task
-from foon_asp.hypergraph.tuning import PRESOLVE, PresolveTuning
+from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import Objective, Problem
 
 if TYPE_CHECKING:  # few questions need it
@@ -154,10 +155,10 @@ def _without_branching(
     redundant: bool,
     course: Course,
 ) -> Reduced:
-    tuning = replace(PRESOLVE, branching_budget=0, landmark_actions=math.inf)
+    presolve_tuning = replace(tuning.PRESOLVE, branching_budget=0, landmark_actions=math.inf)
     with uncollected():
         with guard():
-            task = _task(problem, objectives, reductions, expired, tuning)
+            task = _task(problem, objectives, reductions, expired, presolve_tuning)
             if redundant:  # costs of all actions are needed later
                 task = _with_costs(task, range(len(task.graph.needs)))
             presolve = _Presolve(task, listener, guard)
@@ -180,12 +181,12 @@ def at_costs(
     the incumbent; that is given up where more than ``max_actions`` remain and the first cuts exclude hardly
     any.
     """
-    tuning = replace(PRESOLVE, rounds=6, branching_budget=0, landmark_actions=math.inf)
+    presolve_tuning = replace(tuning.PRESOLVE, rounds=6, branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
-        tuning = replace(tuning, relaxed_actions=tuning.easy_actions)
+        presolve_tuning = replace(presolve_tuning, relaxed_actions=presolve_tuning.easy_actions)
     reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
     with uncollected():
-        task = _task(subproblem.problem, objectives, reductions, expired, tuning)
+        task = _task(subproblem.problem, objectives, reductions, expired, presolve_tuning)
         task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
 
         def fixed_first(task: Task, gap: Gap, h_values: HValues) -> Stage:
@@ -209,9 +210,9 @@ def _task(
     objectives: Sequence[Objective],
     reductions: Collection[Reduction],
     expired: Expired,
-    tuning: PresolveTuning | None = None,
+    presolve_tuning: PresolveTuning | None = None,
 ) -> Task:
-    tuning = tuning or PRESOLVE
+    presolve_tuning = presolve_tuning or tuning.PRESOLVE
     graph, coarse = graph_of(problem, objectives), CoarseCosts(problem, objectives[0])
     return Task(
         problem,
@@ -219,9 +220,9 @@ def _task(
         frozenset(reductions),
         expired,
         graph,
-        graph.thin(tuning.required_achievers, coarse),
+        graph.thin(presolve_tuning.required_achievers, coarse),
         coarse,
-        tuning,
+        presolve_tuning,
         range(len(graph.needs)),
     )
 
@@ -236,8 +237,8 @@ def _with_costs(task: Task, actions: Collection[int]) -> Task:
 
 def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
     """Repeat bounds, better trees and reductions, until nothing changes or the incumbent is optimal."""
-    costs, tuning = task.costs, task.tuning
-    if costs is not None and len(gap.candidates) > tuning.easy_actions:
+    costs, limits = task.costs, task.tuning
+    if costs is not None and len(gap.candidates) > limits.easy_actions:
         gap = greedy.follow_h_add(task, gap)
         yield gap
     if costs is not None and costs.limited:  # any tree below the limit will do
@@ -245,7 +246,7 @@ def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
         gap = gap.closed() if greedy.meets(task, gap, greedy.NO_CUTS) else gap
         yield gap
     thorough = False  # as a last resort
-    for _ in range(0 if gap.proved else tuning.rounds):
+    for _ in range(0 if gap.proved else limits.rounds):
         before = gap
         if costs is not None and task.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
             guide = greedy.guide_by(task, gap)
@@ -257,14 +258,14 @@ def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
             gap = greedy.prune_beside_landmarks(task, gap)
         yield gap
         slow = len(gap.candidates) > max(
-            tuning.neighbourhood_actions, tuning.worthwhile_share * len(before.candidates)
+            limits.neighbourhood_actions, limits.worthwhile_share * len(before.candidates)
         )  # another turn would bring little
         if (slow or not _differs(gap, before)) and costs is not None and not thorough:
             gap = yield from _relaxed(task, gap)
             if gap.proved:
                 return gap
         changed = _differs(gap, before)
-        if not changed and (thorough or len(gap.candidates) <= tuning.easy_actions):
+        if not changed and (thorough or len(gap.candidates) <= limits.easy_actions):
             return gap
         thorough = not changed
         h_values = derive(task.graph, gap.candidates, costs or task.coarse, h_add=False).cost
@@ -337,12 +338,12 @@ def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
     Most of a large network is too far from the goals for a good tree, and is never looked at. Returns the gap
     over all actions and h-values of objects, ``None`` where the network is small or no tree is found.
     """
-    size, tuning = len(task.graph.needs), task.tuning
-    if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= tuning.lazy_actions:
+    size, limits = len(task.graph.needs), task.tuning
+    if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= limits.lazy_actions:
         return None
     all_actions = range(size)
-    nearest = neighbourhood(task.thin, all_actions, task.coarse, math.inf, enough=tuning.first_actions)
-    if len(nearest) < tuning.first_actions:
+    nearest = neighbourhood(task.thin, all_actions, task.coarse, math.inf, enough=limits.first_actions)
+    if len(nearest) < limits.first_actions:
         return None
     narrowed = restricted_subproblem(task.thin, nearest, task.coarse, size // 4)
     if narrowed is None:

@@ -1,9 +1,11 @@
-"""Numbers that steer the stages of a presolve; none of them decides what is proved, only how fast.
+"""Numbers that steer the stages of this room; none of them decides what is proved, only how fast.
 
-`benchmarks/tuning.py` halves and doubles each and prints what moves, on the instances that it names.
+``benchmarks/tuning.py`` halves and doubles each, and prints what moves on the instances that it names. Stages
+read the objects at the end of this module when they are called.
 """
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 
 @dataclass(frozen=True)
@@ -42,4 +44,82 @@ class PresolveTuning:
     worthwhile_share: float = 0.9
 
 
+@dataclass(frozen=True)
+class CutTuning:
+    """How landmark cuts and h-values are looked for.
+
+    ``guided_cuts``: cuts, or one for each target, after which the h-values that guide cuts are computed anew.
+    ``guides``: times that h-values are computed for as many cuts as there are objects: each looks at all of
+    them, and more would make cuts quadratic (``benchmarks/shapes.py``, grid by kitchen).
+    ``lazy_depth``: depth of the recursion of lazy h_max. ``lazy_looks``: actions that it looks at in all.
+    """
+
+    guided_cuts: int = 64
+    guides: int = 32
+    lazy_depth: int = 100
+    lazy_looks: int = 200_000
+
+
+@dataclass(frozen=True)
+class RelaxationTuning:
+    """How the linear relaxation is solved and searched.
+
+    ``cuts``: violated cuts with disjoint landmarks that are separated for one LP solution, at most.
+    ``target_cutters``: total size of the cutters of single targets, times all actions, at most.
+    ``stalled_solutions``: solutions after which a bound that hardly grows counts as optimal.
+    ``stalled_growth``: share of the gap that these solutions have to gain.
+    ``node_rounds``: rounds of separation at each node but the root.
+    ``guess_interval``: nodes from one at which derivations are guessed to the next.
+    ``landmark_bits``: bits of the landmark sets by which first achievers are computed; in larger graphs,
+    landmarks among fewer objects are.
+    """
+
+    cuts: int = 40
+    target_cutters: int = 8
+    stalled_solutions: int = 8
+    stalled_growth: float = 0.01
+    node_rounds: int = 3
+    guess_interval: int = 10
+    landmark_bits: int = 400_000_000
+
+
+@dataclass(frozen=True)
+class ProofTuning:
+    """How certificates are looked for, by :class:`foon_asp.hypergraph.optimality_proof.Prover`.
+
+    ``orders``: orders in which cuts are grown before the relaxation counts as optimal.
+    ``rounded_actions``: actions; with more, rounded weights are tried before exact ones.
+    ``greedy_cuts``: known cuts that get weights greedily; others get weights only from the LP.
+    ``fixed_share``: share of the actions; with more above the cutoff, these are fixed before anything else.
+    ``search_budget``: actions that branch and bound may look at; about a minute of processor time.
+    ``proof_length``: objects and landmark actions that a proof by branching may list.
+    """
+
+    orders: int = 3
+    rounded_actions: int = 1000
+    greedy_cuts: int = 200
+    fixed_share: float = 0.5
+    search_budget: int = 10_000_000
+    proof_length: int = 2_000_000
+
+
+@dataclass(frozen=True)
+class PriceTuning:
+    """How a limit on a sum over units is priced, by :mod:`foon_asp.hypergraph.priced_limit`.
+
+    ``prices``: prices that are tried. ``easy_units``: units; with fewer, clingo is faster than another price.
+    ``rising_units``: units; with more, rising prices are tried. ``rising_prices``: these, at most.
+    """
+
+    prices: int = 2
+    easy_units: int = 1000
+    rising_units: int = 2000
+    rising_prices: int = 8
+
+
+LOWEST_PRICE = Fraction(3, 2)  # of the rising prices, times the mean cost of a unit
 PRESOLVE = PresolveTuning()
+CUTS = CutTuning()
+RELAXATION = RelaxationTuning()
+PROOF = ProofTuning()
+PRICES = PriceTuning()

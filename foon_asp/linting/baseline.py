@@ -14,10 +14,10 @@ from foon_asp.text.plain_file import read_content
 
 
 class KnownFinding(Struct, frozen=True):
-    """How often a finding is known.
+    """A finding in a baseline, and how often it is known.
 
-    ``file`` is named as seen from the folder of the baseline, and ``text`` is the line, or the message where
-    there is none: a finding is the same wherever in the file its line stands.
+    ``file`` is relative to the folder of the baseline. ``text`` is the line, or the message of a finding
+    without a line: line numbers do not count.
     """
 
     file: str
@@ -33,14 +33,14 @@ class Baseline(Struct, frozen=True, tag_field="schema", tag=schema_name("lint-ba
 
     @classmethod
     def of(cls, file: Path, findings: Iterable[Diagnostic]) -> "Baseline":
-        """Return the baseline that knows these findings, to be written to a file."""
+        """Return the baseline of these findings, to be written to a file."""
         counts = Counter(_key(file, finding) for finding in findings)
         return cls(tuple(KnownFinding(*key, count) for key, count in sorted(counts.items())))
 
     def compared(self, file: Path, findings: Iterable[Diagnostic]) -> tuple[list[Diagnostic], int]:
-        """Return the findings that the baseline of a file does not know, and the number of those missing.
+        """Return the findings that a file's baseline does not list, and the number of listed ones gone.
 
-        Where a line has more findings of a code than are known, the last ones are new.
+        Where a line has more findings of a code than are listed, the last ones are new.
         """
         remaining = Counter[tuple[str, str, str]]()
         for known_finding in self.known:

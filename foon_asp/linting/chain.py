@@ -13,8 +13,8 @@ _SHORT_DISTANCE, _MIDDLE_DISTANCE, MAX_DISTANCE = 2, 8, 25  # units from making 
 class Chain:
     """The units of one sheet in order of their first copies; positions are those in this order.
 
-    ``producers`` and ``consumers`` have by node the positions of the units that make and take it, in order.
-    ``made`` has by position the nodes that a unit makes.
+    ``producers`` and ``consumers`` have by node the positions of the units that make it and that need it,
+    in order. ``made`` has by position the nodes that a unit makes.
     """
 
     def __init__(self, network: Network, copies: list[tuple[Copy, int]]) -> None:
@@ -35,7 +35,7 @@ class Chain:
                 self.consumers.setdefault(node, []).append(position)
 
     def unmade(self) -> Iterator[tuple[int, int]]:
-        """Yield each node that is taken and made by no unit, with the position of its first consumer."""
+        """Yield each needed node that no unit makes, with the position of its first consumer."""
         return (
             (node, positions[0]) for node, positions in self.consumers.items() if node not in self.producers
         )
@@ -64,7 +64,7 @@ class Chain:
         return None
 
     def _may_be_one(self, node: int, consumer: int, other: int, producer: int) -> bool:
-        """Whether a node taken may be a node made; not if both have different locations that are listed."""
+        """Whether a needed node and a made node may be meant as one; not with different, listed locations."""
         needed, made = self.objects[node], self.objects[other]
         return _differ_little(needed, made, consumer - producer) and (
             needed.relations == made.relations
@@ -102,7 +102,7 @@ def _differ_little(needed: ObjectNode, made: ObjectNode, distance: int) -> bool:
 
 
 def _lacks_a_state(needed: ObjectNode, made: ObjectNode) -> bool:
-    """Whether the node taken is the node made without one of its states."""
+    """Whether the needed node is the made node without one of its states."""
     other_parts = needed.relations, needed.contents
     same = needed.label == made.label and any(other_parts) and other_parts == (made.relations, made.contents)
     return same and needed.states < made.states and len(made.states - needed.states) == 1

@@ -17,7 +17,7 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 class Side(NamedTuple):
-    """The inputs (``number`` 0) or the outputs (1) of a unit, and the nodes of its other side."""
+    """One side of a unit: its inputs (``number`` 0) or its outputs (1), and the nodes of its other side."""
 
     unit: int
     number: int
@@ -100,7 +100,7 @@ class Context:
         return sheet.where(self.node_line(copy, side, node), sheet)
 
     def node_line(self, copy: Copy, side: int, node: ObjectNode) -> int:
-        """Return the index of the object line of a node of a copy of a unit, or else of its first line."""
+        """Return the index of the object line of a node of a copy of a unit; without one, its first line."""
         blocks = self.node_lines(copy)[side]
         return next((index for index, listed_node in blocks if listed_node == node), copy.at)
 

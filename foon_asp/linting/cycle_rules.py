@@ -45,7 +45,7 @@ def dead_cycle(context: Context) -> Iterator[Diagnostic]:
 
 
 def _available(context: Context) -> set[int]:
-    """Return the nodes of kitchens among the files, and utensils without relations and contents."""
+    """Return the nodes of kitchens among the linted files, and utensils without relations and contents."""
     available = {
         number
         for number, node in enumerate(context.network.objects)

@@ -10,7 +10,7 @@ _EXAMPLES = Path(__file__).parent / "examples"
 
 
 class Example(NamedTuple):
-    """The content of files by name, and the findings of the rule in them."""
+    """Example files of a rule: their contents by name, and the findings of the rule in them."""
 
     files: dict[Path, bytes]
     findings: list[Finding]

@@ -20,8 +20,8 @@ class Finding(Value, frozen=True):
     Attributes:
         line: From 1; 0 where the file as a whole is meant.
         column: From 1.
-        severity: An error says something else than is meant, or nothing; a warning probably does; a note
-            points at what may be intended.
+        severity: error: the file certainly does not say what is meant; warning: it probably does not; note:
+            it may be intended.
         text: The line; null where there is none, or in JSON where it is longer than a thousand letters.
         fix: The line as it should be, where it can be mended.
         mendable: Whether --fix mends it.

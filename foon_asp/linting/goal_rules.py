@@ -50,6 +50,7 @@ def _lists(context: Context, of_goals: bool) -> Iterator[Sheet]:
 
 
 def _tagged(sheet: Sheet, context: Context) -> Iterator[Diagnostic]:
+    """Yield a finding for each tagged goal that is not made."""
     tagged = {
         sheet.lines[written_line.first]
         for written_line in sheet.distinct_lines

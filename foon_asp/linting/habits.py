@@ -14,8 +14,8 @@ _NOTHING: frozenset[str] = frozenset()
 class Changes(NamedTuple):
     """The changes of a unit that may be slips: names by the node that shows them.
 
-    ``lost`` were in a container that keeps other contents, ``gained`` are in one that had other contents;
-    ``new`` outputs and ``gone`` inputs are mentioned on one side alone.
+    ``lost`` and ``gained`` are contents of a container that keeps other contents; ``new`` outputs and
+    ``gone`` inputs are mentioned on one side only.
     """
 
     lost: dict[int, list[str]]
@@ -125,20 +125,20 @@ class Habits:
         return Changes(lost, gained, unrelated, [], bool(kept))
 
     def of_units(self) -> Iterator[tuple[str, Habit]]:
-        """Yield the motion of each unit, and the habit that this unit alone shows."""
+        """Yield the motion of each unit, and the habit that this unit by itself shows."""
         for motion, changes in zip(self.network.motions, self.units, strict=True):
             changed = changes.keeps, changes.lost, changes.gained, changes.new, changes.gone
             yield motion, Habit(1, *(int(bool(names)) for names in changed))
 
 
 def _comes_from(node: ObjectNode, places: AbstractSet[str]) -> bool:
-    """Whether a node is from one of the places by its states and relations: water from a tap."""
+    """Whether a state or relation of a node names a place that it comes from, as water from a tap."""
     origins = {state.removeprefix("from ") for state in node.states if state.startswith("from ")}
     return not places.isdisjoint(origins.union(origin for word, origin in node.relations if word == "from"))
 
 
 def _is_in_a_state(name: str, nodes: Collection[ObjectNode]) -> bool:
-    """Whether a state of a node has the stem of a name, as salted has that of salt."""
+    """Whether a state of a node shares its stem with a name, as salted with salt."""
     words = [word for node in nodes for state in node.states for word in state.split(" ")]
     return any(word.startswith(name_word[:_STEM]) for name_word in words_in([name]) for word in words)
 
@@ -156,7 +156,7 @@ def _containers(
 
 
 def _unlike(names: Collection[str], others: Collection[str]) -> list[str]:
-    """Return the names that have no word of the others, sorted."""
+    """Return the names that share no word with the others, sorted."""
     words = words_in(others)
     return sorted(name for name in names if words.isdisjoint(words_in([name])))
 

@@ -16,7 +16,7 @@ _MANY = 4  # names of one id; with more it means nothing, and they are reported 
 
 
 class _Use(NamedTuple):
-    """A name used with an id, or an id with a name: how often, and the index of the first line."""
+    """A name used with an id, or an id used with a name, with their count and the index of the first line."""
 
     text: str
     often: int
@@ -24,9 +24,9 @@ class _Use(NamedTuple):
 
 
 def _shared(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
-    """Yield the letter of each id, the id, and the names that it has, the most frequent first.
+    """Yield the letter of each id, the id, and its names, the most frequent first.
 
-    Or, not ``by_id``, of each name the ids.
+    Unless ``by_id``, yield names with their ids instead.
     """
     uses: dict[tuple[str, str], dict[str, _Use]] = {}
     for line, first, often in sheet.distinct_lines:

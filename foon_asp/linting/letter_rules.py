@@ -50,7 +50,7 @@ def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
 
 
 def _unseen(line: str) -> tuple[int, str] | None:
-    """Return the column of the first character that is not seen, and the message about it."""
+    """Return the column of the first invisible character, and the message about it."""
     for column, letter in enumerate(line, 1):
         category = unicodedata.category(letter)
         if letter not in "\t " and category in _UNSEEN:

@@ -74,6 +74,7 @@ class LintedFiles:
         return [sorted(copies) for copies in by_sheet]
 
     def _read(self, file: Path) -> None:
+        """Read a file as a sheet or a table, and collect the remarks of the reader."""
         text = self.reader.text(file, self._contents.get(file))
         lines = split_lines(text)
         format_ = format_of(text, str(file))
@@ -91,10 +92,11 @@ class LintedFiles:
             for unit in self.reader.listed_units(text, str(file)):
                 self._add(unit.motion.motion, unit.sides, unit.inputs[0].source.line - 1)
         else:
-            for motion, inputs, outputs, sources in self.reader.units(text, str(file)):
+            for motion, inputs, outputs, sources, _ in self.reader.units(text, str(file)):
                 self._add(motion, (inputs, outputs), sources[0].line - 1)
 
     def _read_json(self, text: str, file: Path, format_: Format, source_lines: list[str]) -> None:
+        """Read a JSON file as the equivalent lines of FOON text."""
         lines: list[str] = []
         sources: list[Source] = []
         sheet = Sheet(str(file), lines, self.reader, sources, source_lines=source_lines)

@@ -29,6 +29,7 @@ def near_name(context: Context) -> Iterator[Diagnostic]:
 
 
 def _near_findings(context: Context, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
+    """Yield a finding in each sheet about a name that is probably another one."""
     names, words = context.names, context.vocabulary.words
     counts = names.counts[kind]
     is_slip = words.issuperset(words_of(meant)) and not words.issuperset(words_of(name))
@@ -87,6 +88,7 @@ def unknown_ingredient(context: Context) -> Iterator[Diagnostic]:
 
 
 def _unknown(context: Context, bracket: Bracket, role: str, advice: str) -> Iterator[Diagnostic]:
+    """Yield findings about bracketed names that no unit takes or makes as an object."""
     names, vocabulary = context.names, context.vocabulary
     for name, mentions in names.mentions[Kind.OBJECT].items():
         if name in names.objects or (Kind.OBJECT, name) in context.paired_names:

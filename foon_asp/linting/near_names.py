@@ -70,7 +70,7 @@ def near_names(
 
 
 def _spelt_two_ways(counts: dict[str, int], known_words: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Yield pairs that are the same without doubled letters, capitals and blanks, the rarer name first."""
+    """Yield pairs that are equal but for doubled letters, capitals and blanks, the rarer name first."""
     spellings: dict[str, list[str]] = {}
     for name in counts:
         if len(name) <= _LONGEST:
@@ -119,7 +119,7 @@ def deletion_index(words: Iterable[str]) -> dict[str, list[str]]:
 
 
 def _unknown(name: str, known_words: Collection[str]) -> bool:
-    """Whether a name has a word that is not among the known ones, if there are any."""
+    """Whether a name has a word that is not known; false where no words are known."""
     return bool(known_words) and any(word.isalpha() and word not in known_words for word in name.split(" "))
 
 
@@ -156,7 +156,7 @@ def _is_slip(
 
 
 def _is_rare_beside(word: str, other: str, rare: int, frequent: int) -> bool:
-    """Whether a word is so much rarer than a similar one that it is hardly meant."""
+    """Whether a word is so much rarer than a similar word that it is probably a slip."""
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     shortest, ratio = min(len(word), len(other)), frequent / rare
     if frequent < _RATIO:

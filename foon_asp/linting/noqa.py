@@ -59,14 +59,14 @@ def noqa(context: Context) -> Iterator[Diagnostic]:
 
 
 def _commented(context: Context) -> Iterator[Sheet]:
-    """Yield the sheets and tables with comments; those of JSON have no line that is one."""
+    """Yield the sheets and tables that can have comments; JSON has none."""
     for sheet in (*context.sheets, *context.files.tables):
         if any(line.startswith("#") and _COMMENT.match(line) for line in sheet.lines):
             yield sheet
 
 
 def _comments(sheet: Sheet) -> list[_Comment]:
-    """Return the comments of a sheet; one at the end is about the last line, on which there is nothing."""
+    """Return the comments of a sheet; comments after the last content are about the last line."""
     comments: list[_Comment] = []
     following = len(sheet.lines)
     for index in range(len(sheet.lines) - 1, -1, -1):

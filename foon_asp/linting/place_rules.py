@@ -77,7 +77,7 @@ def other_place(context: Context) -> Iterator[Diagnostic]:
 
 
 def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Faults:
-    """Yield the objects in or on something that the unit has not, while something else contains them."""
+    """Yield the objects in or on something absent from the unit, where something else contains them."""
     labels_of_side = {node.label for node in side.nodes}
     for node in side.nodes:
         for word, related_object in node.relations:
@@ -105,7 +105,7 @@ def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Faul
 
 
 def _places_are_usual(context: Context) -> bool:
-    """Whether what a container contains is mostly said to be in or on it."""
+    """Whether contents of a container are mostly stated to be in or on it."""
     placed = unplaced = 0
     for side in context.sides:
         for holder in side.nodes:
@@ -117,9 +117,10 @@ def _places_are_usual(context: Context) -> bool:
 
 
 def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Faults:
-    """Yield the foods without a place, while the only thing that contains them is one.
+    """Yield the foods without a place, where exactly one place contains them.
 
-    Not where more of the only food in it is put there: then it is in it on the other side.
+    A food is skipped where it is the only content and the other side of the unit has it in that place: then
+    the unit puts it there.
     """
     for node in side.nodes:
         if node.relations or node.contents or node.label not in habits.foods:
@@ -138,7 +139,7 @@ def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Faults:
 
 
 def only_after(side: Side) -> Faults:
-    """Yield an input for each thing that it is in or on, where only the outputs have that."""
+    """Yield an input for each thing that it is in or on and that only the outputs have."""
     own_labels, other_labels = ({node.label for node in nodes} for nodes in (side.nodes, side.others))
     for node in side.nodes:
         for word, related_object in node.relations:

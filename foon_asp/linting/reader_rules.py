@@ -168,6 +168,7 @@ def space_for_tab(context: Context) -> Iterator[Diagnostic]:
 
 
 def _flags_behind_a_space(sheet: Sheet) -> Iterator[Diagnostic]:
+    """Yield findings about motion flags after a space, which are read as a part of the name."""
     labels = {line.label: line.fields for line, _, _ in sheet.distinct_lines if isinstance(line, ObjectLine)}
     flagged = any(labels.values())
     for line, index, _ in sheet.distinct_lines:

@@ -9,7 +9,7 @@ from foon_asp.text.reader import FoonReader
 
 
 def remarks_by_code(files: LintedFiles, vocabulary: Vocabulary) -> dict[str, list[Diagnostic]]:
-    """Return the remarks of the reader by code, only with fixes that mend, and none that is doubtful.
+    """Return the remarks of the reader by code, with only such fixes as mend and are not doubtful.
 
     A line is written anew as a whole; where its brackets are of two kinds, the other may be meant.
     """
@@ -41,7 +41,7 @@ def _is_doubtful(remark: Diagnostic, vocabulary: Vocabulary, reader: FoonReader)
 
 
 def _mending_fix(remark: Diagnostic, reader: FoonReader) -> str | None:
-    """Return the mended line, unless the remark would be made on that, too."""
+    """Return the mended line, unless the reader would make the same remark on it."""
     if remark.code == "missing-separator":
         return f"{remark.excerpt}\n//"
     if remark.fix is None or remark.fix == "//":

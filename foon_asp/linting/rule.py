@@ -35,9 +35,10 @@ RULES: dict[str, Rule] = {}
 
 
 def rule(code: str, severity: Severity, meaning: str) -> Callable[[Finder], Finder]:
-    """Make the decorator that turns a function of a context into the rule of a code.
+    """Return a decorator that makes a function of a context the rule of a code.
 
-    The docstring of the function explains the code to users: ``lint --explain`` and ``docs/lint.md`` show it.
+    The docstring of the function explains the code to users: ``lint --explain`` and ``docs/lint.md`` show
+    it.
     """
 
     def enter(find: Finder) -> Finder:

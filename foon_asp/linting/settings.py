@@ -58,7 +58,7 @@ def _matches(path: PurePosixPath, pattern: str) -> bool:
 
 
 def find_settings(files: Sequence[Path]) -> LintSettings:
-    """Read the settings nearest to the files, in the folder that holds them all or in one above it.
+    """Read the settings nearest to the files: in the common folder of all files, or in one above it.
 
     Raises :class:`InputError`, with the place, for settings that are not understood.
     """
@@ -143,7 +143,7 @@ def _faults_of_codes(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
 
 
 def _position(text: str, path: tuple[str, ...]) -> tuple[int, int]:
-    """Return line and column of the last of the words that stand behind the name of the table, in order."""
+    """Return the line and column of the last of some words, which follow the name of the table in order."""
     matches = [match for match in _WORD.finditer(text) if match[0][0] != "#"]
     words = [match[0].strip("\"'") for match in matches]
     table = _TABLE.split(".")[1:]

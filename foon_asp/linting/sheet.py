@@ -63,7 +63,7 @@ class Sheet:
 
     @property
     def lists_goals(self) -> bool:
-        """Whether it is a list of goals: its name says so, as that of ``goal_nodes.json`` does."""
+        """Whether the file is a list of goals, by its name, such as ``goal_nodes.json``."""
         return self.entries is not None and "goal" in Path(self.file).name.lower()
 
     @cached_property
@@ -134,7 +134,7 @@ class Sheet:
         return Diagnostic(Severity.NOTE, "", message, source, line)
 
     def _in_json(self, index: int, name: str) -> tuple[Source, str]:
-        """Return the place and line of a name, in quotes, behind the place where its unit or entry begins."""
+        """Return the place and line of a quoted name in JSON, within its unit or entry."""
         start = self.source_of(index)
         positions = self._quoted.get(name, [])
         number = bisect_left(positions, (start.line, start.column))
@@ -145,7 +145,7 @@ class Sheet:
 
     @cached_property
     def _quoted(self) -> dict[str, list[tuple[int, int]]]:
-        """Lines and columns of everything in quotes in a JSON file."""
+        """The lines and columns of all quoted texts in a JSON file."""
         positions: dict[str, list[tuple[int, int]]] = {}
         for number, line in enumerate(self.source_lines, 1):
             for match in _QUOTED.finditer(line):

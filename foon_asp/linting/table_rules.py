@@ -70,7 +70,7 @@ def missing_rate(context: Context) -> Iterator[Diagnostic]:
 
 
 def _rows(sheet: Sheet) -> dict[str, int]:
-    """Return the first row of each name, but of rows that cannot be read."""
+    """Return the first row of each name, without rows that cannot be read."""
     bad = {fault.source.line for fault in _faults(sheet)}
     rows: dict[str, int] = {}
     for index, line in enumerate(sheet.lines):

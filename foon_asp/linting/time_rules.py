@@ -29,7 +29,7 @@ class _Clock(NamedTuple):
 
     @classmethod
     def of(cls, match: re.Match[str], group: int = 0) -> "_Clock":
-        """Read the time that a group of a match is."""
+        """Read the time in a group of a match."""
         seconds = 0
         for number in match[group].split(":"):
             seconds = 60 * seconds + int(number)
@@ -61,6 +61,7 @@ def _timed_sheets(context: Context) -> Iterator[tuple[Sheet, list[_Step], dict[i
 
 
 def _steps(sheet: Sheet, copies: list[tuple[Copy, int]]) -> Iterator[_Step]:
+    """Yield the units of a sheet that have times."""
     starts = [copy.at for copy, _ in copies]
     for index, text in enumerate(sheet.lines):
         if text[:1] == "M" and ":" in text and isinstance(sheet.reader.parse(text), MotionLine):
@@ -71,7 +72,7 @@ def _steps(sheet: Sheet, copies: list[tuple[Copy, int]]) -> Iterator[_Step]:
 
 
 def _spans(text: str) -> list[tuple[_Clock, _Clock]]:
-    """Return the beginnings and ends behind a motion: in two fields, or in one with ``-`` between."""
+    """Return the pairs of beginning and end after a motion: in two fields, or in one with ``-`` between."""
     start = text.find("\t", text.find("\t") + 1)
     spans = [(_Clock.of(match, 1), _Clock.of(match, 2)) for match in _SPAN.finditer(text, start)]
     clocks = [_Clock.of(match) for match in _CLOCK.finditer(text, start)]
@@ -91,7 +92,7 @@ def time_value(context: Context) -> Iterator[Diagnostic]:
 
 
 def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
-    """Return a message, and the column that it is about, for each line with a time that is hardly meant."""
+    """Return for each line with an unlikely time a message, and the column that it is about."""
     clocks = [clock for step in steps for span in step.spans for clock in span]
     usual = median(clock.seconds for clock in clocks)
     has_hours = 4 * sum(clock.text.count(":") == 2 for clock in clocks) > len(clocks)

@@ -43,7 +43,10 @@ class Vocabulary:
 
     @classmethod
     def of(cls, names: Names, habits: Habits) -> "Vocabulary":
-        """Learn from files; a utensil is an object that others are in or on, or that a table says is one."""
+        """Collect the vocabulary of files.
+
+        Utensils are objects that others are in or on, and those in tables.
+        """
         rows: list[_Row] = [
             (kind, name, ()) for kind in Kind if kind is not Kind.WORD for name in names.mentions[kind]
         ]

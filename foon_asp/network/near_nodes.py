@@ -12,7 +12,10 @@ _NodePart = tuple[str, str]
 
 
 class Slip(NamedTuple):
-    """The one name in which two nodes differ: ``kind`` is label, state, relation, container or ingredient."""
+    """The only name in which two nodes differ.
+
+    ``kind`` is label, state, relation, container or ingredient.
+    """
 
     kind: str
     name: str

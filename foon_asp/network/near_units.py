@@ -31,7 +31,7 @@ class UnitDifference(NamedTuple):
 
     @property
     def is_slip(self) -> bool:
-        """Whether both units have a name here, and the two are spelt almost alike."""
+        """Whether both units have a name here, and the two names are almost alike."""
         one, other = self.left, self.right
         return bool(one and other) and (
             one_letter_apart(one, other) or without_doubles(one) == without_doubles(other)
@@ -147,7 +147,7 @@ def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
 
 
 def _candidates(lefts: Sequence[FunctionalUnit], rights: Sequence[FunctionalUnit]) -> list[list[int]]:
-    """Return for each unit of ``lefts`` the places in ``rights`` with the most common rare keys."""
+    """Return for each unit of ``lefts`` the indices in ``rights`` that share the most rare keys with it."""
     by_key: defaultdict[object, list[int]] = defaultdict(list)
     for j, unit in enumerate(rights):
         for key in _index_keys(unit):
@@ -199,7 +199,7 @@ def _parts(node: ObjectNode) -> list[_NodePart]:
 
 
 def _node_differences(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifference, ...]:
-    """Return the differences of two nodes; if both have as many names of a kind, these are paired."""
+    """Return the differences of two nodes; equal numbers of names of a kind are paired."""
     parts, other_parts = Counter(_parts(node)), Counter(_parts(other))
     differences = []
     for kind in ("label", "state", "relation", "ingredient"):
@@ -222,5 +222,5 @@ def _may_correspond(node: ObjectNode, other: ObjectNode, differences: Sequence[U
 
 
 def _object(part: str) -> str:
-    """Return the object of a relation, or an ingredient as it is."""
+    """Return the object of a relation; an ingredient is returned unchanged."""
     return part.partition(" [")[2].rstrip("]") or part

@@ -13,11 +13,12 @@ A label without states may stand in thousands of containers, so the container is
 
 
 class NodePattern(NamedTuple):
-    """An entry of a kitchen or goals file, which knows only the container and not the relation's word.
+    """An entry of a kitchen or goals file, a pattern of nodes.
 
-    ``container`` matches any relation to that object; ``None`` matches only nodes with no relation,
-    unless ``relations`` names some, which then have to be there by word. ``ingredients`` is the sorted
-    multiset of everything contained, under whatever word, unless ``contents`` has it by word.
+    It has a container without the relation's word. ``container`` matches any relation to that object;
+    ``None`` matches only nodes with no relation, unless ``relations`` names some, which then have to be
+    there by word. ``ingredients`` is the sorted multiset of everything contained, under whatever word,
+    unless ``contents`` has it by word.
     """
 
     label: str
@@ -67,7 +68,7 @@ class NodePattern(NamedTuple):
 
 
 def lookup_keys(node: ObjectNode) -> list[LookupKey]:
-    """Return the keys that a node is found by: one for each related object, a single one if it has none."""
+    """Return the keys under which a node is found: a key for each related object, or a single key."""
     label, states, relations, contents = node
     ingredients = node.ingredients if contents else ()
     related_objects = {relation.object for relation in relations} if relations else (None,)

@@ -74,7 +74,7 @@ class ObjectNode(NamedTuple):
 
     @property
     def ingredients(self) -> tuple[str, ...]:
-        """The ingredients of all contents together, sorted; duplicates are kept."""
+        """The ingredients of all contents in one sorted tuple; duplicates are kept."""
         if len(self.contents) == 1:
             return self.contents[0].ingredients
         return tuple(sorted(item for contents in self.contents for item in contents.ingredients))

@@ -26,11 +26,11 @@ def quoted(name: str, special: re.Pattern[str] = NAME) -> str:
 
 
 def in_quotes(name: str) -> str:
-    """Return a name as a string of JSON, with escapes for all that a terminal is not sent as it is."""
+    """Return a name as a JSON string; characters that are not sent to a terminal are escaped."""
     return '"' + _ESCAPED.sub(lambda letter: encode_basestring_ascii(letter[0])[1:-1], name) + '"'
 
 
 def unquoted(written: str) -> str:
-    """Return the name that is written in the notation, with or without quotes, blanks around it left out."""
+    """Return the name that a notation stands for, with or without quotes, stripped of blanks."""
     written = written.strip(" ")
     return str(json.loads(written, strict=False)) if written.startswith('"') else written

@@ -14,7 +14,7 @@ def joined(name: str) -> str:
 
 
 def without_doubles(name: str) -> str:
-    """Return a name :func:`joined`, with letters that stand doubled once."""
+    """Return a name as :func:`joined` does, with doubled letters written once."""
     return re.sub(_DOUBLED, r"\1", joined(name))
 
 

@@ -115,6 +115,7 @@ class StandInTable(NamedTuple):
     def _edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
+        """Yield the edits between two nodes: kind, parts of served and serving node, price."""
         if (serving, served) in self.pairs:
             yield Edit.NODE, str(served), str(serving), self.pairs[serving, served]
             return
@@ -143,6 +144,7 @@ class StandInTable(NamedTuple):
     def _of_contents(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
+        """Yield the edits between the contents of two nodes."""
         if serving.contents == served.contents:
             return
         ours, theirs = Counter(served.ingredients), Counter(serving.ingredients)
@@ -184,4 +186,35 @@ _EDITS: Mapping[Edit, Fraction | None] = {
     Edit.FEWER_INGREDIENT: Fraction(5),
     Edit.CONTENTS: None,
 }
-_WORDS: Mapping[tuple[Edit, str], Fraction | None] = {}
+# What somebody has to do first is not made up for by a price.
+_DONE = (
+    *(
+        "cooked",
+        "baked",
+        "fried",
+        "boiled",
+        "grilled",
+        "roasted",
+        "steamed",
+        "sauteed",
+        "toasted",
+        "hardboiled",
+    ),
+    *(
+        "chopped",
+        "sliced",
+        "diced",
+        "cubed",
+        "minced",
+        "grated",
+        "shredded",
+        "halved",
+        "quartered",
+        "crushed",
+    ),
+    *("peeled", "mashed", "ground", "melted", "beaten", "whipped", "kneaded", "hot"),
+)
+_WORDS: Mapping[tuple[Edit, str], Fraction | None] = {
+    **{(Edit.FEWER_STATE, state): None for state in _DONE},
+    **{(Edit.MORE_STATE, state): None for state in ("dirty", "burnt", "rotten")},
+}

@@ -85,7 +85,7 @@ class StartingKitchen(ABC, Generic[File]):
 
     @abstractmethod
     def granting(self, o: int) -> Iterable[File]:
-        """Return the files whose kitchen is granted a node that one of their units makes."""
+        """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
 
     @abstractmethod
     def files_of(self, units: Iterable[int]) -> Iterable[File]:
@@ -158,7 +158,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         return [unit for unit in self._network.producers[o] if o not in inputs[unit]]
 
     def granting(self, o: int) -> Sequence[str]:
-        """Return the files whose kitchen is granted a node that one of their units makes."""
+        """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
         return self._granting.get(o, ())
 
     def files_of(self, units: Iterable[int]) -> Iterator[str]:

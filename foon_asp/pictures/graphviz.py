@@ -59,7 +59,7 @@ def coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
 
 
 def _laid_out(drawing: Drawing, text: str, form: str) -> bytes:
-    """Return Graphviz' output of a form (svg, json, plain) for a drawing, whose DOT is ``text``."""
+    """Return the output of Graphviz in a format (svg, json, plain); ``text`` is the drawing as DOT."""
     kind, max_units, advice = "tree", BOXED_UNITS, "look at its page (foon-asp view)"
     if drawing.graph:
         kind, max_units, advice = "network", MAX_UNITS, "show a part of it (--goal, --unit)"

@@ -76,7 +76,10 @@ def _difference(difference: UnitDifference) -> str:
 
 
 def _unit(unit: Unit | None, marked: set[tuple[str, str | None]]) -> str:
-    """Return the HTML of a unit, with the ``marked`` kinds and names in bold; an empty cell for ``None``."""
+    """Return the HTML of a unit, with some kinds and names in bold (``marked``).
+
+    An empty cell for ``None``.
+    """
     if unit is None:
         return '<section class="none"></section>'
     motion = f"<b>{_text(unit.motion)}</b>" if ("motion", unit.motion) in marked else _text(unit.motion)

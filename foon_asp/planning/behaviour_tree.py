@@ -24,11 +24,11 @@ UNTIL_SUCCESS = -1  # num_attempts of RetryUntilSuccessful without a limit
 
 
 class Branch(Value, frozen=True):
-    """A tree to follow, and how long.
+    """A task tree to follow, and for how long.
 
     Attributes:
-        failures: After how many failed executions the next branch begins.
-        robot_steps: The steps, in an order that executes; one that another branch did is skipped.
+        failures: How many executions may fail before the next branch begins.
+        robot_steps: The steps, in an order that executes; a step that another branch did is skipped.
     """
 
     failures: int
@@ -62,9 +62,9 @@ LIST_SEPARATOR = ";"  # BehaviorTree.CPP splits lists at it
 
 
 def node_name(node: Node) -> str:
-    """Return the name of an object node in ports, which is its name in PDDL.
+    """Return the name of an object node in ports: its name in PDDL, or else its label.
 
-    What the network does not have, such as a place that is no object of a unit, has its label.
+    A node that the network does not have, such as a place that is no object of a unit, has only its label.
     """
     if node.id is None:
         return _plain(node.label).replace(LIST_SEPARATOR, ",")
@@ -77,7 +77,7 @@ def behaviour_tree_text(name: str, branches: Sequence[Branch], is_used_up: bool)
     Parameters:
         name: The name of the root, for people.
         branches: The trees to follow, the first one first; if a branch has failed as often as it may, the
-            next one begins with what is there by then.
+            next one begins with the nodes available at that moment.
         is_used_up: Whether items are used up; then there is one branch.
     """
     root = ElementTree.Element("root", BTCPP_format="4", main_tree_to_execute="Plan")
@@ -103,6 +103,7 @@ def behaviour_tree_text(name: str, branches: Sequence[Branch], is_used_up: bool)
 
 
 def _reactive_sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
+    """Add a reactive sequence with the steps of a branch to an element, for items that last."""
     sequence = ElementTree.SubElement(parent, "ReactiveSequence", name=escaped(name))
     for step in steps:
         fallback = ElementTree.SubElement(sequence, "Fallback", name=_step_name(step))
@@ -114,6 +115,7 @@ def _reactive_sequence(parent: ElementTree.Element, name: str, steps: Iterable[R
 
 
 def _sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
+    """Add a sequence with the steps of a branch to an element, for items that are used up."""
     sequence = ElementTree.SubElement(parent, "Sequence", name=escaped(name))
     for step in steps:
         _condition(sequence, step.needs)
@@ -131,6 +133,7 @@ def _condition(parent: ElementTree.Element, nodes: Iterable[Node]) -> None:
 
 
 def _action(parent: ElementTree.Element, step: RobotStep) -> None:
+    """Add the action of a step, with its ports."""
     numbers = {"rate": step.rate, "duration": step.duration}
     ElementTree.SubElement(
         parent,
@@ -153,7 +156,7 @@ def _action(parent: ElementTree.Element, step: RobotStep) -> None:
 
 
 def _plain(name: str) -> str:
-    """Return a name that BehaviorTree.CPP does not take for an entry of the blackboard, ``{name}``."""
+    """Return a name that BehaviorTree.CPP does not read as a blackboard entry, ``{name}``."""
     return escaped(name).replace("{", "(").replace("}", ")")
 
 

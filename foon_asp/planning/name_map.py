@@ -75,10 +75,10 @@ class NamedAction(Value, frozen=True):
     """An action of the planning task.
 
     Attributes:
-        unit: The unit that it executes; null for one that takes a kitchen item.
+        unit: The unit that it executes; null for an action that takes a kitchen item.
         inputs: The names of the inputs.
         outputs: The names of the outputs.
-        cost: What it costs in the planning task.
+        cost: Its cost in the planning task.
     """
 
     name: str
@@ -105,6 +105,7 @@ class MapFile(AboutGoals, frozen=True, kw_only=True, tag=schema_name(KIND)):
         actions: The actions.
         stock: Where items are used up: how many copies the kitchen has.
         stays: Where items are used up: the labels and nodes that the user declared to last or to be used up.
+        wanted: Where items are used up: how many copies of goals are wanted, where that is not one.
     """
 
     scales: tuple[Scale, ...]
@@ -112,6 +113,7 @@ class MapFile(AboutGoals, frozen=True, kw_only=True, tag=schema_name(KIND)):
     actions: tuple[NamedAction, ...]
     stock: tuple[Copies, ...] | UnsetType = UNSET
     stays: tuple[Staying, ...] | UnsetType = UNSET
+    wanted: tuple[Copies, ...] | UnsetType = UNSET
 
     @classmethod
     def of(cls, task: PlanningTask) -> Self:
@@ -147,6 +149,7 @@ class MapFile(AboutGoals, frozen=True, kw_only=True, tag=schema_name(KIND)):
             actions=tuple(actions),
             stock=UNSET if items is None else copies_of(network, items.stock),
             stays=UNSET if items is None else tuple(_staying(network, *pair) for pair in items.told.items()),
+            wanted=UNSET if items is None else copies_of(network, items.wanted),
         )
 
 
@@ -177,7 +180,7 @@ def read_name_map(file: Path) -> NameMap:
 
 
 def _read(tree: Mapping[str, Any]) -> NameMap:
-    """Return the name map of a JSON tree; a part that lacks or has another type is an error of Python."""
+    """Return the name map of a JSON tree; a missing or wrong part raises the errors of Python."""
     nodes = {entry["name"]: read_node_json(entry["object"]) for entry in tree["objects"]}
     units = {
         action["name"]: FunctionalUnit.of(
@@ -197,6 +200,9 @@ def _read(tree: Mapping[str, Any]) -> NameMap:
                 entry["label"] or read_node_json(entry["object"]): bool(entry["stays"])
                 for entry in tree["stays"]
             },
-            {read_node_json(entry["object"]): int(entry["copies"]) for entry in tree["stock"]},
+            *(
+                {read_node_json(entry["object"]): int(entry["copies"]) for entry in tree[key]}
+                for key in ("stock", "wanted")
+            ),
         )
     return NameMap(units, taking, goals, str(tree["containers"]), int(tree["level"]), items)

@@ -93,6 +93,7 @@ def _text(file: Path) -> str:
 
 
 def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsAvailable) -> "Behaviour":
+    """Return the behaviour of an XML element, with its children."""
     from py_trees import behaviours, composites, decorators  # noqa: PLC0415
 
     name = element.get("name", element.get("ID", element.tag))
@@ -121,6 +122,7 @@ def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsA
 
 
 def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
+    """Return a behaviour without children: ``ask`` returns success, failure, or ``None`` while it runs."""
     from py_trees.behaviour import Behaviour  # noqa: PLC0415
     from py_trees.common import Status  # noqa: PLC0415
 
@@ -133,6 +135,7 @@ def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
 
 
 def _execution(element: ElementTree.Element) -> Execution:
+    """Return the execution in the ports of an action."""
     ports = element.attrib
     needs, makes, acted_on, tools, origins, destinations = (
         _names(element, port) for port in ("needs", "makes", "acted_on", "tools", "from", "to")

@@ -18,9 +18,9 @@ class Change(Value, frozen=True):
     """One object of a step, and its nodes on both sides.
 
     Attributes:
-        object: The label.
-        before: null for an object that the step brings forth.
-        after: null for an object that is no more after the step.
+        object: The label of the object.
+        before: The node before the step; null for an object that the step makes.
+        after: The node after the step; null for an object that is gone then.
     """
 
     object: str
@@ -47,13 +47,14 @@ class RobotStep(NumberedStep, frozen=True, kw_only=True):
 
     Attributes:
         objects: Every object that the unit lists, with its node before and after the step.
-        needs: The inputs that have to be there, and where each comes from.
-        makes: What is there after the step, and was no input.
+        needs: The inputs that have to be available, and where each comes from.
+        makes: The outputs that were no inputs.
         acted_on: Inputs that are neither tools nor places.
         tools: Utensils that nothing comes from or goes to; without a list of utensils, such inputs that are
             the same after the step.
-        origins: What the inputs are in, on or at; an object that the unit does not list has its label alone.
-        destinations: What the outputs are in, on or at, as it is after the step.
+        origins: The places that the inputs are in, on or at; an object that the unit does not list has its
+            label alone.
+        destinations: The places that the outputs are in, on or at, as they are after the step.
         after: The steps that have to be done before.
         rate: The success rate; null without rates.
         duration: In seconds; null where none is stated.
@@ -125,12 +126,12 @@ def robot_steps(
 
 
 def _is_tool(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
-    """Return whether an input that is no place is a tool; without utensils, what stays the same is one."""
+    """Return whether an input that is no place is a tool; without utensils, an input that stays the same."""
     return node.label in problem.utensils if problem.utensils else node in unit.outputs
 
 
 def _places(network: Network, nodes: Sequence[ObjectNode], others: Iterable[ObjectNode]) -> tuple[Node, ...]:
-    """Return what nodes of one side of a unit are in, on or at, as the node of that or of the other side."""
+    """Return the places that nodes on one side of a unit are in, on or at, as nodes of either side."""
     by_label: dict[str, ObjectNode] = {}
     for node in (*nodes, *others):
         by_label.setdefault(node.label, node)
@@ -139,7 +140,7 @@ def _places(network: Network, nodes: Sequence[ObjectNode], others: Iterable[Obje
 
 
 def _changes(network: Network, unit: FunctionalUnit) -> Iterator[Change]:
-    """Yield the objects of a unit: an input is paired with the same output, or the next of its label."""
+    """Yield the objects of a unit; an input is paired with the same output, or else the next of its label."""
     pairs: list[tuple[ObjectNode | None, ObjectNode | None]] = []
     remaining = list(unit.outputs)
     unchanged = [node for node in unit.inputs if node in remaining]

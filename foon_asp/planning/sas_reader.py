@@ -181,7 +181,7 @@ class _Reader:
 
 
 def _fact(name: str, variable: str) -> str:
-    """Return the PDDL atom of a value, or where it has none, the name of its variable and its own."""
+    """Return the PDDL atom of a value; without an atom, the names of its variable and of the value."""
     atom = _ATOM.fullmatch(name)
     if atom is None:
         return f"({variable} {name})"
@@ -191,7 +191,7 @@ def _fact(name: str, variable: str) -> str:
 
 
 def _unique(names: list[list[str]]) -> list[str]:
-    """Return the names of all facts in order, made unique by the number of their variable."""
+    """Return the names of all facts in order; equal names get the number of their variable."""
     counts = Counter(name for values in names for name in values)
     return [
         f"{name} [var{variable}]" if counts[name] > 1 else name

@@ -128,7 +128,7 @@ def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
 
 
 def _most_similar(before: Iterable[ObjectNode | None], after: ObjectNode) -> ObjectNode | None:
-    """Return the node with the most ingredients in common with ``after``; ties go to the first."""
+    """Return the node that shares the most ingredients with ``after``; of several, the first."""
     return max(
         before, key=lambda node: 0 if node is None else len({*node.ingredients} & {*after.ingredients})
     )

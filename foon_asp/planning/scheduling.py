@@ -127,9 +127,9 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
 
 
 def _color(spans: dict[int, tuple[int, int]]) -> dict[int, int]:
-    """Color an interval graph: return a number from 1 for each span, distinct among spans that overlap.
+    """Color an interval graph with numbers from 1; overlapping spans have different numbers.
 
-    Of the free numbers, a span gets the one that is free the longest.
+    Of the free numbers, a span gets the one that has been free the longest.
     """
     free_at: list[int] = []
     numbers: dict[int, int] = {}

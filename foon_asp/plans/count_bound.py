@@ -76,13 +76,15 @@ class CountBound:
         optimality is not proved.
         """
         counts = None
-        for assumed_cap in (_FEWER, _FAR):
+        wanted = max(self._flows.targets.values(), default=1)
+        for assumed_cap in (_FEWER * wanted, _FAR * wanted):
             counts = self._counts(measures, rounds, assumed_cap)
             if counts is not None and max(counts.values(), default=0) < assumed_cap:
                 break
         return counts
 
     def _counts(self, measures: Sequence[Measure], rounds: int, assumed_cap: int) -> Counts | None:
+        """Return counts of least cost as :meth:`counts` does, under an assumed cap of counts."""
         counts: Counts | None = None
         for _ in range(rounds):
             model = self._model(measures, assumed_cap)
@@ -93,6 +95,8 @@ class CountBound:
                 if whole is None:
                     return None
                 x = whole
+                for a in range(self._size):  # the larger a count, the less of an indicator satisfies floats
+                    x[self._size + a] = float(x[a] > 0.5)
                 model.keep(measure, x)
                 self._check()
             counts = {a: round(x[a]) for a in range(self._size) if x[a] > 0.5}
@@ -112,12 +116,10 @@ class CountBound:
             columns.difference_update(range(self._size, 2 * self._size))
         if x is None or any(abs(x[column] - round(x[column])) > INTEGRALITY for column in columns):
             return None
-        for a in range(self._size):
-            x[self._size + a] = float(x[a] > 0.5)
         return x
 
     def none(self) -> bool:
-        """Return whether it is proved that no counts satisfy the conditions, so that there is no plan."""
+        """Return whether it is proved that no counts satisfy all conditions, so that no plan exists."""
         model = self._model(())
         while True:
             solved = model.program.solve({})
@@ -229,6 +231,7 @@ class CountBound:
                 return solved
 
     def _model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
+        """Return a new relaxation with all known conditions."""
         every = (*measures, *(level.measure for level in self._levels))
         different = {id(measure): measure for measure in every}
         model = CountModel(
@@ -324,22 +327,21 @@ class CountBound:
         executed action that is not reached, the landmark are the achievers on the border.
         """
         flows = self._flows
+        asks, targets = flows.lacking(bool(model.stock))
         used = {a for a in range(self._size) if x[self._size + a] > INTEGRALITY}
         reached = {o for o, column in model.stock.items() if x[column] > INTEGRALITY}
-        if not model.stock:
-            reached = {o for o, n in flows.start.items() if n}
         waiting = set(used)
         grown = True
         while grown:
-            ready = [a for a in waiting if reached.issuperset(flows.asks[a])]
+            ready = [a for a in waiting if reached.issuperset(asks[a])]
             grown = bool(ready)
             waiting.difference_update(ready)
             reached.update(o for a in ready for o in flows.adds[a])
         missed: list[tuple[int, int | None]]
-        missed = [(target, None) for target in flows.targets if target not in reached]
-        missed += [(next(o for o in flows.asks[a] if o not in reached), a) for a in sorted(waiting)]
+        missed = [(target, None) for target in targets if target not in reached]
+        missed += [(next(o for o in asks[a] if o not in reached), a) for a in sorted(waiting)]
         for o, action in missed[:1]:
-            landmark = self._landmark(o, reached, used, model)._replace(action=action)
+            landmark = self._landmark(o, asks, reached, used, model)._replace(action=action)
             self._landmarks.append(landmark)
             model.add_landmark(landmark)
         return bool(missed)
@@ -347,9 +349,21 @@ class CountBound:
     @cached_property
     def _cutter(self) -> Cutter:
         flows = self._flows
-        objects = {o for numbers in (*flows.asks, *flows.adds, flows.targets, flows.start) for o in numbers}
+        asks, targets = flows.lacking(priced=False)
+        objects = {o for numbers in (*asks, *flows.adds, targets) for o in numbers}
+        return Cutter(
+            Hypergraph(max(objects, default=0) + 1, asks, list(map(tuple, flows.adds)), ()), targets
+        )
+
+    @cached_property
+    def _cutter_of_stock(self) -> Cutter:
+        """The cutter where copies of the stock have a price: its cuts hold no initial object."""
+        flows = self._flows
+        asks, targets = flows.lacking(priced=True)
         start = [o for o, count in flows.start.items() if count]
-        return Cutter(Hypergraph(max(objects, default=0) + 1, flows.asks, flows.adds, start), flows.targets)
+        objects = {o for numbers in (*asks, *flows.adds, targets, start) for o in numbers}
+        adds = list(map(tuple, flows.adds))
+        return Cutter(Hypergraph(max(objects, default=0) + 1, asks, adds, start), targets)
 
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
@@ -358,9 +372,12 @@ class CountBound:
         action. Without a derivation no landmarks are looked for.
         """
         derivation, size = self.derivation, self._size
-        if not derivation or self._cutter.hopeless or not self._cutter.targets:
+        if not derivation:
             return False
-        cutter, cuts = self._cutter, dict[tuple[int, ...], tuple[int, ...]]()
+        cutter = self._cutter_of_stock if model.stock else self._cutter
+        if cutter.hopeless or not cutter.targets:
+            return False
+        cuts: dict[tuple[int, ...], tuple[int, ...]] = {}
         keeps = [[a for a in derivation if a != gone] for gone in derivation]
         for number in range(_ORDERS):
             order = sorted(cutter.actions, key=lambda a: (-x[size + a], self._random.random()))
@@ -375,9 +392,10 @@ class CountBound:
             model.add_landmark(self._landmarks[-1])
         return bool(cuts)
 
-    def _landmark(self, o: int, reached: set[int], used: set[int], model: CountModel) -> Landmark:
+    def _landmark(
+        self, o: int, asks: Sequence[Sequence[int]], reached: set[int], used: set[int], model: CountModel
+    ) -> Landmark:
         """Return a landmark by a small cut grown backwards from an object that is not reached."""
-        asks = self._flows.asks
         zone, stack, edge = {o}, [o], dict[int, None]()
         while stack:
             for achiever in self._achievers.get(stack.pop(), ()):
@@ -400,7 +418,7 @@ def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
 
 
 def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[_Bounds]:
-    """Yield bounds of child nodes that together exclude just the whole values of some columns."""
+    """Yield the bounds of child nodes which together exclude only the current whole values of the columns."""
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):
         value = round(x[column])

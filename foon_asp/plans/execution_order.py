@@ -1,4 +1,4 @@
-"""Order of executions that stand in a partial order."""
+"""Order of executions under precedences (a partial order)."""
 
 from graphlib import TopologicalSorter
 

@@ -15,8 +15,8 @@ class ContainerRule(StrEnum):
 
     ``strict``: a unit needs every input. ``implied``, the rule of the published searches: a unit does not
     need a utensil that holds exactly one ingredient, if that ingredient, located in that utensil (by any
-    relation), is also an input of the unit. A unit does not make a container that it skips, since nothing
-    would have made it before.
+    relation), is also an input of the unit. A skipped container is no output of the unit
+    either: nothing has made it before.
 
     Example:
         >>> [str(rule) for rule in foon_asp.ContainerRule]

@@ -11,7 +11,7 @@ from foon_asp.network import ObjectNode
 
 
 class Known(StrEnum):
-    """The data that an objective needs, and that are optional."""
+    """A kind of optional data that an objective may need."""
 
     RATES = "rates"
     PRICES = "prices"

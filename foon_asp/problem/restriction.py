@@ -31,14 +31,14 @@ class Contradiction(NamedTuple):
 
 
 class Left(Sequence[tuple[int, ...]]):
-    """Sets of units without removed ones; each is filtered at its first access."""
+    """The unit sets of a restriction without removed units; a set is filtered at its first access."""
 
     def __init__(self, sets: Sequence[tuple[int, ...]], removed: Callable[[int], bool]) -> None:
         self._sets, self._removed = sets, removed
         self._filtered: dict[int, tuple[int, ...]] = {}
 
     def instead(self, others: Mapping[int, tuple[int, ...]]) -> "Left":
-        """Return a copy in which the sets at some positions are replaced by ``others``, unfiltered."""
+        """Return a copy with other sets at some positions: ``others`` by position, which are not filtered."""
         copy = Left(self._sets, self._removed)
         copy._filtered.update(others)
         return copy

@@ -9,7 +9,7 @@ from fractions import Fraction
 @functools.total_ordering
 @dataclass(frozen=True)
 class Root:
-    """The positive root of a positive rational number ``of``, with the least possible ``degree``.
+    """A positive root of a positive rational number: the ``degree``-th root of ``of``, of the least degree.
 
     :meth:`taken` makes one. Roots are compared exactly, by their powers, which are rational numbers.
     """

@@ -42,6 +42,7 @@ class Shop:
     """
 
     def __init__(self, problem: Problem) -> None:
+        """Collect the starting nodes, products and dishes of a problem."""
         self._problem = problem
         self._starting = starting_nodes(problem.network, problem.goals)
         self._products = _products(problem)

@@ -36,7 +36,7 @@ def write(pipe: RawIOBase, content: bytes) -> None:
 
 
 def write_if_open(pipe: RawIOBase, content: bytes) -> None:
-    """Write bytes completely, or not where the other end is closed: who waits for an answer notices that."""
+    """Write bytes completely, or nothing where the other end is closed; a reader of answers notices that."""
     with contextlib.suppress(OSError, ValueError):
         write(pipe, content)
 

@@ -55,8 +55,9 @@ def share(
     jobs: int,
     seconds: Callable[[Task], float | None] = lambda _: None,
 ) -> "Iterator[Done[Task, Answer]]":
-    """Do tasks in up to ``jobs`` processes; yield them with their answers, in the order in which they finish.
+    """Do tasks in up to ``jobs`` processes.
 
+    Yield them with their answers, in the order in which they finish. ``begin`` runs first in each process.
     A process that dies, or exceeds the ``seconds`` of its task, is replaced by another one. The time of the
     first task of a process starts once ``begin`` has returned in it.
     """
@@ -101,7 +102,10 @@ _Messages = SimpleQueue[tuple[int, _Message]]  # with the number of the process 
 
 
 def _next(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tuple[int, _Message]:
-    """Wait for a message; that of a process which died, or exceeds its time, is ``lost``."""
+    """Wait for a message, and return it with the number of its worker.
+
+    A worker that died or exceeds its time has the message ``lost``.
+    """
     while True:
         ends = {worker.end_by: number for number, worker in workers.items() if worker.end_by is not None}
         end = min(ends, default=None)

@@ -89,7 +89,7 @@ class PythonProcess:
         return self.end()
 
     def abandon(self) -> None:
-        """Forget the process after a fork: it is a child of the process that this one is a copy of."""
+        """Forget the process after a fork: it is no child of this process, only of the original one."""
         self._process.returncode = 0
         self._group_ended = True
         self._threads = []  # which a copy does not have

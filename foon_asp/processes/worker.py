@@ -102,7 +102,7 @@ class Worker(PythonProcess):
         return super().end()
 
     def abandon(self) -> None:
-        """Forget the process after a fork: it is a child of the process that this one is a copy of."""
+        """Forget the process after a fork: it is no child of this process, only of the original one."""
         self._busy = True
         super().abandon()
 

@@ -39,7 +39,7 @@ class Question(NamedTuple):
         return frozenset(unit for unit, name in enumerate(self.network.motions) if name == motion)
 
     def touching(self, nodes: Iterable[int]) -> Units:
-        """Return the units that have one of some nodes among their inputs or outputs."""
+        """Return the units with one of these nodes among their inputs or outputs."""
         touched, network = frozenset(nodes), self.network
         sides = enumerate(zip(network.inputs, network.outputs, strict=True))
         return frozenset(
@@ -103,7 +103,7 @@ def meaning(rule: Rule, question: Question) -> Meaning:
 
 
 def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
-    """Return the sources of each unit that a constraint depends on; ``None`` where it depends on none."""
+    """Return the sources of each unit that a constraint reads; ``None`` where it reads no sources."""
     places = None if rule["rule"] == OWN else LIBRARY[rule["rule"]].places
     if places is None:
         return None
@@ -134,7 +134,7 @@ def _least_rate(question: Question, least_rate: int) -> Meaning:
 
 
 def _vouching(network: Network, unit: int, allowed: list[str]) -> set[str]:
-    """Return those names that are of a place of the unit: a file, with folders or without, or a video."""
+    """Return the names that match the source of a unit: a file name, a path, or the address of a video."""
     return {
         name
         for source in network.sources[unit]
@@ -182,7 +182,7 @@ def _require_ingredient(question: Question, required_ingredient: str) -> Meaning
 
 
 def _require_intermediate(question: Question, required_intermediate: str) -> Meaning:
-    """Of one of the nodes, a tree has a unit that makes and does not need it, and one that needs it."""
+    """Require a unit that makes one of the nodes without needing it, and another one that needs it."""
     network = question.network
     wanted = []
     for o in question.labelled(required_intermediate):
@@ -193,7 +193,7 @@ def _require_intermediate(question: Question, required_intermediate: str) -> Mea
 
 
 def _one_each(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
-    """Return units as things of their own that count 1 each."""
+    """Return units as things, each of amount 1."""
     one = Fraction(1)
     return [(frozenset({unit}), one) for unit in sorted(units)]
 
@@ -224,7 +224,7 @@ def _at_most_utensil_uses(question: Question, limited_utensil: str, max_utensil_
 
 
 def _at_most_price(question: Question, max_price: int) -> Meaning:
-    """Prices are limited in hundredths, and a unit without one is not used."""
+    """Limit the sum of prices, in hundredths; a unit without a price is excluded."""
     prices = {unit: question.price(unit) for unit in range(len(question.network))}
     unknown = frozenset(unit for unit, price in prices.items() if price is None)
     things = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
@@ -237,11 +237,11 @@ def _not_both_motions(question: Question, one_motion: str, other_motion: str) ->
 
 
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
-    """No unit with the later motion may run on what is made without the earlier one.
+    """Forbid a unit with the later motion to run on anything made without the earlier motion.
 
-    What the units that a tree has for sure can make without the earlier motion is *early* in it. Else a
-    node can only be other than early if a unit that the tree may have makes it, and has the earlier motion
-    or needs a node that can be other than early: by the order in which the tree executes.
+    The nodes that a tree's certain units can make without the earlier motion are *early*. Any other node
+    becomes late only through a possible unit that makes it, and that either has the earlier motion or needs
+    a late node; the order of execution decides.
     """
     network, needs, gives = question.network, question.needs, question.gives
     first = question.with_motion(earlier_motion)

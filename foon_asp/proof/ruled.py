@@ -61,7 +61,7 @@ class Ruled:
         self.limits.update((len(meanings) + number, Limit(*limit)) for number, limit in enumerate(several))
 
     def bars(self, used: Units, without: Units) -> dict[int, Units]:
-        """Return by constraint the units in no tree with the used units and none of ``without``."""
+        """Return by constraint the units excluded by the used units, where ``without`` are excluded."""
         return {number: barred(used, without) for number, barred in self.barred.items()}
 
     def fault(self, units: Units, others: Units) -> str | None:
@@ -103,7 +103,10 @@ class Ruled:
             self.makers[node].append(unit)
 
     def _thing(self, units: Units) -> int:
-        """Return the member that counts for a thing: its only unit, or a step that all its units need."""
+        """Return the member that counts for a set of units.
+
+        The only unit, or a new step that all of them need.
+        """
         if len(units) == 1:
             (only,) = units
             return only

@@ -16,7 +16,7 @@ Sides = Callable[[int], Collection[int | None]]
 
 
 class Makes(NamedTuple):
-    """What is in the kitchen, and what each unit needs and makes, by id; ``None`` is not in the network."""
+    """The kitchen, and the inputs and outputs of each unit, by id; ``None`` is a node outside the network."""
 
     kitchen: Collection[int]
     needs: Sides
@@ -24,9 +24,9 @@ class Makes(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """What is claimed: ``by_dissimilarity`` first, and that no tree has less of it than ``bound``.
+    """The claim about stand-ins: whether dissimilarity comes first, and a lower bound on it.
 
-    ``bound`` is ``None`` where there is no tree, or nothing is said of dissimilarity.
+    ``bound`` is ``None`` where there is no tree, or the claim does not bound dissimilarity.
     """
 
     by_dissimilarity: bool
@@ -34,7 +34,7 @@ class Claim(NamedTuple):
 
 
 def stand_in_prices(table: StandInTable) -> list[list[str]]:
-    """Return all that a claim about stand-ins depends on, in order."""
+    """Return all data about stand-ins that a claim depends on, in a fixed order."""
     edits = [[str(edit), str(price)] for edit, price in table.edits.items()]
     words = [[str(edit), word, str(price)] for (edit, word), price in table.words.items()]
     kinds = {str: "label", ObjectNode: "node"}
@@ -123,7 +123,7 @@ def _bare(label: str) -> str:
 
 
 class _Servers:
-    """The nodes that serve for other ones; of the ``nearest``, those that cost no more than a free one."""
+    """The nodes that stand in for others; with ``nearest``, only those no more expensive than a free node."""
 
     def __init__(self, network: Network, table: StandInTable, free: Collection[int], nearest: bool) -> None:
         self.free, self.nearest = free, nearest
@@ -164,9 +164,9 @@ class _Servers:
 
 
 def _least(network: Network, servers: _Servers, goals: Sequence[int], makes: Makes) -> dict[int, Fraction]:
-    """Return a lower bound on the dissimilarity of what makes each node that is not free; others have none.
+    """Return a lower bound on the dissimilarity of making each node; free nodes have none.
 
-    A unit is at least as dear as the dearest of its inputs, a stand-in adds its price.
+    A unit costs at least as much as its most expensive input; a stand-in adds its price.
     """
     makers: dict[int, list[set[int]]] = {}
     stack = [goal for goal in goals if goal not in servers.free]

@@ -54,14 +54,14 @@ class Means(NamedTuple):
     tools: Mapping[ToolName, int | None]
 
     def waited_for(self, problem: Problem, label: str) -> bool:
-        """Return whether objects of a label are tools that a step may have to wait for."""
+        """Return whether a step may have to wait for objects of a label, as tools in limited number."""
         if label in self.tools:
             return self.tools[label] is not None
         named = any(isinstance(name, ObjectNode) and name.label == label for name in self.tools)
         return named or label in problem.utensils
 
     def is_free(self, label: str) -> bool:
-        """Return whether several steps can use one object with a label at once."""
+        """Return whether several steps can share one object of a label at the same time."""
         return label in self.tools and self.tools[label] is None
 
     def name(self, node: ObjectNode, label: str) -> ToolName:
@@ -148,7 +148,7 @@ def timetable_fault(
 
 
 class _Run:
-    """A kitchen in which steps start and end."""
+    """The state of the kitchen while steps start and end."""
 
     def __init__(
         self, problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
@@ -181,23 +181,22 @@ class _Run:
                 yield f"waits for {hand}, which is at step {self._working[hand] + 1}"
         yield from self._wrong_tools(unit, step.tools)
         needed, consumes, _ = self._executions.of(unit)
-        for node in needed:
+        for node, amount in needed.items():
             if self._executions.is_endless(node):
                 continue
-            goes = node in consumes
+            goes = consumes.get(node, 0)
             in_use = 0 if self._means.is_free(node.label) and not goes else self._read[node]
-            if self._copies[node] <= in_use:
+            if self._copies[node] < in_use + amount:
                 yield f"lacks a copy of {node}"
             self._copies[node] -= goes
-            self._read[node] += not goes
+            self._read[node] += amount - goes
         self._working.update(dict.fromkeys(hands, number))
 
     def _end(self, number: int) -> None:
         unit, step = self._plan[number], self._steps[number]
         needed, consumes, made = self._executions.of(unit)
-        for node in needed:
-            if node not in consumes:
-                self._read[node] -= 1  # of what is endless, nobody asks for this
+        for node, amount in needed.items():
+            self._read[node] -= amount - consumes.get(node, 0)  # of what is endless, nobody asks for this
         self._copies.update(made)
         for tool in step.tools:
             # what of it is at other tools, nobody asks this one for
@@ -233,5 +232,5 @@ class _Run:
 
 
 def _hands(step: TimedStep) -> list[int | Tool]:
-    """Return the tools and the agent of a step."""
+    """Return the resources that a step occupies: its tools and its agent."""
     return [*step.tools] + ([] if step.agent is None else [step.agent])

@@ -27,7 +27,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
-from foon_asp.network import STAND_IN, Network, StandInTable, UnitPrices, node_at_level
+from foon_asp.network import STAND_IN, Amounts, Network, StandInTable, UnitPrices, node_at_level
 from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
 from foon_asp.proof.ruled import Limit, Ruled
 from foon_asp.proof.stand_ins import Claim as StandInClaim
@@ -89,6 +89,7 @@ class Subject(NamedTuple):
 
     ``stated`` are digests by name that are not computed from the other fields; those named in ``trusted``
     were never computed. ``stand_ins`` is the table of the stand-ins that the network has, ``None`` without.
+    ``amounts`` count in plans, whose certificates state them.
     """
 
     network: Network
@@ -98,6 +99,7 @@ class Subject(NamedTuple):
     prices: UnitPrices | None = None
     stated: Mapping[str, str] = MappingProxyType({})
     trusted: tuple[str, ...] = ()
+    amounts: Amounts = MappingProxyType({})
     stand_ins: StandInTable | None = None
 
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
@@ -163,11 +165,13 @@ class UsedUp(NamedTuple):
     """The statements about consumable items in a claim about plans.
 
     ``stock`` maps consumable kitchen items, by id, to their copies. ``stays`` maps labels, and object nodes
-    by id, to whether they stay when used, which overrides the rule.
+    by id, to whether they stay when used, which overrides the rule. ``wanted`` maps goals to the copies that
+    are wanted, where that is not one.
     """
 
     stock: Mapping[int, int]
     stays: Mapping[str | int, bool]
+    wanted: Mapping[int, int] = MappingProxyType({})
 
 
 class Verified(NamedTuple):
@@ -228,7 +232,7 @@ def read_certificate(text: str) -> Any:
 
 
 def seal(certificate: Mapping[str, Any]) -> str:
-    """Return the digest of a whole certificate but for its seal, which fits no other certificate."""
+    """Return the seal of a certificate: the digest of all other content."""
     return _digest({key: value for key, value in certificate.items() if key != "seal"})
 
 
@@ -527,9 +531,10 @@ class Check:
         return self.ruled.barred[number](units, without)
 
     def _prove(self, proof: Any, least: Amount | None) -> None:
-        """Check the branches of a proof that every tree costs at least ``least``; ``None``: that none exists.
+        """Check a proof, with its branches, that every tree costs at least ``least``.
 
-        For the latter all costs are 0, so weights that add up to more than 0 are a contradiction.
+        ``None`` stands for a proof that no tree exists: all costs are 0 then, so weights that add up to
+        more than 0 are a contradiction.
         """
         nobody: frozenset[int] = frozenset()
         waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, nobody, self.ruled.removed)]
@@ -694,7 +699,7 @@ class Check:
         return self.needs(member).union(own) if own else self.needs(member)
 
     def _needs(self, unit: int) -> frozenset[int | None]:
-        """Return the preconditions of a unit; below level 3 those common to all units that it stands for."""
+        """Return the preconditions of a unit; below level 3, those common to all units that it stands for."""
         return frozenset.intersection(*(needed for needed, _ in self._details(unit)))
 
     def _gives(self, unit: int) -> frozenset[int | None]:
@@ -745,7 +750,7 @@ class Check:
         return meaning(rule, question)
 
     def _cost(self, member: int) -> Amount:
-        """Return the cost of a unit or an item by each objective."""
+        """Return the cost of a unit or an item, one part for each objective."""
         cost: Amount = {}
         if member in self.ruled.steps:
             return cost
@@ -756,7 +761,7 @@ class Check:
         return cost
 
     def _cost_by(self, level: int, member: int) -> Fraction | None:
-        """Return the cost of a unit or an item by an objective, ``None`` where it does not count.
+        """Return the cost of a unit or an item by an objective, ``None`` if it is not counted.
 
         By ``success`` it is the exponent of a unit's rate.
         """
@@ -816,7 +821,10 @@ class Check:
     def read_weights(
         self, key: str, stated: Any, read: Callable[[Any], Amount], numbers: int = 1
     ) -> Iterator[tuple[list[int], Amount]]:
-        """Read the weights under a key of a proof; in each list, numbers name what has the weight."""
+        """Read the weights under a key of a proof.
+
+        The first ``numbers`` entries of each list name what is weighted.
+        """
         rows = [read_list(row) for row in read_list(stated)]
         names = [row[:numbers] for row in rows]
         require(
@@ -832,7 +840,7 @@ class Check:
             yield name, weight
 
     def limit_at(self, number: int) -> Limit:
-        """Return the limit of a number that has a weight."""
+        """Return the limit that a weight is for, by the limit's number."""
         require(number in self.ruled.limits, "a rule that limits nothing is given a weight")
         return self.ruled.limits[number]
 
@@ -969,7 +977,7 @@ def require(holds: bool, otherwise: str) -> None:
 
 
 def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
-    """Read an object, with just these keys if they are given."""
+    """Read a JSON object; with ``keys``, it must have exactly these keys."""
     require(isinstance(value, dict), "expected an object")
     content: dict[str, Any] = value
     require(keys is None or set(content) == set(keys), f"expected the keys {', '.join(keys or ())}")
@@ -977,21 +985,21 @@ def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]
 
 
 def read_list(value: Any) -> list[Any]:
-    """Read a list."""
+    """Read a JSON list."""
     require(isinstance(value, list), "expected a list")
     items: list[Any] = value
     return items
 
 
 def read_pair(value: Any, what: str) -> tuple[Any, Any]:
-    """Read a list of two, which is ``what``."""
+    """Read a list of two entries; ``what`` names it in the error."""
     require(isinstance(value, list) and len(value) == 2, f"expected {what}")
     first, second = value
     return first, second
 
 
 def read_number(value: Any, allowed: Container[int], what: str) -> int:
-    """Read the id or number of ``what``, one of those allowed; JSON's true is no number."""
+    """Read an id or number from the allowed ones, for ``what`` in errors; JSON's true is no number."""
     require(type(value) is int and value in allowed, f"expected {what}")
     return int(value)
 
@@ -1005,7 +1013,7 @@ def _names(value: Any) -> tuple[str, ...]:
 
 
 def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
-    """Read ids, each of them once, and if they ascend, at least one."""
+    """Read distinct ids; with ``ascending``, at least one, in ascending order."""
     numbers = read_list(value)
     require(all(type(n) is int and 0 <= n < below for n in numbers), "expected ids of the network")
     require(len(set(numbers)) == len(numbers), "an id stands twice")
@@ -1043,7 +1051,10 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
 
 
 def _own(rule: Rule, units: int) -> None:
-    """Check the form of statements taken on trust: texts of rules, their digests, and claims of units."""
+    """Check the form of claims about user rules; the claims themselves are taken on trust.
+
+    A claim has the texts of the rules, their digests, and sets of units.
+    """
     read_object(rule, ("rule", "claims", "constants", "files", "library", "limits"))
     for key in ("constants", "library"):
         _names(rule[key])

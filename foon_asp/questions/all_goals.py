@@ -52,7 +52,7 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
         return Ending.LIMIT if stopped else Ending.DONE
 
     def show(self) -> Iterator[Block]:
-        """Return a table with a row for each tree that is best by something."""
+        """Return a table with a row for each goal and distinct tree."""
         first = self.answers[0]
         trees, tree = ("task trees", "tree") if self.items == "lasting" else ("plans", "plan")
         yield f"The best {trees} ({first.conditions})"
@@ -113,7 +113,7 @@ def _measure_text(objective: Objective, measure: int | Fraction) -> str:
 
 
 def _is_short_of_copies(answer: Answer) -> bool:
-    """Return whether the answer has a tree that would not run if items were used up."""
+    """Return whether the tree of the answer, if any, would not run if items were used up."""
     return answer.used_up is not None and answer.used_up.runs is False
 
 

@@ -21,7 +21,7 @@ from foon_asp.questions.arguments import Objectives, asked_with, at_least, chose
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.options import ITEMS, TREE
+from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
@@ -161,7 +161,7 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
             yield from step_lines(shown[unit] for unit in self.in_every_optimal)
 
     def _parting_lines(self) -> Iterator[str]:
-        """Return lines with each object node where trees part, and the trees that agree there."""
+        """Return lines on each object node that trees make in different ways, with the trees of each way."""
         for parting in self.partings:
             trees = sorted(index for way in parting.ways for index in way.trees)
             subject = "they part" if len(trees) == len(self.trees) else f"{_numbered(trees)} part"
@@ -193,7 +193,7 @@ class _Listed(NamedTuple):
 
 
 class _Pool(NamedTuple):
-    """Trees in order of their costs, whether they are all, and how many of the last are not proved next."""
+    """Trees in order of their costs; whether they are all trees; the number of last trees not proved next."""
 
     trees: tuple[_Listed, ...]
     complete: bool
@@ -226,6 +226,7 @@ def alternatives_or_union(
 @question(
     *TREE,
     *ITEMS,
+    AMOUNT,
     Option(
         "union",
         "List the units of every optimal tree, and of some, proved without a list of the trees.",
@@ -322,7 +323,10 @@ def _values(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) ->
 
 
 def _partings(problem: Problem, trees: Sequence[frozenset[int]]) -> Iterator[Parting]:
-    """Yield the nodes where trees part, from the goals back: of all, then of groups that agree so far."""
+    """Yield the nodes where trees part, from the goals backwards.
+
+    First those of all trees, and then those of each group that agrees so far.
+    """
     groups = [tuple(range(len(trees)))]
     for group in groups:  # grows during the loop
         for o, ways in _ways(problem, {index: trees[index] for index in group}):
@@ -335,9 +339,9 @@ def _partings(problem: Problem, trees: Sequence[frozenset[int]]) -> Iterator[Par
 def _ways(
     problem: Problem, trees: Mapping[int, frozenset[int]]
 ) -> Iterator[tuple[int, dict[tuple[int, ...], list[int]]]]:
-    """Yield the first object node behind the goals that some trees make in different ways, if there is one.
+    """Yield the first object node, from the goals backwards, that trees make in different ways, if any.
 
-    Each node comes with the indices of trees by the units that make it in them.
+    It comes with the indices of the trees by the units that make it in them.
     """
     queue = list(problem.goals)
     for o in queue:  # grows during the loop
@@ -357,7 +361,10 @@ def _ways(
 
 
 def _most_different(pool: _Pool, count: int, settings: Settings) -> _Pool:
-    """Choose ``count`` trees of a pool whose smallest pairwise difference is greatest (max-min diversity)."""
+    """Choose ``count`` trees of a pool, such that the most similar two differ as much as possible.
+
+    This is max-min diversity.
+    """
     if len(pool.trees) <= count:
         return pool
     ended = run(

@@ -39,7 +39,7 @@ if TYPE_CHECKING:  # slow to import, and not needed to print an answer
 
 
 def of_status(status: Status) -> Ending:
-    """Return the ending of a question from the status of its answer."""
+    """Return how a question ended, from the status of its answer."""
     return {
         Status.OPTIMAL: Ending.DONE,
         Status.INFEASIBLE: Ending.NEGATIVE,
@@ -248,7 +248,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     @classmethod
     def of(cls, outcome: Outcome, bought: Collection[int] = (), **fields: Any) -> Self:
-        """Return the answer that an outcome of the solver is.
+        """Return the answer for an outcome of the solver.
 
         Parameters:
             outcome: The outcome.
@@ -483,9 +483,9 @@ def answered_under(
 ) -> Answer:
     """Solve a problem under user rules, which may be about units that no goal needs.
 
-    Of a store, the units nearest to the goals are read first, if :func:`near_goals` allows it, and else the
-    part that the goals can need, if no rule looks beyond a tree. A tree with a unit outside that part has one
-    unit more than its goals need: if that cannot improve the tree found, no more is read.
+    In a store, the units nearest to the goals are read first, if :func:`near_goals` allows it; otherwise
+    the part that the goals can need, if no rule looks beyond a tree. A tree with a unit outside that part
+    has one unit more than its goals need: if that cannot improve the tree found, no more is read.
     """
     nearby = near_goals(problem, objectives, settings)
     if nearby is not None:
@@ -552,7 +552,7 @@ def answered_nearby(nearby: "Nearby", objectives: Sequence[Objective], settings:
 
 
 def _noted(outcome: Outcome) -> Answer:
-    """Return the answer of an outcome, with the seconds that reading took, if known."""
+    """Return the answer for an outcome; its ``seconds`` include the time of reading, if known."""
     read = caller().read_seconds
     if read is not None:
         outcome.seconds["read"] = read

@@ -1,4 +1,4 @@
-"""What callers write, turned into what the rooms take; errors use the words of Python."""
+"""Arguments of Python callers, converted for the other rooms; errors use the words of Python."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
@@ -33,9 +33,9 @@ def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, .
 def usual_objectives(
     problem: Problem, names: Objectives, usual: Sequence[str], instead: Sequence[str]
 ) -> Objectives:
-    """Return the named objectives, or the usual ones of a question if none is named.
+    """Return the named objectives, or else the usual ones of a question.
 
-    Where no success rates are known, it is those ``instead``, and a warning says so.
+    Where no success rates are known, the usual ones are ``instead``, and a warning says so.
     """
     if names:
         return names
@@ -55,7 +55,7 @@ def given_constraints(constraints: Files) -> tuple[Constraint, ...]:
 def asked_with(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
     """Return the problem over all data if the settings have rules that may be about any unit.
 
-    It then has all stand-ins, as it has unless only the best tree by ``objectives`` is asked for, and
+    The result also has all stand-ins, unless only the best tree by ``objectives`` is wanted and
     dissimilarity is the first of them.
     """
     if not problem.has_stand_ins_for(objectives):
@@ -72,14 +72,14 @@ def whole(problem: Problem) -> Problem:
 
 
 def read(problem: Problem) -> Problem:
-    """Read what a problem can need, if that was put off; a command stops it at its limits."""
+    """Read everything that a problem can need, if that was deferred; a command stops it at its limits."""
     with reading():
         assert problem.goals
     return problem
 
 
 def reading() -> AbstractContextManager[object]:
-    """Stop what is read in a ``with`` block at the limits of the command that asks, if it has any."""
+    """Return a context in which reading stops at the limits of the command that asks, if it has any."""
     deadline = caller().deadline
     return nullcontext() if deadline is None else deadline.watched("reading", late=True)
 
@@ -102,7 +102,7 @@ def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, i
 
 
 def read_as(problem: Problem, items: str) -> Problem:
-    """Return a problem as a plan for it is read: with items that are ``used-up``, or ``lasting``."""
+    """Return a problem with items that are ``used-up`` or ``lasting``, as a plan for it is read."""
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
     if items == "lasting":
@@ -114,7 +114,7 @@ def read_as(problem: Problem, items: str) -> Problem:
 
 
 def at_least(number: int, least: int, what: str) -> int:
-    """Require that a number is large enough."""
+    """Raise :class:`UserError` for a number below a minimum."""
     if number < least:
         raise UserError(f"found {what}={number}, expected a whole number from {least}")
     return number

@@ -37,7 +37,7 @@ _CALLER: ContextVar[Caller | None] = ContextVar("caller", default=None)
 
 
 def caller() -> Caller:
-    """Return who asks; by default Python, which receives only warnings."""
+    """Return the current caller; by default Python, which receives only warnings."""
     return _CALLER.get() or Caller(_Warner())
 
 

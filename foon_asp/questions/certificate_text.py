@@ -46,7 +46,7 @@ def trusted_text(user_rules: Rule, of_tree: bool) -> str:
 
 
 def _limited(units: list[int], bound: int, alike: bool) -> str:
-    """Return a limit on some units in words; unless ``alike``, the units have different weights."""
+    """Return a limit on some units in words; the units have different weights unless they are ``alike``."""
     named = f"the units {', '.join(map(str, units))}" if len(units) <= _MAX_NAMED else f"{len(units)} units"
     if not alike:
         return f"what {named} count comes to {bound} at most"

@@ -75,7 +75,7 @@ def _subject(problem: Problem) -> Subject | None:
 def certify_tree(
     tree: Tree, objectives: tuple[Objective, ...], settings: Settings, file: File
 ) -> tuple[Certificate | None, Ending, str]:
-    """Prove a tree or plan that executes the best, without a search, and write the certificate.
+    """Prove that an executable tree or plan is the best, without a search, and write the certificate.
 
     Returns the certificate, how the proof ended, and what it proves.
     """
@@ -97,6 +97,7 @@ def certify_tree(
 
 
 def _of_tree(tree: Tree, objectives: tuple[Objective, ...], settings: Settings) -> Certificate | None:
+    """Return a certificate that a tree is the best, or ``None``."""
     problem, deadline, covered, units = tree.problem, settings.begun, coverage(settings), tree.ids
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         if problem.items is not None:

@@ -17,7 +17,7 @@ from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_fo
 from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import Kind, Option, Role, question
-from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
+from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, Result
@@ -46,7 +46,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         order: Positions of units, from 1, in an order that executes, as far as one does.
         used_up: Whether the tree, each step done once, runs where items are used up; null for a plan.
         costs: What the tree costs by every objective; null where the network does not have all of its units.
-        not_in_network: The positions, from 1, of units that are not in the network.
+        not_in_network: The positions, from 1, of the units that are not in the network.
         breaks: Under rules: those that the tree breaks; null if it does not execute or has units of its own.
 
     Example:
@@ -167,7 +167,7 @@ def _simulated(tree: Tree) -> Simulation:
     shortage = replay_for(tree.problem, tree).shortage
     if shortage is None:
         return Simulation(Verdict.AS_LISTED, tuple(range(len(tree))), None, None)
-    stop = Obstacle(shortage.step, shortage.node, used_up_by=shortage.consumers)
+    stop = Obstacle(shortage.step, shortage.node, used_up_by=shortage.consumers, amount=shortage.amount)
     return Simulation(Verdict.NEVER, (), stop, None)
 
 
@@ -203,6 +203,7 @@ def check_or_repair(
     GOAL_OF_PLAN,
     CONTAINERS,
     *ITEMS,
+    AMOUNT,
     Option(
         "repair",
         "Find the cheapest stand-ins and steps to add, with which every step of the tree executes.",

@@ -67,7 +67,7 @@ class Clash(Value, frozen=True, kw_only=True):
 
     @property
     def ending(self) -> Ending:
-        """Done when the constraints can hold together, and the best tree under them is proved to be it."""
+        """``DONE`` if some tree keeps to all constraints, and the best one is proved."""
         if not self.tree_exists_without_constraints:
             return Ending.NEGATIVE
         if not self.complete or self.answer is None:
@@ -124,12 +124,12 @@ class Clash(Value, frozen=True, kw_only=True):
 
 
 def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
-    """Find a smallest clash of the constraints in ``settings`` (smallest MUS), and the cheapest ones to drop.
+    """Find a smallest clash of the constraints in ``settings``, and the cheapest constraints to drop.
 
-    ``own_weights`` says what it costs to drop a rule of a constraint, 1 where it says nothing. The smallest
-    clash is found by implicit hitting sets (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS
-    Extraction with Minimal Hitting Set Dualization, CP 2015): a smallest set with one of every correction
-    known so far, until it is a clash itself.
+    ``own_weights`` are the costs of dropping rules of a constraint, 1 by default. The smallest clash
+    (smallest MUS) is found by implicit hitting sets (Ignatiev, Previti, Liffiton and Marques-Silva,
+    Smallest MUS Extraction with Minimal Hitting Set Dualization, CP 2015): a smallest set with one rule of
+    every correction set known so far, until it is a clash itself.
     """
     deadline = settings.begun
     settings = settings._replace(deadline=deadline)

@@ -276,7 +276,7 @@ def _compared_goals(
     jobs: int,
     results: File | None,
 ) -> Iterator[Comparison]:
-    """Return the comparison of each goal, read from the file of results if it is there."""
+    """Return the comparison of each goal, from the file of results where that has it."""
     goals = {str(node): goal for node, goal in zip(problem.goal_nodes, problem.goals, strict=True)}
     with contextlib.ExitStack() as stack:
         done: dict[object, Comparison] = {}

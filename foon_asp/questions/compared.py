@@ -96,6 +96,7 @@ def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> 
 
 
 def _cells(result: SearchResult, broken: Sequence[str]) -> Iterator[str | Cell]:
+    """Yield the cells of the row of a search."""
     yield result.search
     yield from (_cell(result, objective) for objective in MEASURED)
     if result.verdict is None:
@@ -108,6 +109,7 @@ def _cells(result: SearchResult, broken: Sequence[str]) -> Iterator[str | Cell]:
 
 
 def _cell(result: SearchResult, objective: Objective) -> str:
+    """Return the cell of a search by an objective: the measure and its ratio to the optimum."""
     measure = result.measures.get(objective)
     if measure is None:
         return ""

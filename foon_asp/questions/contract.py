@@ -40,7 +40,7 @@ class Kind(StrEnum):
 
 
 class Role(Flag):
-    """The roles of an option, as flags: what it belongs to."""
+    """The roles of an option, as flags: the groups of options that it belongs to."""
 
     PROBLEM = auto()
     """The problem that is asked about, which has it in Python (goals, containers): it is posed by it."""
@@ -124,10 +124,10 @@ def question(
     command: Callable[..., Result] | None = None,
     used_up: bool = False,
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Make a decorator that describes a function for a command line, see :func:`question_of`.
+    """Return a decorator that describes a function for a command line, see :func:`question_of`.
 
     The options of the command are ``options``, and after them those in the annotations of the parameters. A
-    question is built for items that are used up if it has an option for them, or says so with ``used_up``.
+    question supports items that are used up if it has an option for them, or states it with ``used_up``.
     """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
@@ -179,7 +179,7 @@ def _keywords(annotation: object) -> Mapping[str, object]:
 
 
 def _without_metadata(signature: inspect.Signature) -> inspect.Signature:
-    """Return a signature whose annotations are the types without option metadata."""
+    """Return a signature whose annotations are types without :class:`Option` metadata."""
     parameters = signature.parameters.values()
     kinds = (getattr(parameter.annotation, "__origin__", None) for parameter in parameters)
     return signature.replace(
@@ -200,6 +200,7 @@ def _options_of(ask: Callable[..., object]) -> Iterator[Option]:
 
 
 def _completed(option: Option, parameter: inspect.Parameter, texts: Mapping[str, str]) -> Option:
+    """Return an option with its missing name, default, help and type, from its parameter."""
     if option.name:  # an option shared by questions, whose default may differ
         default = parameter.default if isinstance(parameter.default, str | int) else option.default
         return option._replace(default=(default,) if option.many and isinstance(default, str) else default)
@@ -226,7 +227,10 @@ def _for_lasting_items(ask: Callable[P, R]) -> Callable[P, R]:
 
 
 def not_built(name: str) -> UserError:
-    """Return the error of a question, by its verb or module, that is not built for items that are used up."""
+    """Return the error that a question does not support items that are used up.
+
+    Its verb or module names it.
+    """
     return UserError(f"{name.replace('_', '-')} is not built for items that are used up (--items used-up)")
 
 

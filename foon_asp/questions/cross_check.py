@@ -54,7 +54,7 @@ def cross_checked(
 
 
 def _line(answer: Answer, check: Check) -> str:
-    """Return the objectives by which an engine agrees, or its reason for not checking."""
+    """Return the objectives by which an engine agrees, or its reason for not checking, in a line."""
     engine = check.engine if check.package is None else f"{check.engine} ({check.package})"
     if check.reason is not None:
         return f"{engine}: not checked: {check.reason}"

@@ -60,7 +60,7 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         return list(groups.values())
 
     def table_rows(self) -> Iterator[Json]:
-        """Return the rows of all answers, each behind its goals."""
+        """Return the rows of all answers; the goals of an answer are in front of each row."""
         for answer in self.answers:
             goals = " + ".join(map(str, answer.goals))
             yield from ({"goals": goals, **row} for row in answer.table_rows())

@@ -17,7 +17,7 @@ _TINY = Fraction(1, 10**9)  # a rate at which a motion is almost forbidden
 
 
 class _Tree(NamedTuple):
-    """A tree as a function of the rate x of one motion: its success is ``factor`` * x^``power``."""
+    """A tree as a function of the rate x of one motion; its success is ``factor`` * x^``power``."""
 
     units: tuple[int, ...]
     power: int
@@ -119,11 +119,11 @@ class Envelope:
         return self._seen(motion, outcome.units), proved
 
     def _unmoved(self) -> set[str]:
-        """Return motions whose rates may rise to 1 with the tree staying optimal, tested many at once.
+        """Return motions whose rates may rise to 1 while the tree stays optimal; many are tested at once.
 
-        Test: units with one of the motions, outside the tree, never fail. If the tree stays optimal, it does
-        so if the rate of one of the motions rises, since other trees gain no more by that. Otherwise the
-        motions by which the better tree gains are removed, and the test is repeated.
+        Test: units with one of the motions, outside the tree, never fail. If the tree stays optimal, it
+        does so if the rate of one of the motions rises, since other trees gain no more by that. Otherwise
+        the motions by which the better tree gains are removed, and the test is repeated.
         """
         network, own_rates = self._problem.network, self._problem.own_rates
         motions = set(self.motions)
@@ -137,7 +137,7 @@ class Envelope:
         return motions
 
     def _compared(self, varied: Problem) -> tuple[Outcome, bool]:
-        """Return the optimum at other rates, and whether it is better there than the tree of the envelope."""
+        """Return the optimum at other rates, and whether it is better there than the envelope's own tree."""
         outcome = solve(varied, _SUCCESS, self._settings, Reporter())
         tree_success = _success(varied.costs(self._tree))
         rival_success = Fraction(0) if outcome.costs is None else _success(outcome.costs)
@@ -160,7 +160,7 @@ class Envelope:
 
 
 def _at_rate(problem: Problem, motion: str, degree: int, of: Fraction) -> Problem:
-    """Raise all rates of a problem to the degree of a root, which the rate of a motion is."""
+    """Return a problem with all rates raised to a degree, at which the varied rate, a root, is rational."""
     raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
     own_rates = {unit: rate**degree for unit, rate in problem.own_rates.items()}
     return replace(problem, rates=raised | {motion: of}, own_rates=own_rates, as_seen=problem)

@@ -77,7 +77,10 @@ class ExplainedRule(Value, frozen=True):
         return cls(explained.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
 
     def lines(self, similar: int) -> Iterator[str]:
-        """Return lines on the place, text, effect and scope of the rule; ``similar`` counts facts like it."""
+        """Return lines on the place, text, effect and locality of a rule.
+
+        ``similar`` is the number of such facts.
+        """
         yield str(Source(self.file, self.line))
         if self.constraint:
             yield f"  {self.constraint}"

@@ -12,7 +12,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Facts(AboutGoals, frozen=True, kw_only=True, tag=schema_name("facts")):
-    """The facts and rules that the solver gets.
+    """The facts and rules that the solver reads.
 
     Attributes:
         facts: Facts of clingo, some on a line, and with soft constraints rules.

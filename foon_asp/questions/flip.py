@@ -48,7 +48,7 @@ class Flip(NamedTuple):
             digits *= 2
 
     def change(self, digits: int) -> tuple[Fraction, Fraction]:
-        """Return two numbers between which the relative change of the rate is, by the digits that count.
+        """Return two numbers that enclose the relative change of the rate, to the digits that matter.
 
         They are one number where that is rational.
         """
@@ -76,7 +76,7 @@ class Flip(NamedTuple):
 
 
 def decimal_text(value: Fraction) -> str:
-    """Return a number as a decimal where it is one, and else as a fraction."""
+    """Return a number as a decimal if it is finite, and else as a fraction."""
     context = Context(prec=value.numerator.bit_length() + value.denominator.bit_length())
     decimal = context.divide(Decimal(value.numerator), Decimal(value.denominator)).normalize(context)
     if Fraction(decimal) != value:

@@ -67,7 +67,10 @@ class PricedHelp:
         return [unit for _, unit in worth[:max_helped]]
 
     def _listed(self, max_helped: int, price: Fraction) -> Outcome:
-        """Return the best of the trees in order of success at a price, as many as may be better."""
+        """Return the best tree for ``max_helped`` units among trees listed by success at a price.
+
+        The list ends where no later tree can be better.
+        """
         best: Outcome | None = None
         ranked = Ranked(self._at_price(price), _SUCCESS, self._settings, Reporter())
         for units, costs in ranked:
@@ -109,7 +112,7 @@ class PricedHelp:
 
 
 class CountedHelp:
-    """Trees whose helped units are counted: those that the person does better are in the network twice.
+    """Trees whose helped units are counted: units that the person does better are in the network twice.
 
     For rules and encodings that look at who does a unit.
     """
@@ -149,9 +152,9 @@ class CountedHelp:
 class HelpedTrees(NamedTuple):
     """The best trees with help for at most 0, 1, 2, ... units.
 
-    The problem of each outcome has the person's rates for the helped units. ``greatest`` is the best success
-    with help for any number of units; ``None`` without a tree or at a limit. ``complete`` says that every row
-    is proved and no row is missing.
+    The problem of each outcome has the person's rates for the helped units. ``greatest`` is the best
+    success with help for any number of units; ``None`` without a tree or at a limit. ``complete`` says that
+    every row is proved and no row is missing.
     """
 
     rows: tuple[Outcome, ...]

@@ -61,7 +61,7 @@ class _Listener(Reporter):
 
 
 def in_hand(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
-    """Make a function take a path or data for a problem, ``cancel`` and ``on_progress``.
+    """Wrap a function so that it takes a path or data for a problem, ``cancel`` and ``on_progress``.
 
     Arguments are checked by the ``signature``.
     """

@@ -203,7 +203,7 @@ def find(
 
 
 def linted_files(paths: Iterable[Path], contents: Iterable[Path] = ()) -> Sequence[Path]:
-    """Return the files that are linted for some paths: files of folders, tables, and missing files."""
+    """Return all files to lint for some paths: the files of folders, their tables, and missing files."""
     named = list(paths)
     on_disk = with_tables(named, (file for file, _ in foon_files(named)))
     return list(dict.fromkeys([*on_disk, *contents]))

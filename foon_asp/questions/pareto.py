@@ -19,7 +19,7 @@ from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectiv
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Option, question
-from foon_asp.questions.options import CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
+from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
@@ -139,6 +139,7 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
             yield from step_lines(self._new(number), "+")
 
     def _claim(self) -> str:
+        """Return the claim about the front, in one line."""
         rule = self.conditions
         if self.encodings is not None:
             rule += f", as {self.encodings} has it"
@@ -157,6 +158,7 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
         return f"{points} on the Pareto front of {by}, and no others: proved ({rule})"
 
     def _table(self) -> Table:
+        """Return the points as a table."""
         columns = [[str(number) for number in range(1, len(self.points) + 1)]]
         for objective in self.objectives:
             measures = [point.costs.measure(objective) for point in self.points]
@@ -220,6 +222,7 @@ class _Point(NamedTuple):
     ),
     CONTAINERS,
     *ITEMS,
+    AMOUNT,
     CHART._replace(help="A file for a chart of the front (.svg or .png)."),
     formats=TABLES,
     help_="""
@@ -321,10 +324,10 @@ def _points(problem: Problem, objectives: Sequence[Objective], points: Sequence[
 def _best_trees(
     problem: Problem, order: tuple[Objective, ...], settings: Settings, points: Sequence[_Point]
 ) -> Iterator[Outcome]:
-    """Yield the best tree that is better than each point by some objective but the first.
+    """Yield trees of the front, each better than all before by an objective other than the first.
 
-    One search more than there are points is run (lexicographic epsilon-constraint method). An outcome without
-    a proof is the last.
+    One search more than there are points is run (lexicographic epsilon-constraint method). An outcome
+    without a proof is the last.
     """
     reporter = caller().reporter
     while True:
@@ -343,8 +346,8 @@ def _best_plans(
 ) -> Iterator[Outcome]:
     """Yield the best plan of one box after another, as :func:`_best_trees` yields trees.
 
-    Boxes, each bounded by one cost for each objective, cover the costs that are better than each point. The
-    best plan of a box is kept until the box is divided.
+    A box is bounded by one cost for each objective; together, the boxes cover all costs that are better
+    than each point by some objective. The best plan of a box is kept until the box is divided.
     """
     reporter, others = caller().reporter, order[1:]
     boxes: list[Box] = [(None,) * len(others)]
@@ -372,7 +375,7 @@ def _best_plans(
 
 
 def _divided(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list[Box]:
-    """Divide the boxes that a point is in, and drop boxes inside another one."""
+    """Divide the boxes that contain a point, and drop boxes that lie inside another one."""
     divided = set[Box]()
     for box in boxes:
         if all(bound is None or cost < bound for cost, bound in zip(point, box, strict=True)):
@@ -406,7 +409,7 @@ def _require_apart(holds: Postconditions, point: _Point, points: Sequence[_Point
 
 
 def _nearest(candidates: Sequence[Costs], objectives: Sequence[Objective]) -> list[Costs]:
-    """Return the costs that are Pareto-minimal by ``objectives``; the others give no further bound."""
+    """Return the Pareto-minimal costs by ``objectives``; the other costs add no further bound."""
 
     def key(costs: Costs) -> tuple[int | Fraction, ...]:
         return tuple(map(costs.measure, objectives))

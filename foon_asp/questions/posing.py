@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.items import items_of, wanted_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
@@ -32,7 +32,7 @@ class Command(Protocol):
         """Whether the command names a network."""
 
     def given(self, option: str) -> bool:
-        """Return whether an option, by name, stands on the command line itself."""
+        """Return whether an option, by name, is on the command line itself."""
 
     def unnamed_goals(self) -> list[ObjectNode]:
         """Return the goals that are answered one by one where none is named."""
@@ -41,10 +41,20 @@ class Command(Protocol):
         """Add networks that are named without an option; the data are read anew."""
 
     def reading(self) -> AbstractContextManager[object]:
-        """Stop what is read in a ``with`` block at the limits of the command."""
+        """Return a context in which reading stops at the limits of the command."""
 
 
-DATA = ("sources", "folder", "network", "kitchen", "rates", "utensils", "goals", "unit_prices")
+DATA = (
+    "sources",
+    "folder",
+    "network",
+    "kitchen",
+    "rates",
+    "utensils",
+    "goals",
+    "unit_prices",
+    "unit_amounts",
+)
 """The options of a command that name data."""
 
 Pose = Callable[..., tuple[object, ...]]
@@ -60,8 +70,9 @@ def one_problem(
     stock: File | None = None,
     stays: File | None = None,
     all_goals: bool = False,
+    amounts: Sequence[int] = (),
 ) -> tuple[Problem]:
-    """Pose one problem, whose tree makes all goals that are named.
+    """Pose one problem, whose tree makes all goals that are named; with amounts of goals, items are used up.
 
     With ``all_goals``, each goal is a question of its own: the named goals, or all of the goals
     file. Of a large store, the units that the goals can need are read on first access.
@@ -71,7 +82,10 @@ def one_problem(
         named = dataset.each_goal(goals_named) if all_goals else dataset.goals(goals_named)
         if not named:
             raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
-        used_up = items_of(dataset, items, stock, stays)
+        wanted = wanted_of(dataset, named, amounts)
+        if wanted and not command.given("items"):
+            items = "used-up"
+        used_up = items_of(dataset, items, stock, stays, wanted)
         return (dataset.nearby(tuple(dict.fromkeys(named)), containers, used_up),)
 
 
@@ -83,7 +97,7 @@ def the_data(command: Command) -> "tuple[Foon]":
 
 
 def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
-    """Return whether a picture is of a tree for goals: some are named, or a recipe alone, as for ``solve``.
+    """Return whether a picture is of a tree: goals are named, or only a recipe is, as for ``solve``.
 
     Raises :class:`UserError` for a recipe with several goals, since a picture is of one tree.
     """
@@ -99,5 +113,5 @@ def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
 
 
 def no_data(command: Command, **named: object) -> tuple[object, ...]:
-    """Return the values of the question's own options; its command has no options for data."""
+    """Return only the values of the question's own options, for a command without options for data."""
     return tuple(named.values())

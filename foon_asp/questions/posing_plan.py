@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.items import items_of, wanted_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, counted, unit_at_level
@@ -23,11 +23,12 @@ def a_plan(
     items: str,
     stock: File | None,
     stays: File | None,
+    amounts: Sequence[int] = (),
     **named: Path,
 ) -> tuple[Problem, Tree]:
-    """Pose what a plan is for, as an answer says it where the command does not, and read the plan.
+    """Read a plan, and pose the problem that it is for; the command precedes what an answer says.
 
-    ``named`` is its file, by whatever name the question has for it.
+    ``named`` is its file, under the name of the question's parameter.
     """
     (plan,) = named.values()
     answer = read_answer(plan)
@@ -36,7 +37,8 @@ def a_plan(
         containers = answer.containers or containers
     dataset = command.dataset
     with command.reading():
-        used_up = items_of(dataset, items, stock, stays)
+        wanted = wanted_of(dataset, dataset.goals(goals_named), amounts) if amounts else {}
+        used_up = items_of(dataset, items, stock, stays, wanted)
         tree = listed_tree(dataset, plan, answer, goals_named, containers, used_up)
     return tree.problem, tree
 
@@ -44,7 +46,10 @@ def a_plan(
 def a_plan_or_state(
     command: Command, goals_named: Sequence[str], state: Path | None, plan: Path | None, **options: Any
 ) -> tuple[Problem, Tree | None]:
-    """Pose a plan; or with a state, its goals, where the file of a plan is one more network."""
+    """Read a plan and pose its problem; with a state, pose the state's goals.
+
+    With a state, the file of a plan is one more network.
+    """
     if state is None:
         if plan is None:
             raise UserError("found no plan: name a file with one, or a state with --state")
@@ -89,18 +94,18 @@ def listed_tree(
 
 
 def settle_data(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
-    """Return the data of trees in files, which are their own network where :func:`own_networks` says so."""
+    """Return the data for trees in files: the files themselves where :func:`own_networks` returns them."""
     if not command.names_data:
         command.add_sources(own_networks(command.dataset.data.network, files))
     return command.dataset
 
 
 def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence[Path]:
-    """Return the files with trees that are their own network, if no data are named.
+    """Return the files with trees that serve as their own network, where no data are named.
 
-    Returns no file if the bundled kitchen has at least half of the units: a recipe may share a unit with the
-    kitchen, and a tree of the kitchen may have units that a program made up. Raises :class:`UserError` for an
-    answer about other data, since an answer holds only a part of its data.
+    Returns no file if the bundled kitchen has at least half of the units: a recipe may share a unit with
+    the kitchen, and a tree of the kitchen may have units that a program made up. Raises :class:`UserError`
+    for an answer about other data, since an answer holds only a part of its data.
     """
     listed = [listed_unit for tree in files.values() for listed_unit in tree.units or ()]
     bundled = units_in(kitchen, [unit for unit, _ in listed])
@@ -121,7 +126,7 @@ def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence
 
 
 def units_in(network: Network, units: Collection[FunctionalUnit]) -> int:
-    """Count the units that a network has."""
+    """Return the number of units that a network has."""
     return sum(network.unit_id(unit_at_level(unit, network.level)) is not None for unit in units)
 
 

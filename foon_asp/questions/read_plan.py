@@ -44,7 +44,7 @@ class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan"))
 
     @property
     def ending(self) -> Ending:
-        """Done for a sound plan."""
+        """``DONE`` for a sound plan."""
         return Ending.DONE if self.sound else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
@@ -62,7 +62,7 @@ class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan"))
 
 
 def _posed(command: Command, names: Path | None) -> tuple[Problem]:
-    """Pose the goals of the map, under its container rule, over the data that are named."""
+    """Pose the goals of the name map, under its container rule, over the named data."""
     if names is None:
         raise UserError(
             "name the map of names with --map: foon-asp export wrote it beside the PDDL (map.json)"
@@ -77,7 +77,9 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
             f"{dataset.names.level}: add --level {name_map.level}"
         )
     with command.reading():
-        used_up = name_map.items and items_of(dataset, ITEMS[1], name_map.items.stock, name_map.items.told)
+        used_up = name_map.items and items_of(
+            dataset, ITEMS[1], name_map.items.stock, name_map.items.told, name_map.items.wanted
+        )
         return (dataset.problem(dataset.named_goals(name_map.goals), name_map.containers, items=used_up),)
 
 

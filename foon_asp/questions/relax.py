@@ -130,7 +130,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
 
     @property
     def ending(self) -> Ending:
-        """Done when the plan is proved to be the cheapest."""
+        """``DONE`` if the plan is proved to be the cheapest, or that none exists."""
         return of_status(self.status)
 
     @property
@@ -158,7 +158,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
             yield f"{number:>3}  {step}" + ("" if step.cost == 1 else f"    [{fraction_text(step.cost)}]")
 
     def pddl(self) -> str:
-        """Return the plan in the format of planners; empty without a plan."""
+        """Return the plan as a plan file: an action on each line, then its cost; empty without a plan."""
         if self.cost is None:
             return ""
         kind = "unit cost" if self.strips.unit_cost else "general cost"
@@ -233,7 +233,7 @@ def relax(
 def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
     """Find the cheapest plan of a task that was read.
 
-    Among plans that cost the same, the shortest is looked for, but no longer than the cost takes to prove.
+    Among the cheapest plans, the shortest is searched for, but only until the cost is proved.
     """
     proof_deadline = Deadline(within=deadline)
     reporter = _Enough(caller().reporter, task.objective, proof_deadline)
@@ -242,7 +242,7 @@ def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
 
 
 class _Enough(Reporter):
-    """A reporter that stops the search when the cost of the best plan is proved."""
+    """A reporter that ends the search once the cost of the incumbent is proved."""
 
     def __init__(self, reporter: Reporter, objective: Objective, deadline: Deadline) -> None:
         self._reporter, self._objective, self._deadline = reporter, objective, deadline

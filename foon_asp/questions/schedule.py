@@ -28,7 +28,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
 from foon_asp.questions.durations import Durations, duration_of, stated_durations
-from foon_asp.questions.options import CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
+from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
@@ -217,6 +217,7 @@ def _schedule_or_template(
     GOAL_OF_PLAN,
     CONTAINERS,
     *PLAN_ITEMS,
+    AMOUNT,
     CHART._replace(help="A file for a Gantt chart (.svg or .png)."),
     pose=a_plan,
     command=_schedule_or_template,
@@ -338,6 +339,7 @@ def schedule(
 
 
 def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, ...]]) -> Iterator[TimedStep]:
+    """Yield the steps of a schedule as values."""
     for number, (unit, step, earlier) in enumerate(zip(tree.units, timed, after, strict=False), 1):
         named = tree.step_unit(number)
         made = [node for node in unit.outputs if node not in unit.inputs] or unit.outputs
@@ -362,7 +364,10 @@ def _status(solution: BestSchedule) -> Status:
 
 
 def _in_order(tree: Tree) -> Tree:
-    """Return a tree in an order that executes; if items last and no order does, in the order listed."""
+    """Return a tree in an order that executes, or else in the listed order.
+
+    If items are used up, an order is required.
+    """
     if tree.problem.items is None:
         simulation = simulate_for(tree.problem, tree)
         order = simulation.order if simulation.verdict is Verdict.REORDERED else range(len(tree))
@@ -408,7 +413,10 @@ def _durations(
 def _known_durations(
     tree: Tree, stated: Durations | None, from_video: bool, default: Number | None
 ) -> dict[str, Duration]:
-    """Return the known durations by motion: stated, of clips, or the default; warnings name the last two."""
+    """Return the known durations by motion.
+
+    They are those stated, those of clips, or the default; warnings name the last two kinds.
+    """
     durations = stated_durations(stated)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
     if from_video:
@@ -438,6 +446,7 @@ def _known_durations(
 
 
 def _tools(stated: Tools | None) -> dict[ToolName, int | None]:
+    """Return the stated numbers of tools by label or node; ``None`` is an unlimited number."""
     if stated is None:
         return {}
     if isinstance(stated, str | PathLike):

@@ -1,4 +1,4 @@
-"""How the published searches are asked for: their options, and what these are read as."""
+"""The options of the published searches, and the searches and settings that they stand for."""
 
 from collections.abc import Iterable
 
@@ -29,7 +29,7 @@ DEPTH = Option(
 def searched(names: Iterable[str]) -> list[Search]:
     """Return the searches with some names, or all if no name is given.
 
-    Raises :class:`UserError` for another name, and if a package offers one by a name that is taken.
+    Raises :class:`UserError` for an unknown name, and if a package offers a search by an existing name.
     """
     searches = find_searches()
     names = list(dict.fromkeys(names)) or list(searches)

@@ -59,7 +59,7 @@ class TreeBeyond(CostedTree, frozen=True):
 
 
 class RateEnd(Value, frozen=True):
-    """How far a rate may go to one side.
+    """One end of the interval of a rate.
 
     Attributes:
         proved: Whether this is the end; if not, a limit came first, and it may be nearer to the rate.
@@ -134,7 +134,7 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
 
     @property
     def ending(self) -> Ending:
-        """Done when every end is proved."""
+        """``DONE`` if both ends of every interval are proved."""
         proved = all(interval.proved for interval in self.intervals)
         return self.answer.ending if proved else Ending.LIMIT
 
@@ -173,6 +173,7 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
         return success_text(interval.rate), *ends, str(interval), "; ".join(beyond)
 
     def _advice(self) -> Iterator[str]:
+        """Return lines on which rates to measure again."""
         if self.ending is Ending.LIMIT:
             yield "stopped at a limit: an end with ? may be nearer to the rate"
         if self.first is not None:
@@ -269,6 +270,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
 
 
 def _end(best: Answer, end: End, flip: Flip | None) -> RateEnd:
+    """Return an end of an interval as a value, with the best tree beyond it."""
     if flip is None or end.beyond is None:
         return RateEnd(end.proved, None, None)
     tree, best_units = costed_tree(best.problem, end.beyond, best.problem.costs(end.beyond)), best.units or ()

@@ -155,7 +155,7 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
             yield f"      for {', '.join(f'{step.motion} [{step.source[0]}]' for step in consumers)}"
 
     def _others(self) -> str:
-        """Return a line on whether more lists exist."""
+        """Return a line about further lists, and whether any exist."""
         if not self.complete:
             return "there are more lists than these: --lists finds more"
         shown = "this list" if len(self.lists) == 1 else "one of these lists"
@@ -314,7 +314,7 @@ def _refuse_far_rules(program: Program) -> None:
 
 
 def _listed(prices: File | Mapping[str, Number]) -> list[Row[str | ObjectNode, Fraction]]:
-    """Return the rows of a price list, from a file or a mapping."""
+    """Return the rows of a price list, read from a file or given as a mapping."""
     if isinstance(prices, str | PathLike):
         return PRICES.rows(Path(prices))
     rows = []
@@ -358,7 +358,7 @@ def _priced(problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]])
 
 
 def _for_sale(problem: Problem, shop: Shop) -> list[tuple[Offer, dict[int, Fraction]]]:
-    """Return the offers without a price list: object ids with the price 1 each."""
+    """Return the offers where no price list is given: object ids, each with the price 1."""
     offers = shop.offers(dead_ends(problem).roots)
     return [(offer, dict.fromkeys(sold, Fraction(1))) for offer, sold in offers]
 

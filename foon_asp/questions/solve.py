@@ -22,7 +22,7 @@ from foon_asp.questions.arguments import (
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, not_built, question
 from foon_asp.questions.durations import Durations, stated_durations
-from foon_asp.questions.options import ITEMS, SOFT, TREE
+from foon_asp.questions.options import AMOUNT, ITEMS, SOFT, TREE
 from foon_asp.questions.result import Result
 
 
@@ -71,6 +71,7 @@ def solve_or_each(
 @question(
     *TREE,
     *ITEMS,
+    AMOUNT,
     Option(
         "all_goals",
         "Solve every goal that --goal or the goals file names by itself, under each --objective by itself.",

@@ -133,7 +133,7 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
 
     @classmethod
     def of(cls, data: Data) -> "Stats":
-        """Count what is in data.
+        """Count the nodes, units and labels in data.
 
         Parameters:
             data: A network, and the kitchen beside it if one was given.
@@ -325,7 +325,7 @@ def _listed(
 def _explained(
     network: Network, unit: int, rule: ContainerRule, utensils: frozenset[str], items: UsedUp | None
 ) -> ExplainedUnit:
-    """Return a unit; where items are said to be used up, with whether each input stays, and why."""
+    """Return a unit; where items may be used up, with whether and why each input stays."""
     plain, value = unit_of(network, unit), network.unit(unit)
     needed = set() if items is None else set(needed_inputs(value, rule, utensils, network))
     inputs = []

@@ -18,7 +18,7 @@ from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Objectives, chosen_objectives, read_as
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
-from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
+from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan_or_state
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
@@ -88,7 +88,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
 
     @property
     def ending(self) -> Ending:
-        """As the new plan was found, if a step failed; else done when the plan runs."""
+        """The ending of the new plan, if a step failed; else ``DONE`` if the plan runs."""
         if self.answer is not None:
             return self.answer.ending
         return Ending.DONE if self.stopped is None else Ending.NEGATIVE
@@ -163,7 +163,7 @@ def _stock(problem: Problem) -> dict[ObjectNode, int]:
 
 
 def _states(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]:
-    """Yield how many copies there are, in the beginning and after each step."""
+    """Yield the number of copies of each node, at the beginning and after each step."""
     stock = _stock(problem)
     counts = Counter({node: n for node, n in stock.items() if problem.at_hand(node)})
     changes = [((), ()), *((step.came, step.gone) for step in replay.steps)]
@@ -244,6 +244,7 @@ def _trace_and_write(
     OBJECTIVES,
     CONTAINERS,
     *PLAN_ITEMS,
+    AMOUNT,
     pose=a_plan_or_state,
     formats=TABLES,
     command=_trace_and_write,

@@ -10,9 +10,9 @@ from foon_asp.results.values_of import node_of
 
 
 def without_unreachable(problem: Problem) -> tuple[Problem, tuple[SkippedGoal, ...]]:
-    """Return a problem with only those goals that the kitchen reaches, and the others with their causes.
+    """Return a problem with only the reachable goals, and the other goals with their causes.
 
-    Constraints are ignored, and items last. Where no goal is reached, all stay: there is no tree.
+    Constraints are ignored, and items last. Where no goal is reachable, all stay: there is no tree.
     """
     problem = read(problem)
     available = reach(problem).available

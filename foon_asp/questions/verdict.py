@@ -58,7 +58,7 @@ class SimulationFields(TypedDict):
 
 
 def found_of(tree: Tree, simulation: Simulation) -> SimulationFields:
-    """Return the simulation of a tree as fields of a result."""
+    """Return the fields of a result that are about the simulation of a tree."""
     return {
         "verdict": simulation.verdict,
         "as_listed": Stop.of(tree, simulation.as_listed),
@@ -92,11 +92,12 @@ def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
 
 
 def _obstacle_text(tree: Tree, obstacle: Obstacle) -> str:
+    missing = f"{obstacle.amount} x {obstacle.missing}" if obstacle.amount > 1 else str(obstacle.missing)
     if obstacle.unit is None:
-        text = f"every unit runs, but the goal is not made: {obstacle.missing}"
+        text = f"every unit runs, but the goal is not made: {missing}"
     else:
         position = obstacle.unit + 1
-        text = f"unit {position}, {tree.step_text(position)}, lacks {obstacle.missing}"
+        text = f"unit {position}, {tree.step_text(position)}, lacks {missing}"
     skipping = [n for n, unit in enumerate(tree, 1) if _skips(tree.problem, unit, obstacle.missing)]
     if skipping:
         first = f"unit {skipping[0]}, {tree.step_text(skipping[0])}"
@@ -111,7 +112,7 @@ def _obstacle_text(tree: Tree, obstacle: Obstacle) -> str:
 
 
 def _skips(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
-    """Return whether a unit has a node among its outputs and does not make it."""
+    """Return whether a unit lists a node as an output but, by the container rule, does not make it."""
     if node not in unit.outputs:
         return False
     return node not in given_outputs(unit, problem.containers, problem.utensils, problem.network)

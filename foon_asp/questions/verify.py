@@ -154,7 +154,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
 
     @property
     def ending(self) -> Ending:
-        """The certificate is right; where the proved checker was asked, it has to accept it, too."""
+        """``DONE``, unless the proved checker was asked and does not accept the certificate."""
         return Ending.DONE if self.proved_checker in (None, proved_checker.ACCEPTED) else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
@@ -194,7 +194,7 @@ class Refused(Result, frozen=True, kw_only=True, tag=schema_name("refused")):
 
     @property
     def ending(self) -> Ending:
-        """The check failed."""
+        """``NEGATIVE``: the check failed."""
         return Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
@@ -203,9 +203,12 @@ class Refused(Result, frozen=True, kw_only=True, tag=schema_name("refused")):
 
 
 def _items_lines(used_up: proof.UsedUp, network: Network) -> Iterator[str]:
+    """Yield lines on the statements of a certificate about consumable items."""
     nodes = network.objects
     if used_up.stock:
         yield "in stock: " + ", ".join(f"{copies} x {nodes[o]}" for o, copies in used_up.stock.items())
+    if used_up.wanted:
+        yield "wanted: " + ", ".join(f"{copies} x {nodes[o]}" for o, copies in used_up.wanted.items())
     for stays, verb in ((True, "stay"), (False, "be used up")):
         named = [name for name, name_stays in used_up.stays.items() if name_stays is stays]
         if named:
@@ -262,7 +265,7 @@ def verify_or_refuse(
     """Check a certificate as ``foon-asp verify`` does.
 
     Raises:
-        UserError: for one of other data, with what to name.
+        UserError: for a certificate about other data, with advice on which data to name.
     """
     try:
         return verify(data, certificate, with_clingo=with_clingo, full=full, proved=proved, **limits)
@@ -408,9 +411,9 @@ def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:
 
 
 def _other_part(content: Any, subject: proof.Subject) -> str | None:
-    """Return the first part of the data, as digests name it, that a sealed certificate is not about.
+    """Return the part of the data whose digest the certificate does not match, by name.
 
-    It is ``task`` for a certificate about a planning task.
+    The first of several. It is ``task`` for a certificate about a planning task.
     """
     with suppress(RecursionError, KeyError, TypeError, AttributeError):  # the content is no certificate
         if content["seal"] == proof.seal(content):

@@ -253,7 +253,7 @@ def _posed(
     units: Sequence[int],
     **items: Any,
 ) -> tuple[Problem | Foon]:
-    """Pose the goals that are named, or that a recipe has; without any it is about the data."""
+    """Pose the goals that are named or that a recipe has; without goals, return the data."""
     listed = tree is not None or bool(units)
     for_goals = bool(goals_named) or (not listed and is_for_goals(command, goals_named))
     for option, flag in _FOR_THE_BEST.items():
@@ -407,7 +407,7 @@ def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
 def _drawing_without_goals(
     foon: Foon, rule: ContainerRule, tree: str | PathLike[str] | Iterable[FunctionalUnit]
 ) -> Drawing:
-    """Draw a tree for no goal with the part of the data that it is about."""
+    """Return the drawing of a tree without goals, with the part of the data that it touches."""
     if isinstance(tree, str | PathLike):
         tree = [unit for unit, _ in read_listed(Path(tree), lambda: foon.dataset.whole_network)[0]]
     read = TaskTree(tuple(dict.fromkeys(unit_at_level(unit, foon.level) for unit in tree)))
@@ -484,7 +484,7 @@ def pages(
 
 
 def _against(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
-    """Return two or more objectives for a front, from one list of objectives.
+    """Return the objectives of a front, two or more, from one list of objectives.
 
     The second objective is units; for units it is success, or inputs if no rates are known.
     """

@@ -61,7 +61,7 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
 
     @property
     def ending(self) -> Ending:
-        """As the best tree was found; ``NEGATIVE`` if something lacks."""
+        """The ending of the best tree; ``NEGATIVE`` if something lacks."""
         if self.lacks:
             return Ending.NEGATIVE
         return Ending.NEGATIVE if self.answer is None else self.answer.ending

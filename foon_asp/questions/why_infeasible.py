@@ -1,4 +1,4 @@
-"""Why there is no tree, in a few lines beside an answer that says so."""
+"""The reasons why there is no tree, in a few lines for an answer without one."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ _MAX_CYCLE = 3  # object nodes of a cycle that are named after the first
 
 
 def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterator[str]:
-    """Return lines that say why there is no tree, if that is found by the deadline."""
+    """Return lines with the reasons why there is no tree, if these are found by the deadline."""
     try:
         with (deadline or Deadline()).watched("looking for the reason", late=True, grace=True):
             lines = list(_reasons(problem))
@@ -20,9 +20,9 @@ def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterat
 
 
 def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
-    """Yield for each unreachable goal the units that would make it, and the missing inputs of the first ones.
+    """Yield for each unreachable goal its achievers, and the missing inputs of the first ones.
 
-    Where every goal can be made, it is the constraints that leave no tree.
+    Where every goal can be made, the constraints are the reason.
     """
     available = reach(problem).available
     network = problem.network
@@ -57,7 +57,7 @@ def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
 
 
 def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
-    """Yield a sentence on each cause, first the causes on the easiest way to the goals."""
+    """Yield a sentence on each cause, first for the causes on the easiest way to the goals."""
     from foon_asp.problem.dead_ends import dead_ends  # noqa: PLC0415 (only where there is no tree)
 
     objects = problem.network.objects

@@ -110,6 +110,7 @@ def sarif(findings: Sequence[Finding], version: str) -> Json:
 
 
 def _sarif_result(finding: Finding, rule: int) -> Json:
+    """Return a finding as a result of SARIF; ``rule`` is the index of its rule."""
     region: Json = {"startLine": max(1, finding.line), "startColumn": max(1, finding.column)}
     if finding.text:
         region["snippet"] = {"text": finding.text}

@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 class Unserialized(Generic[T]):
-    """Descriptor of a property that JSON leaves out; :meth:`Document.knowing` sets it."""
+    """Descriptor of a property that is not in the JSON; :meth:`Document.knowing` sets it."""
 
     def __init__(self, *default: T) -> None:
         self._default = default
@@ -40,7 +40,7 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
     ROWS: ClassVar[str] = ""
 
     def knowing(self, **attributes: object) -> Self:
-        """Set properties that JSON leaves out (:class:`Unserialized`), and return the document itself."""
+        """Set properties that are not in the JSON (:class:`Unserialized`), and return the document itself."""
         self.__dict__.update(attributes)
         return self
 

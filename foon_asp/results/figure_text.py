@@ -46,7 +46,7 @@ def costs_text(costs: Costs, objectives: Iterable[Objective] = ()) -> str:
 def success_text(success: Fraction) -> str:
     """Return a success rate to four significant digits, with ``≈`` where that is rounded.
 
-    A rate that is rounded to 1 is shown by what it lacks of 1.
+    A rate that is rounded to 1 is shown by its distance from 1.
     """
     shown = _four_digits(success)
     if success < 1 and Fraction(shown) == 1:

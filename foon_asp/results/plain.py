@@ -32,6 +32,7 @@ def plain(value: object) -> Any:
 
 
 def _plain(value: object) -> object:
+    """Return a number, costs or a path as a value that JSON can hold."""
     if isinstance(value, Fraction):
         return {"exact": fraction_text(value), "approx": nearest_float(value)}
     if isinstance(value, Costs):
@@ -72,15 +73,17 @@ def exact_measures(
 
 
 def read_plain(kind: type[T], value: Json) -> T:
-    """Return the value of a kind that :func:`plain` made plain values of.
+    """Return the value of a kind from its plain form, the inverse of :func:`plain`.
 
-    Keys of dictionaries stay texts. Raises :class:`msgspec.ValidationError`, which is a :class:`ValueError`,
-    or :class:`KeyError`, :class:`TypeError`, :class:`AttributeError` or :class:`ArithmeticError` for others.
+    Keys of dictionaries stay texts. Raises :class:`msgspec.ValidationError`, which is a
+    :class:`ValueError`, or :class:`KeyError`, :class:`TypeError`, :class:`AttributeError` or
+    :class:`ArithmeticError` for others.
     """
     return msgspec.convert(value, kind, dec_hook=_exact)
 
 
 def _exact(kind: type, value: Any) -> Objective | Fraction | int:
+    """Return an objective, fraction or integer from its plain form."""
     if isinstance(value, Objective) or type(value) is int:
         return value
     if kind is Objective:
@@ -96,7 +99,7 @@ def fraction_text(value: Fraction) -> str:
 
 
 def nearest_float(value: Fraction) -> float | None:
-    """Return the nearest float; ``None`` for a number above all."""
+    """Return the nearest float; ``None`` for a number above the largest float."""
     try:
         return float(value)
     except OverflowError:
@@ -104,10 +107,10 @@ def nearest_float(value: Fraction) -> float | None:
 
 
 def flat_row(row: Json) -> Json:
-    """Return a row without parts: a value inside another has a name with a dot, ``costs.units``.
+    """Return a row without nested values; a nested value has a name with a dot, ``costs.units``.
 
-    Exact numbers are decimals, with the exact one beside it under a name that ends in ``_exact``; nodes and
-    places are in one-line notation; what lists parts of its own is left out.
+    Exact numbers are decimals, with the exact number in another column whose name ends in ``_exact``; nodes
+    and places are in one-line notation; lists of structured values are left out.
     """
     return {
         name: value for name, inner in row.items() if name != "schema" for name, value in _flat(name, inner)
@@ -115,6 +118,7 @@ def flat_row(row: Json) -> Json:
 
 
 def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """Yield the name and value of each leaf of a nested value."""
     word = _word(value)
     if word is not value:
         yield name, word
@@ -131,7 +135,7 @@ def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _word(value: Any) -> Any:
-    """Return a node, its change, a place or a constant in one-line notation; other values as they are."""
+    """Return a node, its change, a place or a constant in one-line notation; other values unchanged."""
     if isinstance(value, dict):
         if "node" in value and "label" in value:
             return value["node"]
@@ -183,13 +187,16 @@ def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
 
 
 def safe_cell(text: str) -> str:
-    """Return the text of a cell that no spreadsheet takes for a formula: one like it gets an apostrophe."""
+    """Return the text of a cell; an apostrophe before a text that a spreadsheet would take for a formula."""
     text = escaped(text)  # of what begins a formula, tabs and line ends
     return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _NUMBER.fullmatch(text) else text
 
 
 def markdown_text(rows: Iterable[Json]) -> str:
-    """Return flat rows as a table in Markdown, for people: no empty columns, six digits, nothing exact."""
+    """Return flat rows as a Markdown table for people.
+
+    It has no empty columns and no exact numbers; numbers have six digits.
+    """
     columns, cells = table(rows)
     lists = [
         [name, *map(_rounded, column)] for name, column in zip(columns, zip(*cells, strict=True), strict=True)
@@ -214,6 +221,7 @@ def _rounded(value: Any) -> str:
 
 
 def _text(value: Any, words: tuple[str, str] = ("no", "yes")) -> str:
+    """Return a cell as text; ``words`` are those for false and true."""
     if isinstance(value, list):
         return " + ".join(map(_text, value))
     if isinstance(value, bool):

@@ -118,6 +118,7 @@ def _case(
     decisions: tuple[Choice, ...],
     above_cutoff: tuple[Choice, ...],
 ) -> ProofCase:
+    """Return a leaf of a proof as a case, under the decisions that lead to it."""
     excluded = {choice.id for choice in decisions if choice.kind == "unit" and not choice.taken}
     weights = (
         subproof["weights"]

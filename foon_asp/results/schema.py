@@ -108,7 +108,7 @@ def _put_null_last(schema: Any) -> None:
 
 
 def _hook(kind: type) -> Json:
-    """Return the schema of a type that is no struct."""
+    """Return the schema of a type that is not a struct, for msgspec."""
     if kind in _OWN:
         return {"$ref": _REFERENCE.format(name=_OWN[kind][0])}
     if issubclass(kind, Objective | PurePath):
@@ -132,7 +132,7 @@ def _structs(document: type[Struct]) -> set[type[Struct]]:
 def _describe(schema: Json, bases: Sequence[type]) -> None:
     """Add the descriptions of fields from docstrings, and forbid other keys.
 
-    ``bases`` are the class of the schema and its base classes.
+    ``bases`` are the struct's class and its base classes.
     """
     docstring = schema.pop("description", "")
     schema["description"] = docstring.partition("\n")[0]
@@ -145,7 +145,7 @@ def _describe(schema: Json, bases: Sequence[type]) -> None:
 
 
 def _require_written(schema: Json) -> None:
-    """Require the keys that are always written: all but those of fields that are unset."""
+    """Require the keys that are always written; fields that may be unset are optional."""
     fields = schema["properties"]
     written = {name for name in fields if fields[name].pop("default", _UNSET) is not _UNSET}
     required = {*written, *schema.get("required", ())}

@@ -14,7 +14,7 @@ _COLOURS = {"good": "32", "bad": "31", "dim": "2", "strong": "1"}
 
 
 class Cell(NamedTuple):
-    """The text of a cell, with a ``style`` that a terminal shows in colour: good, bad, dim or strong."""
+    """The text of a table cell; a terminal shows its ``style`` (good, bad, dim or strong) in colour."""
 
     text: str
     style: str
@@ -64,6 +64,7 @@ def rendered(parts: Iterable[Block], width: int | None = None, coloured: bool = 
 
 
 def _aligned(table: Table, width: int | None, coloured: bool) -> Iterator[str]:
+    """Yield the lines of a table with aligned columns."""
     rows = [*([table.headings] if table.headed else []), *table.rows]
     columns = zip(*(row for row in rows if not isinstance(row, str)), strict=True)
     widths = [max(len(_text(cell)) for cell in column) for column in columns]
@@ -88,6 +89,7 @@ def _aligned(table: Table, width: int | None, coloured: bool) -> Iterator[str]:
 
 
 def _stacked(table: Table, width: int) -> Iterator[str]:
+    """Yield the lines of a table as a block for each row, for narrow terminals."""
     for index, row in enumerate(filter(None, table.rows)):
         if index:
             yield ""

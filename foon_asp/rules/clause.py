@@ -54,12 +54,12 @@ class Literal(NamedTuple):
 
     @property
     def positive(self) -> bool:
-        """Whether it has no ``not``, so that it binds its variables."""
+        """Whether the literal has no ``not``, so that it binds its variables."""
         return not self.negations
 
     @property
     def single(self) -> bool:
-        """Whether it is one atom once its variables have values; an interval stands for any number."""
+        """Whether the literal is one atom once its variables have values; an interval is several atoms."""
         nodes_inside = (node for argument in self.arguments for node in nodes(argument))
         return all(node.ast_type != ASTType.Interval for node in nodes_inside)
 
@@ -106,7 +106,7 @@ class Aggregate(NamedTuple):
 
 
 class Strange(NamedTuple):
-    """A conjunct of any other kind, such as a theory atom."""
+    """A conjunct of another kind, such as a theory atom."""
 
     text: str
 
@@ -130,7 +130,7 @@ class Clause(NamedTuple):
 
     @property
     def constraint(self) -> bool:
-        """Whether it has no head."""
+        """Whether the clause has no head."""
         return self.plain and self.head is None
 
     @property
@@ -167,7 +167,7 @@ def source_of(statement: AST) -> Source:
 
 
 def written(statement: AST, rules: Loaded | None = None) -> str:
-    """Return a statement on one line: as written, where it is in a file or in these rules."""
+    """Return a statement on one line, as it is written in its file or in these rules."""
     begin, end = statement.location.begin, statement.location.end
     if isinstance(rules, Stated) and begin.filename == rules.place:
         content = rules.text.encode("utf-8")
@@ -187,7 +187,7 @@ def _is_plain(term: AST) -> bool:
 
 
 def value(term: AST, constants: Constants) -> Symbol | None:
-    """Return the value of a term without variables and arithmetic, ``None`` where it is not so simple."""
+    """Return the value of a term without variables and arithmetic, ``None`` for other terms."""
     if term.ast_type == ASTType.SymbolicTerm:
         symbol: Symbol = term.symbol
         if symbol.type is SymbolType.Function and not symbol.arguments and symbol.name in constants:
@@ -214,7 +214,7 @@ def factors(term: AST) -> list[AST]:
 
 
 def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict[str, Symbol | None]:
-    """Return the values of constants by name: those of ``#const`` statements, or of settings ``name=value``.
+    """Return the values of constants by name, from ``#const`` statements and settings ``name=value``.
 
     ``None`` stands for a value that is unknown without clingo.
     """
@@ -369,5 +369,5 @@ class _Reader:
 
 
 def compared(first: Symbol, comparison: int, second: Symbol) -> bool:
-    """Compare two values as clingo does: numbers before words before texts, and so on."""
+    """Return whether a comparison of two values holds, in clingo's order: numbers, then words, then texts."""
     return bool(_COMPARING[ComparisonOperator(comparison)](first, second))

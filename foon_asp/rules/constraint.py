@@ -19,7 +19,7 @@ class RuleText(NamedTuple):
 
     @property
     def name(self) -> str:
-        """What it is called, as a file is by its name."""
+        """The name of the rules in messages, in place of a file's name."""
         return "rule"
 
     def __str__(self) -> str:
@@ -27,14 +27,14 @@ class RuleText(NamedTuple):
 
 
 class LibraryUse(NamedTuple):
-    """A ready-made constraint with constants of its own: ``file``, and how it was ``written``."""
+    """A ready-made constraint with constants of its own; ``file``, and the option's text (``written``)."""
 
     file: Path
     written: str
 
     @property
     def name(self) -> str:
-        """What it is called, as a file is by its name."""
+        """The name of the use in messages, in place of a file's name."""
         return self.written
 
     def __str__(self) -> str:

@@ -13,7 +13,7 @@ _SECTION = re.compile(r"(\w+): +(\S.*)$")
 class Parameter(NamedTuple):
     """A constant of a constraint: its name, its default as written, and an example from the file.
 
-    Own values of ``""``, ``#sup`` and ``#inf`` stand for "not set".
+    The defaults ``""``, ``#sup`` and ``#inf`` stand for "not set".
     """
 
     name: str

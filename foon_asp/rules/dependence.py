@@ -43,7 +43,7 @@ _ArgumentPosition = tuple[Signature, int]
 
 
 class Depends(Flag):
-    """Monotonicity: whether an atom may turn true (``GROWS``) or false (``SHRINKS``) with more units."""
+    """Monotonicity of an atom: whether more units can make it true (``GROWS``) or false (``SHRINKS``)."""
 
     NOT = 0
     GROWS = 1
@@ -142,6 +142,7 @@ class Dependence:
         return None
 
     def _find_doubts(self, program: Sequence[Clause]) -> None:
+        """Record for each predicate the first reason why its monotonicity is unknown."""
         for clause in program:
             if not clause.plain:
                 for atom in clause.heads:
@@ -230,6 +231,7 @@ class Dependence:
         )
 
     def _of_aggregate(self, aggregate: Aggregate) -> Depends:
+        """Return the monotonicity of an aggregate."""
         conditions = Depends.NOT
         for element in aggregate.elements:
             conditions |= self.of_body(element.condition)
@@ -279,7 +281,7 @@ def named(signature: Signature) -> str:
 
 
 def _reads(conjuncts: Iterable[Conjunct], plainly: bool) -> Iterator[tuple[Signature, bool]]:
-    """Return the predicates that a body reads, each with whether plainly: neither negated nor aggregated."""
+    """Return the predicates that a body reads, each with whether it is neither negated nor aggregated."""
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):
             yield conjunct.signature, plainly and conjunct.positive

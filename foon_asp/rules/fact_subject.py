@@ -1,4 +1,4 @@
-"""Subjects of facts: the unit, object node or label that each is about, and the ones it leads to."""
+"""Subjects of facts: the unit, object node or label of each fact, and further subjects that follow."""
 
 from enum import StrEnum
 from typing import NamedTuple
@@ -15,10 +15,10 @@ class Subject(StrEnum):
 
 
 class Subjects(NamedTuple):
-    """The arguments of a fact, by position: its subjects, and the ones that it leads to.
+    """The arguments of a fact, by position: its subjects, and the subjects that it leads to.
 
-    If the subjects are in the tree, so are those that it leads to. Other arguments are names and numbers; the
-    positions in ``numbers`` are never negative.
+    If the subjects are in the tree, so are those that it leads to. Other arguments are names and numbers;
+    the positions in ``numbers`` are never negative.
     """
 
     about: dict[int, Subject]

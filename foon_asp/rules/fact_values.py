@@ -86,7 +86,7 @@ _TEXTS: Final[Mapping[str, Callable[[_NetworkPart], Iterable[Names]]]] = {
 
 
 def misplaced(columns: Columns, values: Mapping[int, Value]) -> int | None:
-    """Return the position of a value of the wrong type: a text for a number, or no text for a text.
+    """Return the position of a value of the wrong type (a text for a number, or the other way round).
 
     ``None`` where there is no such position.
     """

@@ -100,7 +100,7 @@ class FlatAnswers:
         return weight
 
     def required_sets(self, at_least_one: AtLeastOne) -> Iterator[frozenset[int] | None]:
-        """Return the sets of units of each of which a tree has to have one.
+        """Return the sets of units from each of which a tree has to have one.
 
         ``None`` stands for a set that facts satisfy without a unit.
         """
@@ -135,7 +135,7 @@ class FlatAnswers:
         return self._satisfying(disjunct.unit, self._candidates(disjunct, bound), disjunct.items, bound)
 
     def _candidates(self, disjunct: Disjunct, bound: Collection[Variable]) -> Iterable[int]:
-        """Return a superset of the units of which a disjunct holds, by an index where one fits."""
+        """Return a superset of the units of which a disjunct holds, from an index where there is one."""
         network = self._problem.network
         objects_of: dict[str, Sequence[tuple[int, ...]]] = {
             "input": network.inputs,
@@ -222,6 +222,7 @@ class FlatAnswers:
         return then
 
     def _item_step(self, item: Item, bound: frozenset[Variable], then: _Step) -> _Step:
+        """Return a step that searches for values under which one item and ``then`` hold."""
         if isinstance(item, Never):
             inner = [self._step(disjunct.items, item.bound, _success) for disjunct in item.disjuncts]
             return lambda values: not any(step(values) for step in inner) and then(values)
@@ -234,6 +235,7 @@ class FlatAnswers:
         return self._fact(item, bound, then)
 
     def _counted(self, item: Counted, then: _Step) -> _Step:
+        """Return a step that compares the number of different rows of a count with its guards."""
         seen: set[_Answer] = set()
         steps = [
             self._step(disjunct.items, item.bound, self._collecting(terms, seen))
@@ -258,7 +260,7 @@ class FlatAnswers:
         return step
 
     def _collecting(self, terms: Sequence[Term], rows: set[_Answer]) -> _Step:
-        """Return a step that adds the values of terms to ``rows`` and fails, so that the search goes on."""
+        """Return a step that adds the values of terms to ``rows`` and fails, so that all values are found."""
         reads = list(map(self._read, terms))
 
         def collect(values: _Values) -> bool:
@@ -268,6 +270,7 @@ class FlatAnswers:
         return collect
 
     def _compare(self, item: Compare, bound: frozenset[Variable], then: _Step) -> _Step:
+        """Return a step that compares two terms, or binds one to the value of the other."""
         for one, other in ((item.first, item.second), (item.second, item.first)):
             if isinstance(one, Variable) and one not in bound:
                 return self._equal(one, bound, self._read(other), then)
@@ -365,6 +368,7 @@ class _FactReaders(NamedTuple):
 
 
 def _fact_readers(problem: Problem, prices: Mapping[int, int]) -> _FactReaders:
+    """Return the readers of all predicates of facts, over one problem."""
     network, kitchen, utensils = problem.network, problem.kitchen_seen, problem.utensils
     objects, inputs = network.objects, network.inputs
     seen = problem.as_seen or problem
@@ -401,6 +405,8 @@ def _fact_readers(problem: Problem, prices: Mapping[int, int]) -> _FactReaders:
 
 
 def _for_each_value(variable: Variable, read: Callable[[_Values], Iterable[Any]], then: _Step) -> _Step:
+    """Return a step that tries each value that ``read`` returns for a variable."""
+
     def step(values: _Values) -> bool:
         for value in read(values):
             values[variable] = value
@@ -412,7 +418,7 @@ def _for_each_value(variable: Variable, read: Callable[[_Values], Iterable[Any]]
 
 
 def _is_apart(items: Sequence[Item], bound: Collection[Variable]) -> bool:
-    """Whether there are items, and none of them shares a variable with ``bound``."""
+    """Whether there are items, none of which shares a variable with ``bound``."""
     used = bound_by(items).union(*(item.bound for item in items if isinstance(item, Never | Counted)))
     return bool(items) and used.isdisjoint(bound)
 

@@ -92,7 +92,7 @@ class Compare(NamedTuple):
 
 
 class Never(NamedTuple):
-    """A negated disjunction: no disjunct holds, once the variables in ``bound`` have their values."""
+    """A negated disjunction: no disjunct holds, where the variables in ``bound`` already have values."""
 
     disjuncts: "tuple[Disjunct, ...]"
     bound: frozenset[Variable]
@@ -101,7 +101,7 @@ class Never(NamedTuple):
 class Counted(NamedTuple):
     """A ``#count``: the number of different rows that the disjuncts derive, compared with each guard.
 
-    ``negated`` inverts it; the variables in ``bound`` have their values before.
+    ``negated`` inverts it. The variables in ``bound`` already have values when it is evaluated.
     """
 
     rows: "tuple[tuple[Disjunct, tuple[Term, ...]], ...]"
@@ -135,7 +135,7 @@ class Table(NamedTuple):
 
 
 class AtLeastOne(NamedTuple):
-    """An at-least-one constraint: wherever ``when`` holds, the tree has a unit of one of ``helpers``."""
+    """An at-least-one constraint; wherever ``when`` holds, the tree has a unit of one of ``helpers``."""
 
     when: Disjunct
     helpers: tuple[Disjunct, ...]
@@ -393,7 +393,7 @@ class FlatBodies:
         return (5 if any(free) else 1) if item.signature[0] in _SEVERAL_VALUES else 0
 
     def _find_subjects(self, items: Iterable[Item], subjects: _Subjects) -> None:
-        """Add to ``subjects`` what variables stand for; raises where one variable stands for two kinds."""
+        """Add the subjects that variables stand for to ``subjects``; raises where these are of two kinds."""
         before = -1
         while before != len(subjects):
             before = len(subjects)
@@ -548,6 +548,7 @@ class _Scope:
         return [(disjunct, product[0] if product else Constant(1)) for disjunct in disjuncts]
 
     def _of_conjunct(self, conjunct: Conjunct) -> list[Disjunct]:
+        """Return a conjunct as a disjunction."""
         if isinstance(conjunct, Literal):
             disjuncts = self._atom(conjunct)
             for _ in range(conjunct.negations):
@@ -576,6 +577,7 @@ class _Scope:
         raise NotFlatError
 
     def _counted(self, aggregate: Aggregate) -> Counted:
+        """Return a ``#count`` as an item, with its elements as disjuncts."""
         rows = []
         for element in aggregate.elements:
             scope = self._inner_scope()
@@ -596,7 +598,7 @@ class _Scope:
         return self._bodies.of_atom(literal.signature, tuple(map(self.term, literal.arguments)))
 
     def _test(self, test: Test, against: bool) -> list[Disjunct]:
-        """Return a comparison, or ``against`` it its negation, as a disjunction."""
+        """Return a comparison as a disjunction; ``against`` returns its negation."""
         if test.holds is not None:
             return [Disjunct(())] if test.holds != against else []
         comparison = test.ast.atom
@@ -676,6 +678,7 @@ def _subject(term: Term, subjects: _Subjects) -> Subject:
 
 
 def _set_subject(term: Term, subject: Subject, subjects: _Subjects) -> None:
+    """Set the subject of a variable; raises where it has another subject already."""
     if isinstance(term, Variable):
         if subjects.setdefault(term, subject) is not subject:
             raise NotFlatError

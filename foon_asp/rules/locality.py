@@ -23,7 +23,7 @@ _TreeTerms = dict[str, set[Subject]]  # by term: what it is known to stand for i
 
 
 class Further(NamedTuple):
-    """The reason why a rule is not local, and its place."""
+    """The reason why a rule is not local (it reads further than the tree), and its place."""
 
     reason: str
     source: Source
@@ -57,7 +57,7 @@ class Locality:
         return lacking.further if lacking else None
 
     def closed(self, signature: Signature) -> bool:
-        """Whether an auxiliary predicate has the same atoms whatever is beyond the tree."""
+        """Whether an auxiliary predicate has the same atoms, whatever the network has beyond the tree."""
         return signature in self._about and signature not in self._further and not self._about[signature]
 
     def _find_leads(self) -> dict[Signature, dict[int, set[Subject]]]:
@@ -106,7 +106,7 @@ class Locality:
                     changed |= self._find_about(clause, clause.head)
 
     def _find_about(self, clause: Clause, head: Literal) -> bool:
-        """Add what the body of a rule needs to the conditions on its head; return whether any is new."""
+        """Add the requirements of a rule's body to the conditions on its head; return whether any is new."""
         changed = False
         while head.signature not in self._further:
             about = self._about[head.signature]
@@ -149,6 +149,7 @@ class Locality:
         return tree_terms
 
     def _led(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
+        """Return the arguments of a literal that are in the tree because others are, with their subjects."""
         if literal.signature in self._leads_to:
             leads = self._leads_to[literal.signature]
             return [(position, subject) for position, subjects in leads.items() for subject in subjects]
@@ -163,7 +164,7 @@ class Locality:
     def _lacking(
         self, conjuncts: Iterable[Conjunct], tree_terms: _TreeTerms, source: Source
     ) -> "_Lacking | None":
-        """Return the first term that has to be in the tree and is not known to be, ``None`` where all are."""
+        """Return the first term that has to be in the tree but may not be, ``None`` where all are."""
         for conjunct in conjuncts:
             lacking = self._lacking_in(conjunct, tree_terms, source)
             if lacking:
@@ -171,6 +172,7 @@ class Locality:
         return None
 
     def _lacking_in(self, conjunct: Conjunct, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
+        """Return what one conjunct lacks to be local, ``None`` where it is."""
         if isinstance(conjunct, Literal):
             return self._lacking_of(conjunct, tree_terms, source)
         if isinstance(conjunct, Conditional):
@@ -195,6 +197,7 @@ class Locality:
         return None
 
     def _lacking_of(self, literal: Literal, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
+        """Return what one literal lacks to be local, ``None`` where it is."""
         signature = literal.signature
         if signature in self._further:
             return _Lacking("", Subject.UNIT, self._further[signature])
@@ -228,7 +231,7 @@ _ARTICLES = {Subject.UNIT: "a unit", Subject.OBJECT: "an object node", Subject.L
 
 
 def _simple(term: AST) -> bool:
-    """Whether a term has one value in all of a rule: a constant, or a variable that is not anonymous."""
+    """Whether a term has the same value throughout a rule: a constant, or a variable other than ``_``."""
     return term.ast_type == ASTType.SymbolicTerm or (term.ast_type == ASTType.Variable and term.name != "_")
 
 

@@ -73,7 +73,7 @@ class Measure:
 def wrong_cost(
     measure: Measure, problem: Problem, stated: Mapping[int, Fraction], deadline: Deadline
 ) -> str | None:
-    """Return a message about the first unit whose cost is not the stated one; ``None`` if all are right.
+    """Return a message about the first unit whose cost differs from the stated one; ``None`` without one.
 
     ``stated`` has costs by unit. Each of these units is evaluated by itself. Raises as
     :meth:`Measure.costs` does.
@@ -118,9 +118,10 @@ class _Evaluation:
         return list(map(by_key.__getitem__, alike))
 
     def _alike(self) -> Sequence[Hashable] | None:
-        """Return a key for each unit, equal for units with facts equal up to numbers of units and nodes.
+        """Return a key for each unit.
 
-        ``None`` where rules read these numbers, or facts without a key.
+        Units with equal keys have the same facts, up to numbers of units and nodes. ``None`` where rules
+        read these numbers, or facts without a key.
         """
         if not self._rules.nameless:
             return None

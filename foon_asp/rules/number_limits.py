@@ -57,8 +57,8 @@ def _placed(term: AST) -> str:
 def beyond(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
     """Return rules that hold where a term overflows, each with the statement of the term.
 
-    Their bodies have the conditions that bind variables, and those without arithmetic. A term is evaluated
-    again only where a value in it is so large that it may overflow.
+    Their bodies have the conditions that bind variables, and the conditions without arithmetic. A term is
+    evaluated again only where a value in it is so large that it may overflow.
     """
     for statement in statements:
         if not _CALCULATES.search(str(statement)):
@@ -232,7 +232,7 @@ def _conditions(body: Iterable[AST]) -> list[AST]:
 
 
 def _without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
-    """Return the conditions without the one whose arithmetic is checked, unless it alone binds a variable.
+    """Return the conditions except the one whose arithmetic is checked, if other ones bind its variables.
 
     Clingo drops an instance in which an equation overflows, and with it the check.
     """

@@ -40,10 +40,10 @@ _REQUIRING_PREFIX = "require_"  # prefix of the names of constraints that requir
 class ReadyMade:
     """Ready-made constraints of one question, with the meaning that certificates use.
 
-    They are local, and require redundant units only as members of required sets. ``unsettled`` says that some
-    do more than to remove and require units; these are antimonotone: every subtree of a tree that keeps to
-    them does, too. All of them are where they are ``shrinking``. ``constants`` are their constants, as terms,
-    and ``files`` their files.
+    They are local, and require redundant units only as members of required sets. ``unsettled`` says that
+    some do more than to remove and require units; those are antimonotone. ``shrinking`` says that all
+    constraints are antimonotone: every subtree of a tree that keeps to them does, too. ``constants`` are
+    their constants, as terms, and ``files`` their files.
     """
 
     local: Final = True
@@ -62,10 +62,10 @@ class ReadyMade:
         return READ | {_PRICE} if "max_price" in self.constants else READ
 
     def fit(self, problem: Problem) -> bool:
-        """Whether their meaning here is that under clingo for a problem.
+        """Whether they mean the same for a problem as under clingo.
 
-        It may differ for unsettled constraints that do not see all available object nodes, and for prices
-        that clingo refuses.
+        They may not where unsettled constraints do not see all available object nodes, and for prices that
+        clingo refuses.
         """
         if self.unsettled and problem.kitchen_seen != problem.kitchen:
             return False
@@ -91,7 +91,7 @@ class ReadyMade:
         return Restriction(removed.__contains__, required)
 
     def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
-        """Return linear bounds: of each, the whole weight of a unit, and the greatest sum over a tree."""
+        """Return linear bounds over units: the weights of units, and the greatest sum, of each bound."""
         for rule_meaning in self._meanings(problem)[0]:
             if rule_meaning.max_sum is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
                 amounts = {unit: int(amount) for units, amount in rule_meaning.things for unit in units}
@@ -104,6 +104,7 @@ class ReadyMade:
         return ruled.fault(tree, frozenset(range(len(problem.network))) - tree) is None
 
     def _meanings(self, problem: Problem) -> tuple[tuple[Meaning, ...], Ruled]:
+        """Return the meanings of the constraints for a problem, and their network."""
         if self._last is None or self._last[0] is not problem:
             question, nodes = question_of(problem), len(problem.network.objects)
             meanings = tuple(meaning(rule, question) for rule in self.rules)

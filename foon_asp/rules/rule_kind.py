@@ -204,6 +204,7 @@ class Analysis:
         return Doubt("more units may break it, and others may mend it", clause.source)
 
     def _rule(self, statement: AST, live: Sequence[Clause]) -> Rule:
+        """Return a statement as a rule with its kind and locality."""
         source = source_of(statement)
         if statement.ast_type != ASTType.Rule:
             reason = f"{str(statement).split(maxsplit=1)[0]} is nothing that is looked into"
@@ -252,7 +253,7 @@ class Analysis:
 
 
 def _together(kinds: Iterable[Kind]) -> Kind:
-    """Return the kind of a conjunction of rules of several kinds."""
+    """Return the kind of a conjunction of rules of these kinds."""
     distinct = set(kinds)
     if len(distinct) > 1:
         distinct.discard(Kind.FACT)

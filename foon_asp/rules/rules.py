@@ -80,12 +80,12 @@ class Rules:
         self.rules: tuple[Rule, ...] = self._analysis.rules
 
     def varying(self, varied: Collection[Signature]) -> "Rules":
-        """Return the same rules for a question that derives or varies some predicates of facts."""
+        """Return the same rules for a question in which some predicates of facts are derived or varied."""
         return Rules(self._encodings, self._constants, varied)
 
     @cached_property
     def shown(self) -> tuple["ShownRule", ...]:
-        """The rules as they are shown; those of a ready-made constraint as in its file."""
+        """The rules as they are shown to users; those of a ready-made constraint as in its file."""
         texts: dict[int, str] = {}
         uses: dict[str, Stated] = {}
         for encoding in self._encodings:
@@ -205,7 +205,7 @@ class Rules:
         return limits
 
     def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
-        """Return the upper linear bounds of rules: of each, the weight of a unit, and the greatest sum."""
+        """Return the upper linear bounds that rules state: for each the unit weights and the greatest sum."""
         linear_bounds = [
             bound for bound in self._analysis.linear_bounds.values() if not (bound.per_unit or bound.at_least)
         ]
@@ -274,7 +274,7 @@ def _traits(disjunct: Disjunct) -> Iterator[Trait]:
 
 
 def _is_never(item: Item, fact: Fact) -> bool:
-    """Whether an item excludes a fact."""
+    """Whether an item is false where a fact holds."""
     return isinstance(item, Never) and any(disjunct.items == (fact,) for disjunct in item.disjuncts)
 
 
@@ -288,7 +288,7 @@ def _named(facts: Iterable[Fact], predicates: Collection[str]) -> list[str]:
 
 
 def _saying(statements: Iterable[AST]) -> list[AST]:
-    """Return statements without comments and ``#program``, which renaming of constants drops."""
+    """Return statements without comments and ``#program``, which are lost when constants are renamed."""
     return [
         statement for statement in statements if statement.ast_type not in {ASTType.Program, ASTType.Comment}
     ]

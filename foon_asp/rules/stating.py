@@ -17,7 +17,7 @@ def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
     """Return the file or text that clingo loads for each constraint.
 
     Rules are numbered in their order, and so are ready-made constraints with constants of their own. Raises
-    :class:`UserError` for constants that such a constraint has not, and for values that do not fit.
+    :class:`UserError` for constants that a ready-made constraint does not have, and for wrong values.
     """
     loaded_by_constraint: dict[Constraint, Loaded] = {}
     rules = uses = 0
@@ -36,7 +36,7 @@ def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
 
 
 def _renamed(use: LibraryUse, number: int) -> Stated:
-    """Return a ready-made constraint with its constants set, and these and its predicates renamed.
+    """Return a ready-made constraint with its constants set, renamed together with its predicates.
 
     Each statement is on the line on which it begins in the file.
     """

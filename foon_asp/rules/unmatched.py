@@ -47,11 +47,11 @@ class _Unmatched(NamedTuple):
 def unmatched(
     theirs: Sequence[Encoding], ours: Sequence[Encoding], settings: Sequence[str], values: FactValues
 ) -> Iterator[Diagnostic]:
-    """Return a warning for each literal over a fact that its constants keep from matching anything.
+    """Return a warning for each literal over a fact whose constants match nothing in the network.
 
-    ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the constants
-    that are set. A literal is skipped where another rule with the same head has its constants
-    in a literal that matches: a name may be a label or an ingredient.
+    ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the
+    constants that are set. A literal is skipped where another rule with the same head has its constants in
+    a literal that matches: a name may be a label or an ingredient.
     """
     encodings = (*theirs, *ours)
     definitions = [statement for encoding in encodings for statement in encoding.definitions]
@@ -124,7 +124,7 @@ class _Search:
         return self._values.matches(literal.signature[0], COLUMNS[literal.signature], wanted)
 
     def _arguments(self, literal: Literal, bound: _Values) -> dict[int, Sequence[Symbol]]:
-        """Return the possible values of arguments, by position, where they are known and set."""
+        """Return the possible values of arguments, by position; no unknown or unset ones."""
         values_by_position: dict[int, Sequence[Symbol]] = {}
         for position, argument in enumerate(literal.arguments):
             if argument.ast_type == ASTType.Variable:
@@ -173,6 +173,7 @@ class _Search:
         return columns
 
     def _message(self, literal: Literal, rows: Sequence[Mapping[int, Symbol]]) -> str:
+        """Return the warning about a literal that matches no fact, with similar names."""
         name, columns = literal.signature[0], COLUMNS[literal.signature]
         variables = {
             position: argument.name
@@ -268,7 +269,7 @@ def _equation(node: AST) -> tuple[AST, AST] | None:
 
 
 def _is_set(symbol: Symbol) -> bool:
-    """Whether a value is set: an empty text, ``#inf`` and ``#sup`` stand for an unset constant."""
+    """Whether a value is set; an empty text, ``#inf`` and ``#sup`` stand for an unset constant."""
     unset = symbol.type is SymbolType.String and not symbol.string
     return not unset and symbol.type not in {SymbolType.Infimum, SymbolType.Supremum}
 

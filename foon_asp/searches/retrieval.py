@@ -81,5 +81,5 @@ def backward(problem: Problem, choose: Choose, stack: bool = False) -> Retrieval
 
 
 def least(ties: Ties, size: Callable[[int], int | Fraction] = lambda _: 0) -> Choose:
-    """Return a function that chooses the unit of the least size, with ties broken by file order."""
+    """Return a function that chooses the unit of the least ``size``; ties are broken by file order."""
     return lambda candidates: min(candidates if ties is Ties.FIRST else reversed(candidates), key=size)

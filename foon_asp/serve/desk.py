@@ -32,7 +32,7 @@ Rules = tuple[Constraint, ...]
 
 
 class _EventReporter(Reporter):
-    """A reporter that sends events to the browser; progress only until the first page is finished.
+    """A reporter that sends events to the browser; it stops reporting progress after the first page.
 
     The progress of further answers, such as alternatives, would be taken for that of the first.
     """

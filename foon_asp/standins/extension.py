@@ -79,7 +79,7 @@ class _Nearest:
         self._servers: dict[int, dict[int, int]] = {}
 
     def pairs(self) -> list[Pair]:
-        """Return the pairs; without a tree, enough of them to show that there is none."""
+        """Return pairs of a served and a serving node; where no tree exists, enough pairs to prove that."""
         goals = [goal for goal in self._problem.goals if not self._available[goal]]
         needed = self._needed(goals)
         steps = self._cheapest(needed, sum)
@@ -95,7 +95,7 @@ class _Nearest:
         return [(served, serving) for served in needed for serving in self._servers[served]]
 
     def _of(self, served: int) -> dict[int, int]:
-        """Return the nodes that serve for no more than the cheapest of the available ones."""
+        """Return the nodes that may serve for a node, up to the price of the cheapest available one."""
         servers = self._servers.get(served)
         if servers is None:
             priced = self._prices.of(served)
@@ -105,7 +105,7 @@ class _Nearest:
         return servers
 
     def _ways(self, served: int) -> Iterator[tuple[int, ...]]:
-        """Yield for each unit that makes a node what it needs that is not available."""
+        """Yield for each achiever of a node its unavailable preconditions."""
         problem, available = self._problem, self._available
         for unit in problem.makers[served]:
             yield tuple([o for o in problem.needs[unit] if not available[o]])
@@ -126,11 +126,11 @@ class _Nearest:
     def _cheapest(
         self, needed: Iterable[int], combined: Callable[[Iterable[int]], int]
     ) -> "dict[int, _Step]":
-        """Return the cheapest last step to each node, where a unit costs what its inputs do, combined.
+        """Return the cheapest last step to each node; a unit costs its inputs' costs, combined.
 
-        By their ``max`` this is a lower bound on the dissimilarity of what makes a node (h_max; Bonet and
-        Geffner 2001), by their ``sum`` it leads to a good tree (h_add). Dijkstra's algorithm for such costs
-        is Knuth's (Information Processing Letters 6, 1977).
+        Combined by ``max``, the cost is a lower bound on the dissimilarity of making a node (h_max; Bonet
+        and Geffner 2001); by ``sum``, the steps lead to a good tree (h_add). Computed by Knuth's
+        generalization of Dijkstra's algorithm (Information Processing Letters 6, 1977).
         """
         served_by: defaultdict[int, list[tuple[int, int]]] = defaultdict(list)
         consumers: defaultdict[int, list[int]] = defaultdict(list)
@@ -163,7 +163,7 @@ class _Nearest:
         return steps
 
     def _dissimilarity(self, goals: Iterable[int], steps: "Mapping[int, _Step]") -> int:
-        """Return the dissimilarity of the tree that steps lead to, where each stand-in counts once."""
+        """Return the dissimilarity of the tree that follows best last steps; each stand-in counts once."""
         total, met = 0, set(goals)
         stack = list(met)
         while stack:

@@ -1,8 +1,7 @@
-"""Prices of many stand-ins: as the table has them, but by integers and without what explains them."""
+"""Fast prices of many stand-ins, in integers, without the edits that explain them."""
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Iterator
 from fractions import Fraction
 
 from foon_asp.network import Edit, Network, ObjectNode, Relation, StandInTable, spelled_alike, spelling_key
@@ -39,23 +38,20 @@ class NodePrices:
         return None if price is None else int(price * self.scale)
 
     def of(self, served: int) -> dict[int, int]:
-        """Return the nodes that may serve in place of one, by id, with their prices."""
+        """Return the nodes that may stand in for a served node, by id, with their prices."""
         servers = self._of.get(served)
         if servers is None:
-            servers = self._of[served] = dict(self._priced(served))
+            servers = self._of[served] = self.of_node(self._objects[served])
         return servers
 
-    def _priced(self, served: int) -> Iterator[tuple[int, int]]:
+    def of_node(self, node: ObjectNode) -> dict[int, int]:
+        """Return the nodes that may serve in place of one that the network may lack, by id, with prices."""
         objects, by_label = self._objects, self._by_label
-        node = objects[served]
-        labels = (*self._spelled[spelling_key(node.label)], *self._labels.get(node.label, ()))
+        labels = (*self._spelled.get(spelling_key(node.label), ()), *self._labels.get(node.label, ()))
         nodes = dict.fromkeys(o for label in labels for o in by_label.get(label, ()))
         nodes |= dict.fromkeys(self._nodes.get(node, ()))
-        for serving in nodes:
-            if serving != served:
-                price = self.between(objects[serving], node)
-                if price is not None:
-                    yield serving, price
+        prices = ((o, self.between(objects[o], node)) for o in nodes if objects[o] != node)
+        return {o: price for o, price in prices if price is not None}
 
     def between(self, serving: ObjectNode, served: ObjectNode) -> int | None:
         """Return the price of using one node in place of another, ``None`` where it never stands in."""
@@ -126,6 +122,7 @@ class NodePrices:
         return total
 
     def _of_relations(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
+        """Return the price of different relations, ``None`` for never."""
         surplus = Counter(relation.object for relation in ours - theirs)
         lacking = Counter(relation.object for relation in theirs - ours)
         same = (surplus & lacking).total()

@@ -50,8 +50,8 @@ class Repair:
                 continue
             builder.add(unit.motion, unit.inputs, unit.outputs, *places)
         listed = [
-            builder.add(unit.motion, unit.inputs, unit.outputs, place)
-            for unit, place in zip(tree, sources, strict=True)
+            builder.add(unit.motion, unit.inputs, unit.outputs, source)
+            for unit, source in zip(tree, sources, strict=True)
         ]
         steps, network = tuple(dict.fromkeys(listed)), builder.build()
         nodes = enumerate(network.objects)

@@ -42,6 +42,7 @@ def _has_utensil(entry: Entry, utensils: Collection[str]) -> bool:
 
 
 def _changed(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -> StandInTable:
+    """Return a table with the prices of rows."""
     edits, words, pairs = dict(table.edits), dict(table.words), dict(table.pairs)
     for name, price, _ in rows:
         if isinstance(name, Edit):
@@ -54,6 +55,7 @@ def _changed(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -
 
 
 def _row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
+    """Return what a row prices, and its price; ``None`` is the price ``never``."""
     served, tab, written = value.rpartition("\t")
     price = _price(written.strip(), column + len(value) - len(written))
     if not tab:
@@ -67,6 +69,7 @@ def _row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
 
 
 def _edit(name: str) -> Edit | tuple[Edit, str]:
+    """Return the kind of edit that a name stands for, with the state or ingredient, if it names one."""
     kind, colon, word = (text.strip() for text in name.partition(":"))
     if kind not in (_NAMED if colon else _KINDS) or (colon and not word):
         kinds = ", ".join(_KINDS)
@@ -75,6 +78,7 @@ def _edit(name: str) -> Edit | tuple[Edit, str]:
 
 
 def _price(written: str, column: int) -> Fraction | None:
+    """Return a price, ``None`` for ``never``; raises :class:`LineError` for other texts."""
     if written == _NEVER:
         return None
     price = Fraction(written) if _NUMBER.fullmatch(written) else Fraction(0)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from foon_asp.network import FunctionalUnit, ObjectNode, Source
+from foon_asp.network import DataAmounts, FunctionalUnit, ObjectNode, Source
 from foon_asp.network.node_pattern import LookupKey, lookup_keys
 from foon_asp.network.starting import recipe_kitchen
 from foon_asp.store.columns import (
@@ -106,7 +106,7 @@ class StoreBuilder:
         return unit
 
     def last_outputs(self, units: Mapping[int, Source]) -> list[ListedObject]:
-        """Return the outputs that the last unit of each file is for, as entries of a goals file.
+        """Return the final outputs of the last unit of each file, as entries of a goals file.
 
         ``units`` are the ids of the last units, each with its source.
         """
@@ -134,15 +134,20 @@ class StoreBuilder:
         utensils: Iterable[str] | None,
         left_out: int,
         repeated: Sequence[RepeatedNode],
+        amounts: DataAmounts,
         stated: Mapping[FunctionalUnit, Fraction],
         prices: UnitPriceList | None,
     ) -> None:
         """Write the remaining rows, and the indexes; ``left_out`` counts lines that were not understood.
 
         ``goals_from`` says what the goals were assumed from, and is empty where a file lists them.
-        ``repeated`` are nodes that a unit lists twice.
+        ``repeated`` are nodes that a unit lists twice, and ``amounts`` those of units.
         ``stated`` are prices that networks have for their units, ``prices`` those of a file, if there is one.
         """
+        amounts_by_id = [
+            (self.unit_id(unit), *(self._amounts(side) for side in sides))
+            for unit, sides in amounts.units.items()
+        ]
         prices_by_id = [
             self._by_id(prices_of_kind) for prices_of_kind in (stated, prices.units if prices else {})
         ]
@@ -177,7 +182,9 @@ class StoreBuilder:
             "rates": None if rates is None else {motion: str(rate) for motion, rate in rates.items()},
             "utensils": sorted(utensils or ()),
             "motion_prices": prices and {motion: str(price) for motion, price in prices.motions.items()},
-            "repeated": [[node, *source[:3], int(meant)] for node, source, meant in repeated],
+            "repeated": [[node, *source[:3]] for node, source in repeated],
+            "amounts": amounts_by_id,
+            "amounts_conflict": amounts.conflict,
             "digests": content_digests(
                 self._database,
                 prices.motions if prices else None,
@@ -202,12 +209,17 @@ class StoreBuilder:
             return None
         return self._units.get(_unit_key(unit.motion, ins, outs))  # type: ignore[arg-type]
 
+    def _amounts(self, side: Mapping[ObjectNode, int]) -> list[tuple[int, int]]:
+        """Return the amounts of nodes by id."""
+        return [(self._nodes["".join(node_columns(node))], amount) for node, amount in side.items()]
+
     def _by_id(self, prices: Mapping[FunctionalUnit, Fraction]) -> dict[int, Fraction]:
-        """Return the prices of units that were added, by id."""
+        """Return prices by the ids of units, for all units that were added."""
         by_id = ((self.unit_id(unit), price) for unit, price in prices.items())
         return {unit: price for unit, price in by_id if unit is not None}
 
     def _node_id(self, node: ObjectNode) -> int:
+        """Return the id of a node, which is added if it is new."""
         number = self._latest.get(node)
         if number is None:
             columns = node_columns(node)
@@ -221,6 +233,7 @@ class StoreBuilder:
         return number
 
     def _add_node(self, number: int, node: ObjectNode, columns: NodeColumns) -> None:
+        """Add a node to the rows that are written next."""
         in_kitchen = False
         for key in lookup_keys(node) if self._kitchen else ():
             for entry in self._entries.get(key, ()):
@@ -233,6 +246,7 @@ class StoreBuilder:
         self._insert("node", number, label, *columns[1:], int(in_kitchen), 0)
 
     def _node(self, number: int) -> ObjectNode:
+        """Return the node with an id."""
         label, *columns = self._database.execute(
             "SELECT name, states, relations, contents FROM node JOIN label ON label.id = label "
             "WHERE node.id = ?",
@@ -241,6 +255,7 @@ class StoreBuilder:
         return node_of(decoded_label(label), *columns)
 
     def _origin(self, file: str, videos: tuple[str, ...]) -> int:
+        """Return the id of a file with its videos, which is added if it is new."""
         number = self._origins.get((file, videos))
         if number is None:
             number = self._origins[file, videos] = len(self._origins)
@@ -281,5 +296,5 @@ class StoreBuilder:
 
 
 def _unit_key(motion: str, inputs: Iterable[int], outputs: Iterable[int]) -> str:
-    """Return the identity of a unit as a text, in which the order of its nodes does not count."""
+    """Return the identity of a unit as text; the order of its nodes does not count."""
     return f"{sorted(inputs)}{sorted(outputs)}{motion}"

@@ -47,7 +47,7 @@ class Cone:
         self._rule = containers, utensils
 
     def copied(self) -> "Cone":
-        """Return another cone that has read as much."""
+        """Return an independent copy of the cone."""
         other = copy.copy(self)
         other.units, other.open, other._closed = set(self.units), set(self.open), set(self._closed)
         return other

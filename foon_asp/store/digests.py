@@ -34,7 +34,7 @@ def content_digests(
     motions: Mapping[str, Fraction] | None,
     priced: Mapping[int, Fraction] | None,
 ) -> dict[str, str]:
-    """Return the digests of network, kitchen and prices; :func:`foon_asp.proof.verify.digests` has the same.
+    """Return the digests of network, kitchen and prices, equal to :func:`foon_asp.proof.verify.digests`.
 
     ``motions`` are prices by motion, ``priced`` those of single units by id; ``None`` where none are known.
     """
@@ -72,7 +72,7 @@ def content_digests(
 
 
 def _digest(level: str, *lists: Iterable[str]) -> str:
-    """Return the SHA-256 digest of a JSON list of a level and lists, whose members are JSON texts."""
+    """Return the SHA-256 digest of a JSON list: a level, then lists of texts that are JSON."""
     digest = hashlib.sha256(f"[{level}".encode())
     for members in lists:
         digest.update(b",[")

@@ -76,7 +76,7 @@ class Outline:
         return mask
 
     def named(self, word: str) -> Mask:
-        """Return the mask of the nodes that have a word as their label, or may have it as an ingredient."""
+        """Return the mask of the nodes whose label is a word, or that may have the word as an ingredient."""
         mask = self._named_masks.get(word)
         if mask is None:
             holds = self.nodes(self._nodes_where("instr(contents, ?)", quoted(word)))
@@ -144,7 +144,7 @@ class Outline:
             new_distances = _saturating_sum(farthest, own_costs[units])
 
     def leading_to(self, units: Mask, available: Mask, candidates: Mask) -> Mask:
-        """Return the mask of units and, transitively, of the ``candidates`` that make unavailable inputs."""
+        """Return the mask of units, and of ``candidates`` that transitively make their unavailable inputs."""
         mask = units.copy()
         new = np.flatnonzero(mask)
         while len(new):
@@ -168,7 +168,10 @@ def _checked_ids(ids: Numbers, count: int) -> Numbers:
 
 
 class _Lists:
-    """Lists of numbers of different lengths in one array (compressed sparse rows); ``count`` of them."""
+    """Lists of numbers of different lengths in one array (compressed sparse rows).
+
+    ``count`` is the number of lists.
+    """
 
     def __init__(self, lengths: Numbers, entries: Numbers) -> None:
         self.entries, self.count = entries, len(lengths)
@@ -198,7 +201,7 @@ class _Lists:
         return _Lists(counts, self.owners[np.argsort(self.entries, kind="stable")])
 
     def positions_of(self, lists: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return the positions of all entries of some lists, and for each of them its list."""
+        """Return the positions of all entries of some lists, and the list of each of them."""
         lengths = self._lengths[lists].astype(np.int64)
         owners = np.repeat(lists, lengths)
         offsets = np.repeat(np.cumsum(lengths) - lengths, lengths)

@@ -9,7 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from foon_asp.garbage import uncollected
-from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
+from foon_asp.network import (
+    DataAmounts,
+    FunctionalUnit,
+    Network,
+    NodePattern,
+    ObjectNode,
+    Source,
+    UnitAmounts,
+)
 from foon_asp.network.network import UnitKey
 from foon_asp.problem import ContainerRule, Unpriced, needed_inputs
 from foon_asp.store.columns import (
@@ -76,8 +84,7 @@ class Store:
         self.has_unit_prices = bool(about("unit_prices"))
         self.goals_from = str(about("goals_from"))  # empty where the goals are from a file
         self.repeated = tuple(
-            RepeatedNode(node, Source(file, line, column), bool(meant))
-            for node, file, line, column, meant in about("repeated")
+            RepeatedNode(node, Source(file, line, column)) for node, file, line, column in about("repeated")
         )
 
     def close(self) -> None:
@@ -108,6 +115,18 @@ class Store:
         """The prices of units by motion, or ``None`` when no file of prices was imported."""
         prices = self.file.about("motion_prices")
         return None if prices is None else {motion: number_of(price) for motion, price in prices.items()}
+
+    @cached_property
+    @reporting_damage
+    def amounts(self) -> DataAmounts:
+        """The amounts of units."""
+        amounts: dict[FunctionalUnit, UnitAmounts] = {}
+        for number, inputs, outputs in self.file.about("amounts"):
+            motion, *sides, _ = self.unit_parts(number)
+            unit = FunctionalUnit(motion, *(tuple(self.nodes(side)) for side in sides))
+            counted = ({self.node(o): amount for o, amount in side} for side in (inputs, outputs))
+            amounts[unit] = UnitAmounts(*counted)
+        return DataAmounts(amounts, str(self.file.about("amounts_conflict")))
 
     @cached_property
     @reporting_damage
@@ -310,6 +329,8 @@ class Store:
             self._origins[number] = str(decoded(file)), tuple(decoded(videos))
 
     def _sources(self, rows: Iterable[tuple[int, int, int, int]]) -> dict[int, tuple[Source, ...]]:
+        """Return the sources of units, by id, from rows of the database."""
+
         def source(_: int, origin: int, line: int, column: int) -> Source:
             file, videos = self._origins[origin]
             return Source(file, int(line), int(column), videos)
@@ -377,7 +398,7 @@ class Store:
     def needs(
         self, units: Sequence[int], containers: ContainerRule, utensils: frozenset[str]
     ) -> list[list[int]]:
-        """Return for each of the units the nodes that it needs under a container rule and its utensils."""
+        """Return for each of the units the nodes that it needs under a container rule with some utensils."""
         self.read_units(units)
         inputs = [self._unit(unit)[1] for unit in units]
         self.read_nodes(set(chain.from_iterable(inputs)))
@@ -414,7 +435,7 @@ class Store:
     @reporting_damage
     @uncollected()
     def part(self, units: Iterable[int], objects: Iterable[int] = ()) -> Network:
-        """Read units with their nodes, and the given further nodes, as a part of the whole network."""
+        """Read units with their nodes, and further nodes, as a part of the whole network."""
         unit_ids = sorted(set(units))
         self.read_units(unit_ids)
         rows = [self._unit(unit) for unit in unit_ids]
@@ -490,5 +511,5 @@ class Store:
 
 
 def _price(from_file: bool) -> str:
-    """Return the SQL expression of a unit's price: stated, or ``from_file`` the listed one before it."""
+    """Return the SQL expression of a unit's price: the stated one; ``from_file``, the listed one first."""
     return "coalesce(listed, stated)" if from_file else "stated"

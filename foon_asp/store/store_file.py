@@ -34,7 +34,7 @@ Value = TypeVar("Value")
 
 
 def is_store_database(file: Path) -> bool:
-    """Whether a file begins like a store of any version, whole or not."""
+    """Whether a file begins like a store of any version, complete or not."""
     header = read_beginning(file, _HEADER)
     return header[: len(STORE_MAGIC)] == STORE_MAGIC and int.from_bytes(header[68:72]) == APPLICATION_ID
 
@@ -66,7 +66,7 @@ class StoreFile:
         self._closing()
 
     def rows(self, statement: str, ids: Iterable[int]) -> sqlite3.Cursor:
-        """Run a statement in which ``IN ids`` stands for these ids."""
+        """Run a statement, in which ``IN ids`` stands for some ids, and return its rows."""
         listed = "IN (SELECT value FROM json_each(?))"
         return self.database.execute(statement.replace("IN ids", listed), (json.dumps([*ids]),))
 

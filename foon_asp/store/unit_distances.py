@@ -76,9 +76,10 @@ class UnitDistances:
         return np.flatnonzero(units).tolist(), least_distances(distances, unit_ids)
 
     def relevant(self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int) -> list[int]:
-        """Return the units at a distance up to ``max_cost`` that are of a kind, or lead to a unit that is.
+        """Return the units within a distance of ``max_cost`` that are of a kind or lead to such units.
 
-        ``executed`` are units that cost nothing and are left out. If ``kinds`` is ``None``, all units count.
+        ``executed`` are units that cost nothing and are left out. If ``kinds`` is ``None``, all units
+        count.
         """
         if max_cost < int(self._costs.min(initial=FAR)):
             return []

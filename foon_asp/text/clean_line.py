@@ -39,6 +39,7 @@ def clean_node(notation: str) -> ObjectNode | None:
 
 
 def _state(match: re.Match[str]) -> StateLine:
+    """Return the state line of a match."""
     id_, name, gap, related, listed = match.groups()
     end = match.end(2)
     remarks: list[Remark] = []
@@ -53,7 +54,7 @@ def _state(match: re.Match[str]) -> StateLine:
 
 
 def no_tab(bracket: str, column: int) -> Remark:
-    """Remark on a blank, or nothing, where a tab should stand before a bracket."""
+    """Return a remark on a blank, or nothing, where a tab should stand before a bracket."""
     return Remark(column, "space-for-tab", f"no tab before {bracket}; read as if there were one")
 
 

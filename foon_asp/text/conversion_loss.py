@@ -10,7 +10,7 @@ from foon_asp.text.motion_times import MotionFields, in_two_fields
 
 
 class Loss(StrEnum):
-    """A part of a file that some dialect cannot hold, in the words of the message."""
+    """A part of a file that some dialect cannot hold; the value is the noun in messages."""
 
     IDS = "ids"
     MOTION_FLAGS = "motion flags"
@@ -20,6 +20,7 @@ class Loss(StrEnum):
     TIMES = "times"
     RATES = "entities and their success rates"
     PRICES = "prices of units"
+    AMOUNTS = "amounts of object nodes"
     COMPOSITE = "composite marks *"
     RELATION_WORDS = "relation words: read back as in [...] or any place"
     RELATIONS = "further relations of an object"
@@ -35,7 +36,7 @@ class Loss(StrEnum):
 
 
 class CannotHoldError(Exception):
-    """A name that would mean something else in another dialect, and what it would mean."""
+    """A dialect cannot hold a name: it would mean something else there."""
 
 
 def lost_in_line(before: Line, after: Line) -> list[Loss]:
@@ -71,6 +72,7 @@ def lost_in_states(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) 
 
 
 def _lost_fields(before: tuple[str, ...], after: tuple[str, ...]) -> Iterator[Loss]:
+    """Yield the losses between the fields of two lines."""
     missing = Counter(before) - Counter(after)
     for index, field in enumerate(before):
         if not missing[field]:
@@ -92,6 +94,7 @@ def _lost_times(before: MotionFields, after: MotionFields) -> Iterator[Loss]:
 
 
 def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) -> list[Loss]:
+    """Return the losses between the state lines of one object and another."""
     old_attributes, new_attributes = [s.attribute for s in before], [s.attribute for s in after]
     missing, extra = (
         Counter(old_attributes) - Counter(new_attributes),
@@ -125,7 +128,7 @@ def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]
 
 
 def _lost_relation(relation: Relation, extra: Counter[str | Relation | Contents]) -> Loss:
-    """Return the loss of a relation, and remove the relation that replaces it from ``extra``."""
+    """Return the loss of a relation; the relation that replaces it is removed from ``extra``."""
     for other in list(extra):
         if isinstance(other, Relation) and other.object == relation.object:
             extra[other] -= 1

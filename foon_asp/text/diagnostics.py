@@ -85,7 +85,7 @@ class InputError(UserError):
 
 
 def in_brief(diagnostics: Sequence[Diagnostic]) -> list[str]:
-    """Return warnings as :func:`summarize` does if that takes a few lines, else their number in one line."""
+    """Return warnings as :func:`summarize` does if these are only a few lines, else their number."""
     summary = summarize(diagnostics)
     if sum(1 + text.count("\n") for text in summary) <= _BRIEF:
         return summary

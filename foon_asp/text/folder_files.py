@@ -15,7 +15,7 @@ _KEY = re.compile(rb'"(?:input_nodes|object_label|label)"\s*:')
 
 
 class FolderFile(NamedTuple):
-    """A file, and its path within the folder that was named, or its name."""
+    """A file, and its path relative to the folder that was named; for a named file, its name."""
 
     file: Path
     relative: Path

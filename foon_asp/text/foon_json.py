@@ -31,7 +31,7 @@ class FoonJson(Format):
     machine_written = True
 
     def recognises(self, text: str, file: str) -> bool:
-        """Whether it begins with a bracket."""
+        """Whether the text begins with a bracket."""
         return begins_json(text)
 
     def dialect(self, text: str) -> Dialect:
@@ -40,14 +40,14 @@ class FoonJson(Format):
         return Dialect.JSON if by_its_name or text.lstrip(" \t\r\n")[0] == "{" else Dialect.JSON_LIST
 
     def lists_objects(self, text: str) -> bool:
-        """Whether it is a list whose first element is no unit."""
+        """Whether the text is a list whose first element is no unit."""
         first = next(iter(JsonList(text, Path())), None) if text.lstrip(" \t\r\n")[0] == "[" else None
         if first is None or not isinstance(first.value, dict | str):
             return False
         return isinstance(first.value, str) or "input_nodes" not in first.value
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-        """Yield the units of a text in order, with the lines that they would have."""
+        """Yield the units of a text in order, with equivalent lines of FOON text."""
         for unit in read_json_units(text, file, reading):
             if unit.price:
                 copy = FunctionalUnit.of(unit.motion.motion, *unit.sides)
@@ -55,11 +55,11 @@ class FoonJson(Format):
             yield unit
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-        """Yield the objects of a kitchen or of goals; a ``container`` is only in their patterns."""
+        """Yield the objects of a kitchen or of goals; only their patterns have the ``container``."""
         return read_json_objects(text, file, reading)
 
     def lines(self, text: str) -> Iterator[Line]:
-        """Yield the lines that its objects and motions would have."""
+        """Yield the objects and motions as lines of FOON text."""
         reading = Reading(lenient=True)
         if self.lists_objects(text):
             for block, _ in self.objects(text, "", reading):

@@ -35,7 +35,7 @@ class FoonText(Format):
     has_comments = True
 
     def recognises(self, text: str, file: str) -> bool:
-        """Return true."""
+        """Return true, since any text may be FOON text."""
         return True
 
     def dialect(self, text: str) -> Dialect:
@@ -134,7 +134,7 @@ def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
 
 
 def _mended(line: Line, written: str) -> str:
-    """Return the canonical form of a line: itself, unless it has a remark on more than blanks.
+    """Return the canonical form of a line; a line whose only remarks are on blanks stays unchanged.
 
     Blanks within a line stay, as the published universal FOON has them: ``{jelly, peanut butter}``, and a
     space for the tab before a bracket. Linting remarks on them.
@@ -145,6 +145,7 @@ def _mended(line: Line, written: str) -> str:
 
 
 def _rewritten_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
+    """Return a line as ``rewrite`` writes it, or unchanged with an error; comments and blank lines stay."""
     if line[:1] == "#":
         return line, None
     if not line or line.isspace():

@@ -62,7 +62,7 @@ def renamed_json(text: str, renaming: "Renaming") -> str:
 
 
 class _JsonName(NamedTuple):
-    """A name in JSON: where its quotes are, and the id beside it with its place, if there is one.
+    """A name in JSON: the position of its quotes, and its id with the id's position, if there is one.
 
     ``suffix`` is the text behind the name that is no part of it: the ``*`` of a composite motion.
     """
@@ -77,9 +77,9 @@ class _JsonName(NamedTuple):
 
 
 class _Level:
-    """A list or an object of JSON while it is read: its current key, and the key that it is the value of.
+    """A list or an object while JSON is read: its current key, and the key whose value it is.
 
-    ``first`` is how many names there were when it began.
+    ``first`` is the number of names before it.
     """
 
     def __init__(self, owner: str, is_list: bool, first: int = 0) -> None:
@@ -122,7 +122,7 @@ def _json_names(text: str) -> list[_JsonName]:
 
 
 def _with_ids(level: _Level) -> Iterator[_JsonName]:
-    """Yield the names of an object of JSON; a label has the id beside it, a container has none."""
+    """Yield the names of a JSON object; a label has the id of the object, a container has no id."""
     related = any(key in _RELATED and not is_none(name.name) for key, name in level.names)
     for key, name in level.names:
         kind = NameKind.WORD if related and name.kind is NameKind.STATE else name.kind
@@ -135,7 +135,10 @@ def _is_word_of_list(name: _JsonName) -> bool:
 
 
 def _name_contents(names: list[_JsonName], first: int) -> None:
-    """Make the state ``contains`` of an object that lists ingredients the word of its contents."""
+    """Change a state ``contains`` to the word of the contents, in an object that lists ingredients.
+
+    ``first`` is the index of the object's first name in ``names``.
+    """
     for index in range(first, len(names)):
         if names[index].kind is NameKind.STATE and names[index].name == LISTED_UNDER:
             names[index] = names[index]._replace(kind=NameKind.WORD)

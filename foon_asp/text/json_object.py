@@ -6,7 +6,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
+from foon_asp.network import MAX_AMOUNT, Contents, NodePattern, ObjectNode, Relation, Source
 from foon_asp.text.exact_number import LONGEST, read_price
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_node import read_node_json
@@ -28,7 +28,7 @@ _STATE_KEYS = {*_STATE_LABEL, *_RELATED, "state_id"}
 
 
 class JsonObject(NamedTuple):
-    """An object node as an object line and state lines, and the container that is named without a word.
+    """An object node read from JSON: an object line, state lines, and the container named without a word.
 
     ``remarks`` are repairs, and parts of the node that lines cannot hold.
     """
@@ -39,7 +39,7 @@ class JsonObject(NamedTuple):
     remarks: tuple[str, ...] = ()
 
 
-def read_object(value: object) -> JsonObject:
+def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
     """Read a node from ``{"label", "states", "ingredients", "container"}`` or the names of the other form.
 
     States are names, also ``in [bowl]``, or objects with ``state_label`` and ``relative_object``. The
@@ -48,7 +48,7 @@ def read_object(value: object) -> JsonObject:
     """
     if not isinstance(value, dict):
         raise ValueError(f'found {shown(value)}, expected an object {{"label": ..., "states": [...]}}')
-    check_keys(value, KEYS)
+    check_keys(value, keys)
     label_key, label_value = first_of(value, _LABEL)
     label = _name(label_value, label_key).strip(" ")
     if not label:
@@ -81,9 +81,10 @@ def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[
 
 
 def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern, tuple[str, ...]]]:
-    """Yield the entries of a list with their patterns and remarks; faults are errors of the list.
+    """Yield the entries of a list with their patterns and remarks.
 
-    An entry is a node as :func:`read_object` reads it, one in one-line notation, or one of an answer in JSON.
+    Faulty entries become errors of the list. An entry is a node as :func:`read_object` reads it, one in
+    one-line notation, or one of an answer in JSON.
     """
     for value, source in elements:
         try:
@@ -167,8 +168,18 @@ def number(value: dict[str, object], key: str) -> str:
     raise ValueError(f'found {shown(field)} as "{key}", expected a number')
 
 
+def amount_of(value: object) -> int:
+    """Return how many of a node a unit takes or makes; raises :class:`ValueError`."""
+    written = value.text if isinstance(value, JsonNumber) else str(value)
+    if not is_number(written) or not 0 < len(written) <= len(str(MAX_AMOUNT)):
+        raise ValueError(f"found the amount {shown(value)}, expected a whole number from 1 to {MAX_AMOUNT}")
+    if not 1 <= int(written) <= MAX_AMOUNT:
+        raise ValueError(f"found the amount {written}, expected a whole number from 1 to {MAX_AMOUNT}")
+    return int(written)
+
+
 def price_of(value: object, exponents: bool = False) -> str:
-    """Return the price of a unit as it is written, a number or text; empty where there is none.
+    """Return the price of a unit as written in JSON, as a number or text; empty where it has none.
 
     A number may have an exponent where the form has ``exponents``; the price is without it.
     """
@@ -190,6 +201,7 @@ def price_of(value: object, exponents: bool = False) -> str:
 
 
 def _state(value: object) -> StateLine:
+    """Return a state as a state line, from a name or an object of JSON."""
     if isinstance(value, dict):
         check_keys(value, _STATE_KEYS)
         label_key, label_value = first_of(value, _STATE_LABEL)
@@ -219,6 +231,7 @@ def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> lis
 
 
 def _left_out(value: dict[str, object], flag: str, category: str, ingredients: list[object]) -> Iterator[str]:
+    """Yield remarks on parts of an object that lines cannot hold."""
     if flag not in {"", *MOTION_FLAGS}:
         yield f"the motion flag {flag!r} is not 0 or 1"
     if category and not flag:
@@ -231,13 +244,14 @@ def _left_out(value: dict[str, object], flag: str, category: str, ingredients: l
 
 
 def _ingredient(value: object) -> str:
-    """Return the name of an ingredient, the label of a whole object."""
+    """Return the name of an ingredient; for a whole object, its label."""
     if isinstance(value, dict):
         return read_object(value).line.label
     return _name(value, "ingredients").strip(" ")
 
 
 def _list(value: dict[str, object], key: str, items: object) -> list[object]:
+    """Return the list under a key, empty for a missing one; raises :class:`ValueError` for others."""
     if items is None:
         return []
     if not isinstance(items, list):

@@ -44,7 +44,7 @@ def _laid_out(value: object, newline: str) -> str:
 
 
 def json_line(value: object, default: Callable[[Any], object] | None = None) -> str:
-    """Write plain values as JSON on one line; ``default`` makes plain what is not."""
+    """Write plain values as JSON on one line; ``default`` converts all other values."""
     line = _encode(value) if default is None else json.dumps(value, ensure_ascii=False, default=default)
     try:
         line.encode()
@@ -54,10 +54,10 @@ def json_line(value: object, default: Callable[[Any], object] | None = None) -> 
 
 
 def read_json(text: str | bytes, pairs: Callable[[list[tuple[str, Any]]], object] | None = None) -> Any:
-    """Parse a JSON text; ``pairs`` makes the objects, as ``json.loads`` has it.
+    """Parse a JSON text; ``pairs`` makes its objects from pairs of keys and values.
 
-    Raises :class:`ValueError` for any fault, also for lists nested deeper and numbers longer than Python can
-    read.
+    Raises :class:`ValueError` for any fault, also for lists nested deeper and numbers longer than Python
+    can read.
     """
     try:
         return json.loads(text, object_pairs_hook=pairs)

@@ -26,9 +26,9 @@ _NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
 
 
 class JsonWriter:
-    """A writer of one of the forms, which reads each part back to find changed meanings and losses."""
+    """A writer of one of the JSON forms, which reads each part back to find changed meanings and losses."""
 
-    holds_prices = True
+    holds_prices = holds_amounts = True
     holds_no_inputs = False
 
     def __init__(self, target: Dialect) -> None:
@@ -39,6 +39,8 @@ class JsonWriter:
         """Write an object."""
         line, states = block.object, block.states
         text = (list_object if self._is_list else json_object)(line, states)
+        if block.amount > 1:
+            text = f'{text[:-1]},"amount":{block.amount}}}'
         back = _listed(text) if in_list else _unit(text, '"x"').inputs[0]
         losses = lost_in_line(line, back.object) + lost_in_states(states, back.states)
         return lay_out(text, 1 if in_list else self._level + 2), losses
@@ -82,6 +84,7 @@ def _listed(text: str) -> ObjectBlock:
 
 
 def _unit(node: str, motion: str) -> ListedUnit:
+    """Return a unit of one node and one motion, read back from JSON."""
     text = f'[{{"input_nodes":[{node}],"motion_node":{motion},"output_nodes":[{node}]}}]'
     reading = Reading()
     units = list(read_json_units(text, "", reading))
@@ -90,7 +93,7 @@ def _unit(node: str, motion: str) -> ListedUnit:
 
 
 def _raise_first_error(reading: Reading) -> None:
-    """Raise :class:`CannotHoldError` for an error; warnings were made before, or count as losses."""
+    """Raise :class:`CannotHoldError` for the first error among diagnostics; warnings are ignored."""
     for diagnostic in reading.diagnostics:
         if diagnostic.severity is Severity.ERROR:
             raise CannotHoldError(diagnostic.message)
@@ -206,6 +209,7 @@ def _number(digits: str) -> object:
 
 
 def _text(value: object) -> str:
+    """Return plain values as a JSON text of published layout."""
     if isinstance(value, JsonNumber):
         return value.text
     if isinstance(value, dict):

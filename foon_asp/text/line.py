@@ -28,7 +28,7 @@ class Mention(NamedTuple):
 
 
 class Remark(NamedTuple):
-    """A warning about one column (from 1) of a line that could be read nevertheless."""
+    """A warning about one column (from 1) of a line, which could be read in spite of it."""
 
     column: int
     code: str
@@ -95,7 +95,7 @@ Line = ObjectLine | StateLine | MotionLine
 
 
 def name_of(line: Line) -> str:
-    """Return the name that the id of a line is for: label, motion, state or relation word."""
+    """Return the name that has the id of a line; a label, a motion, a state or the word of a relation."""
     if isinstance(line, ObjectLine):
         return line.label
     if isinstance(line, MotionLine):
@@ -104,7 +104,7 @@ def name_of(line: Line) -> str:
 
 
 def kind_of(line: Line) -> NameKind:
-    """Return the kind of :func:`name_of` a line."""
+    """Return the kind of the name that :func:`name_of` returns."""
     if isinstance(line, StateLine):
         return NameKind.STATE if isinstance(line.attribute, str) else NameKind.WORD
     return NameKind.OBJECT if isinstance(line, ObjectLine) else NameKind.MOTION

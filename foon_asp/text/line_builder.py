@@ -126,7 +126,7 @@ class _LineBuilder(Transformer[Token, object]):
 
 
 def _noted(word: str, bracket: str) -> str | Relation | Contents:
-    """Return the relation, contents or state of a bracket; names in quotes are read to the letter."""
+    """Return the relation, contents or state of a bracket; quoted names are taken literally."""
     written = [item.strip(" ") for item in _ITEM.findall(bracket[1:-1])]
     if not any(item.startswith('"') for item in written):
         return _bracketed(word, Token("PLACE", bracket), "", []).attribute
@@ -155,7 +155,7 @@ def _id(letter: Token, remarks: list[Remark]) -> str:
 
 
 def _fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, ...]:
-    """Return the fields behind a name without blanks around them; empty ones are left out."""
+    """Return the fields after a name, stripped of blanks, without empty fields."""
     fields: list[str] = []
     for token in tokens:
         field = token[1:].strip(" ")
@@ -169,7 +169,7 @@ def _fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, ...]:
 
 
 def _flag_and_tag(tokens: list[Token], fields: tuple[str, ...], remarks: list[Remark]) -> tuple[str, ...]:
-    """Return the fields behind a label, checked: a motion flag, then for a goal its category or ``!``."""
+    """Return the fields after a label, checked: a motion flag, then the category or ``!`` of a goal."""
     field_tokens = [token for token in tokens[2:] if token.strip("\t ")]
     flag = fields[0]
     if flag in SLIPPED_FLAGS:

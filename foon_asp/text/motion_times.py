@@ -59,7 +59,7 @@ class MotionFields(NamedTuple):
 
 
 def in_two_fields(times: tuple[str, ...]) -> tuple[str, ...]:
-    """Write ``<0:14,0:20>`` as ``0:14`` and ``0:20``; times that are no single span stay as they are."""
+    """Write the time ``<0:14,0:20>`` as two fields, ``0:14`` and ``0:20``; other times stay as they are."""
     if len(times) == 1:
         span = _SPAN_OF_TWO.fullmatch(times[0]) or _ASSUMED.fullmatch(times[0])
         if span and is_time(times[0]):
@@ -68,7 +68,7 @@ def in_two_fields(times: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def in_one_field(times: tuple[str, ...]) -> tuple[str, ...]:
-    """Write ``0:14`` and ``0:20`` as ``<0:14,0:20>``; other fields stay as they are."""
+    """Write the two fields ``0:14`` and ``0:20`` as one, ``<0:14,0:20>``; other times stay as they are."""
     if len(times) == 2 and not any(time[:1] == "<" for time in times):
         begin, end = times
         field = f"<{begin}>" if begin == end and begin[:1] in {"A", "a"} else f"<{begin},{end}>"

@@ -99,12 +99,12 @@ def usual_line_end(text: str) -> str:
 
 
 def with_own_mark(text: str) -> str:
-    """Return a text as it is to be written, with a second byte order mark if it begins with one."""
+    """Return the text to write; a text that begins with a byte order mark gets a second one."""
     return f"\ufeff{text}" if text.startswith("\ufeff") else text
 
 
 def beginning(file: Path) -> str:
-    """Return the beginning of a file as text: enough of it to tell its format."""
+    """Return the beginning of a file as text, long enough to recognise its format."""
     return read_beginning(file, _BEGINNING).decode("utf-8-sig", errors="replace")
 
 

@@ -75,7 +75,7 @@ class Renaming:
         return text if is_same else write_line(renamed)
 
     def _names_it(self, line: Line) -> bool:
-        """Whether the id of a line is that of the old name."""
+        """Whether the id of a line belongs to the old name."""
         return name_of(line) == self.rename.old and self.rename.kind == kind_of(line)
 
     def id(self, old_id: str) -> str:
@@ -102,7 +102,7 @@ class Renaming:
         return Contents(word, tuple(sorted(self._items(attribute.ingredients))))
 
     def _items(self, items: tuple[str, ...]) -> tuple[str, ...]:
-        """Return ingredients with the new name, without the old one if the new one is among them already."""
+        """Return ingredients with the old name replaced, or removed where they already have the new name."""
         kind, old, new = self.rename
         if kind == NameKind.OBJECT and new in items:
             return tuple(item for item in items if item != old)

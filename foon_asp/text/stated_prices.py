@@ -22,12 +22,12 @@ class StatedPrices:
         self._copies.setdefault(unit, {}).setdefault(price, source)
 
     def add_least(self, unit: FunctionalUnit, price: Fraction) -> None:
-        """Record the price of one copy, of which the cheapest counts."""
+        """Record the price of one copy; the cheapest copy counts."""
         if self._least.setdefault(unit, price) > price:
             self._least[unit] = price
 
     def settled(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
-        """Return the one price of each unit; where copies disagree, it is the ``chosen`` one.
+        """Return the price of each unit; where copies disagree, it is the ``chosen`` one.
 
         For a unit recorded with :meth:`add_least`, it is the least price.
 

@@ -89,6 +89,10 @@ def _seconds(written: str, column: int) -> Fraction:
 
 
 def _tool(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | None]:
+    """Return a tool, by label or node, and its number from a row; ``None`` is the number ``free``.
+
+    Raises :class:`LineError` at the column of another value.
+    """
     if value != "free" and not _TOOLS.fullmatch(value):
         raise LineError(column, repr(value), ("a number from 1", "free"))
     return stated_name(name), None if value == "free" else int(value)
@@ -165,7 +169,7 @@ def read_stock(file: Path) -> dict[ObjectNode, int]:
 
 
 def read_default_duration(written: str) -> Fraction:
-    """Read the default duration, as files have durations; raises :class:`UserError` for another form."""
+    """Read the default duration, written as in files; raises :class:`UserError` for another form."""
     try:
         return _seconds(written.strip(), 1)
     except LineError as error:
@@ -173,7 +177,7 @@ def read_default_duration(written: str) -> Fraction:
 
 
 def template_text(motions: Mapping[str, Duration | None]) -> str:
-    """Return a file of durations with the word SECONDS for unknown ones."""
+    """Return a file of durations with the placeholder SECONDS for each unknown duration."""
     lines = ["# motion, tab, seconds (or 25 min, 1.5 h); behind another tab passive, if nobody stands by"]
     for motion, duration in motions.items():
         seconds = "SECONDS" if duration is None else decimal_text(Fraction(duration.seconds))

@@ -108,13 +108,13 @@ class TextUnits:
             report(unreported + len(pieces[0].encode()))
 
     def _reject_json(self, message: str, text: str) -> None:
-        """Record text before JSON, as the only fault of the file."""
+        """Record text before JSON as the only fault of the file."""
         begins = text.lstrip()
         line = text[: len(text) - len(begins)].count("\n") + 1
         self.reading.reject("json", message, Source(self.file, line, 1), split_lines(begins)[0])
 
     def _clean_unit(self, chunk: str) -> ReadUnit | None:
-        """Read a unit by its object blocks; ``None`` if it has to be read line by line."""
+        """Read a unit by its object blocks; ``None`` where it has to be read line by line."""
         first, copies = self._number, []
         while chunk[:1] == "#":
             comment, line_end, chunk = chunk.partition("\n")
@@ -166,7 +166,7 @@ class TextUnits:
             yield unit
 
     def _unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
-        """Read the lines between two separators; ``None`` when they hold no unit."""
+        """Read the lines between two separators as a unit; ``None`` where they hold none."""
         section = _Section(end, closed, self.reading.left_out)
         for index in range(start, end):
             line = self._lines[index]

@@ -63,12 +63,12 @@ def write_unit_prices(prices: UnitPrices) -> str:
 
 
 def _field(node: ObjectNode) -> str:
-    """Write a node, which is no arrow even where its label is one."""
+    """Write a node as a field; a label that is an arrow is quoted."""
     return in_quotes(node.label) if str(node) in _ARROWS else str(node)
 
 
 def _unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:
-    """Read a unit from its inputs, an arrow and its outputs, which begin in a column."""
+    """Read a unit from its input, arrow and output fields, which begin at a column."""
     sides: list[list[ObjectNode]] = [[]]
     for field in fields:
         if field.strip() in _ARROWS:

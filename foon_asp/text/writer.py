@@ -53,7 +53,7 @@ def write_motion(motion: str) -> str:
 
 @lru_cache(10_000, typed=True)  # many units have equal lines
 def _readable(line: Line) -> str | None:
-    """Write a line; ``None`` for one that is not read back as it is."""
+    """Return the text of a line; ``None`` where it would not be read back as the same line."""
     written = write_line(line)
     try:
         back = None if "\n" in written or "\r" in written else parse_line(written)._replace(remarks=())

@@ -17,12 +17,10 @@ from foon_asp.hypergraph import (
     NONE,
     SAFE,
     Reduction,
-    branch_and_bound,
     greedy_stages,
-    optimality_proof,
     reduce,
-    reduction,
     relaxation_stages,
+    tuning,
 )
 from foon_asp.hypergraph.branch_and_bound import Branching, TooLongError, branched
 from foon_asp.hypergraph.covering import Covering, Relaxed
@@ -208,7 +206,7 @@ def test_guessed_derivations_count_and_those_of_other_actions_do_not(size: int) 
 @pytest.fixture
 def searching(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave small questions to branching, too."""
-    monkeypatch.setattr(reduction, "PRESOLVE", PresolveTuning(relaxed_actions=0))
+    monkeypatch.setattr(tuning, "PRESOLVE", PresolveTuning(relaxed_actions=0))
 
 
 @pytest.mark.slow
@@ -298,7 +296,7 @@ def test_costs_that_no_rounding_brings_to_the_total_are_not_proved(prices: list[
 
 def test_a_proof_that_names_too_much_is_not_given(monkeypatch: pytest.MonkeyPatch) -> None:
     graph, targets, costs = corners(4)
-    monkeypatch.setattr(branch_and_bound, "_LENGTH", 10_000)
+    monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(proof_length=10_000))
     assert branched(graph, targets, range(len(costs)), costs.__getitem__, (), 9, lambda: False) is None
 
 
@@ -313,8 +311,7 @@ def test_certificates_of_many_actions_verify(
     objective: Objective, worth: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Greedy weights leave out what is too dear, those of the relaxation more, and the search the rest."""
-    monkeypatch.setattr(optimality_proof, "_MANY", 0)
-    monkeypatch.setattr(optimality_proof, "_WORTH", worth)
+    monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(rounded_actions=0, fixed_share=worth))
     by, told, proved = (objective,), list[str](), 0
     problems = [gap_problem(0), *(random_problem(n, ContainerRule.STRICT, units=30) for n in range(50, 66))]
     for problem in problems:

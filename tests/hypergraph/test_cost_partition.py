@@ -16,13 +16,14 @@ from foon_asp.hypergraph import (
     Reduction,
     greedy_stages,
     reduce,
-    reduction,
     relaxation_stages,
+    tuning,
 )
-from foon_asp.hypergraph.cost_partition import PARTS, CostPartitioning, SharedCosts
+from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
 from foon_asp.hypergraph.covering import Covering, Relaxed, UnsolvedError, Weighed
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_cuts import Cuts
+from foon_asp.hypergraph.landmark_relaxation import PARTS
 from foon_asp.hypergraph.lexicographic import Lexicographic
 from foon_asp.hypergraph.optimality_proof import Prover
 from foon_asp.hypergraph.tuning import PresolveTuning
@@ -184,8 +185,8 @@ def test_answers_are_those_of_the_plain_program(
 ) -> None:
     """Where all that the greedy cuts leave is left to the shared costs, of which is heard each time."""
     few_members = seed % 2 / 600  # hardly any, or none
-    tuning = PresolveTuning(relaxed_actions=0, landmark_actions=few_members)
-    monkeypatch.setattr(reduction, "PRESOLVE", tuning)
+    presolve_tuning = PresolveTuning(relaxed_actions=0, landmark_actions=few_members)
+    monkeypatch.setattr(tuning, "PRESOLVE", presolve_tuning)
     monkeypatch.setattr(relaxation_stages, "_SOLUTIONS", 1)
     monkeypatch.setattr(greedy_stages, "improved", lambda graph, few, tree, *_: tree)
     problem = random_problem(seed, rule, units=14)
@@ -233,7 +234,7 @@ def reduced(
 
     patched.setattr(relaxation_stages, "CostPartitioning", Told)
     patched.setattr(greedy_stages, "landmark_cuts", lambda *_: Cuts(1, every, []))
-    patched.setattr(reduction, "PRESOLVE", PresolveTuning(relaxed_actions=0, branching_budget=0))
+    patched.setattr(tuning, "PRESOLVE", PresolveTuning(relaxed_actions=0, branching_budget=0))
     found = reduce(plain_problem(WAYS, [1], rates=["1"] * 12), levels((objective,)), reductions)
     assert found.tree == FEW
     assert found.shared == (told if bound > PARTS else None)

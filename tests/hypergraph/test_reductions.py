@@ -1,7 +1,6 @@
 """Reductions: each alone and all together leave the optimum as it is, whatever rules remove and require."""
 
 import random
-import sys
 from collections.abc import Collection
 from contextlib import nullcontext
 from dataclasses import replace
@@ -25,6 +24,7 @@ from foon_asp.hypergraph import (
     reduce,
     reduce_under_rules,
     reduction,
+    tuning,
 )
 from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.tuning import PresolveTuning
@@ -120,9 +120,9 @@ SIZES = {
 
 @pytest.fixture(params=SIZES)
 def _sizes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reduction, "PRESOLVE", SIZES[request.param])
+    monkeypatch.setattr(tuning, "PRESOLVE", SIZES[request.param])
     if request.param == "no searches left out":
-        monkeypatch.setattr(sys.modules["foon_asp.hypergraph.landmark_cuts"], "_FRESH", 1)
+        monkeypatch.setattr(tuning, "CUTS", tuning.CutTuning(guided_cuts=1))
 
 
 def assert_left(
@@ -368,7 +368,7 @@ def test_trees_get_better_and_bounds_rise_and_the_optimum_is_between(
     """So it is, too, where better trees are not looked for, and the one in hand is no good."""
     if not looked_for:
         monkeypatch.setattr(greedy_stages, "improved", lambda graph, actions, tree, *_: tree)
-        monkeypatch.setattr(reduction, "PRESOLVE", PresolveTuning(easy_actions=0))
+        monkeypatch.setattr(tuning, "PRESOLVE", PresolveTuning(easy_actions=0))
     for seed in (*range(12), 48, 54, 69, 72, 84):
         problem = gap_problem(seed, corners=4 + seed % 4)
         names = LISTS[seed % len(LISTS)] if seed % 3 else ["units"]

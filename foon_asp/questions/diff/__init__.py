@@ -66,7 +66,7 @@ def _of_files(
 
 
 def _data_of(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
-    """Return the data of trees in files, where Python names none: the bundled kitchen, or the files."""
+    """Return the data of trees in files, if none are named in Python: the bundled kitchen, or the files."""
     kitchen = load(level=level)
     network_files = own_networks(kitchen.network, files)
     return load(network_files, level=level).dataset if network_files else kitchen.dataset
@@ -78,7 +78,7 @@ def _read(file: Path) -> ListedTree | Network:
 
 
 def _network(read: ListedTree | Tree | Network) -> Tree | Network:
-    """Return the network of listed units; others as they are."""
+    """Return the network of a list of units; other values unchanged."""
     if not isinstance(read, ListedTree):
         return read
     builder = NetworkBuilder()
@@ -88,7 +88,7 @@ def _network(read: ListedTree | Tree | Network) -> Tree | Network:
 
 
 def _named(name: str, compared: _Comparable, problem: Problem | None) -> Named:
-    """Return a compared value with its name; a file is read as a tree for ``problem``, else as a network."""
+    """Return a compared value with its name; a file is read as a tree of ``problem`` or a network."""
     if isinstance(compared, str | PathLike):
         name, file = str(compared), Path(compared)
         return Named(name, Tree.read(problem, file) if problem else _network(_read(file)))

@@ -22,7 +22,7 @@ class NearUnits(Value, frozen=True):
 
 
 class Difference(Result, frozen=True, kw_only=True):
-    """The units that only one of two has, those of one that the other nearly has, and those of both.
+    """The comparison of two trees or networks: the units of only one, of both, and nearly equal pairs.
 
     Attributes:
         only_in_a: The units that only the first has; those that are nearly the same are not among them.
@@ -39,11 +39,11 @@ class Difference(Result, frozen=True, kw_only=True):
     in_both: tuple[Unit, ...]
 
     def figures(self) -> Sequence[Sequence[str]]:
-        """Return the rows of a table with figures of both, the headings first."""
+        """Return the rows of a table that compares the two, the headings first."""
         raise NotImplementedError
 
     def unit_lines(self) -> Iterator[str]:
-        """Return how many units both have, and the others one by one."""
+        """Return the number of common units, and a line for each other unit."""
         yield f"in both: {counted(len(self.in_both), 'unit', ',')}"
         if self.nearly_the_same:
             yield from ("", f"nearly the same: {counted(len(self.nearly_the_same), 'unit', ',')} in each")
@@ -80,7 +80,10 @@ class Difference(Result, frozen=True, kw_only=True):
 
 
 def compared(a: Mapping[FunctionalUnit, Unit], b: Mapping[FunctionalUnit, Unit]) -> dict[str, Any]:
-    """Return the fields of a :class:`Difference` for the units of two, each with its value."""
+    """Return the fields of a :class:`Difference` by name, for the units of two trees or networks.
+
+    ``a`` and ``b`` have the value of each unit in the result.
+    """
     pairs = nearest_units([unit for unit in a if unit not in b], [unit for unit in b if unit not in a])
     paired = {unit for unit_a, unit_b, _ in pairs for unit in (unit_a, unit_b)}
     only_in_a, only_in_b = (

@@ -16,11 +16,11 @@ class Agreement(Value, frozen=True):
     """The overlap of two sets.
 
     Attributes:
-        a: How many the first has.
-        b: How many the other has.
-        both: How many both have.
-        jaccard: The share of all of them that both have; 1 where the sets are the same.
-        f1: Twice what both have, by the sum of what each has.
+        a: The size of the first set.
+        b: The size of the other set.
+        both: The size of their intersection.
+        jaccard: The size of the intersection by that of the union; 1 where the sets are equal.
+        f1: Twice the size of the intersection, by the sum of the two sizes.
     """
 
     a: int

@@ -20,7 +20,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Side(Value, frozen=True, kw_only=True):
-    """One of two trees, and the question that it is for.
+    """A tree that is compared, and the question that it is for.
 
     Attributes:
         name: The file, or ``a`` and ``b`` for trees in Python.
@@ -151,7 +151,7 @@ def _side_of(name: str, tree: Tree) -> Side:
 
 
 def _units(tree: Tree) -> dict[FunctionalUnit, Unit]:
-    """Return the units of a tree in order, each as it was listed first."""
+    """Return the units of a tree in order, each at its first place."""
     units: dict[FunctionalUnit, Unit] = {}
     for unit, source in zip(tree.units, tree.places, strict=True):
         units.setdefault(unit, listed_unit(tree.problem.network, unit, source))
