@@ -84,33 +84,37 @@ let read text start =
   let found = value () in
   (found, !place)
 
+(* The letters of a text in order, as codes of Unicode. *)
+let iter_codes take s =
+  let byte i = if i < String.length s then Char.code s.[i] land 0x3F else refuse "not UTF-8" in
+  let rec from i =
+    if i < String.length s then begin
+      let b = Char.code s.[i] in
+      let code, width =
+        if b < 0x80 then (b, 1)
+        else if b < 0xE0 then (((b land 0x1F) lsl 6) lor byte (i + 1), 2)
+        else if b < 0xF0 then (((b land 0x0F) lsl 12) lor (byte (i + 1) lsl 6) lor byte (i + 2), 3)
+        else (((b land 0x07) lsl 18) lor (byte (i + 1) lsl 12) lor (byte (i + 2) lsl 6) lor byte (i + 3), 4) in
+      if not (Uchar.is_valid code) then refuse "not UTF-8";
+      take code;
+      from (i + width)
+    end in
+  from 0
+
 (* The text of which digests are computed: keys in order, no blanks, and ASCII only. *)
 let canonical value =
   let out = Buffer.create 1_000_000 in
   let put = Buffer.add_string out in
   let escape code = put (Printf.sprintf "\\u%04x" code) in
-  let rec character s i =
-    if i < String.length s then begin
-      let decoded = if s.[i] < '\128' then Uchar.of_char s.[i] else utf8_at s i in
-      let code = Uchar.to_int decoded in
-      (match s.[i] with
-       | '"' -> put "\\\"" | '\\' -> put "\\\\" | '\n' -> put "\\n" | '\r' -> put "\\r" | '\t' -> put "\\t"
-       | '\b' -> put "\\b" | '\012' -> put "\\f"
-       | c when c >= ' ' && c < '\127' -> Buffer.add_char out c
-       | '\127' -> put "\127"
-       | _ when code < 0x10000 -> escape code
-       | _ -> escape (0xD800 + ((code - 0x10000) lsr 10)); escape (0xDC00 + ((code - 0x10000) land 0x3FF)));
-      character s (i + if code < 0x80 then 1 else if code < 0x800 then 2 else if code < 0x10000 then 3 else 4)
-    end
-  and utf8_at s i =
-    let byte k = if i + k < String.length s then Char.code s.[i + k] land 0x3F else refuse "not UTF-8" in
-    let b = Char.code s.[i] in
-    let code =
-      if b < 0xE0 then ((b land 0x1F) lsl 6) lor byte 1
-      else if b < 0xF0 then ((b land 0x0F) lsl 12) lor (byte 1 lsl 6) lor byte 2
-      else ((b land 0x07) lsl 18) lor (byte 1 lsl 12) lor (byte 2 lsl 6) lor byte 3 in
-    if Uchar.is_valid code then Uchar.of_int code else refuse "not UTF-8" in
-  let quoted s = put "\""; character s 0; put "\"" in
+  let letter code =
+    if code >= 0x10000 then (escape (0xD800 + ((code - 0x10000) lsr 10)); escape (0xDC00 + ((code - 0x10000) land 0x3FF)))
+    else if code >= 0x80 then escape code
+    else match Char.chr code with
+      | '"' -> put "\\\"" | '\\' -> put "\\\\" | '\n' -> put "\\n" | '\r' -> put "\\r" | '\t' -> put "\\t"
+      | '\b' -> put "\\b" | '\012' -> put "\\f"
+      | c when c >= ' ' -> Buffer.add_char out c
+      | _ -> escape code in
+  let quoted s = put "\""; iter_codes letter s; put "\"" in
   let rec write = function
     | Null -> put "null"
     | Bool b -> put (string_of_bool b)

@@ -4,13 +4,14 @@ It shares no line with ``verify``: both are given the same data, and the proved 
 cuts, costs and the meanings of constraints by definitions about which a theorem is proved (docs/proofs.md).
 """
 
+import json
 import shutil
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from foon_asp.proof.verify import RefusedError, Subject, canonical, read_rules
+from foon_asp.proof.verify import RefusedError, Subject, read_rules
 
 ACCEPTED = "accepted"
 NOT_BUILT = "not built; `make verified` builds it where Coq is installed"
@@ -57,8 +58,11 @@ def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
     checker = program()
     if checker is None:
         return NOT_BUILT
-    data = subject.described(read_rules(certificate["rules"], len(subject.network)))
-    verdict, reason = judge(checker, data, canonical(certificate))
+    rules = read_rules(certificate["rules"], len(subject.network))
+    data = subject.described(rules, [goal["id"] for goal in certificate["goals"]])
+    # no longer than the file that was read
+    text = json.dumps(certificate, separators=(",", ":"), ensure_ascii=False)
+    verdict, reason = judge(checker, data, text)
     if verdict == "refused":
         raise RefusedError(f"by the proved checker: {reason}")
     return verdict if verdict == ACCEPTED else f"{verdict}: {reason}"

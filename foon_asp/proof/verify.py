@@ -112,9 +112,13 @@ class Subject(NamedTuple):
             name: self.stated.get(name) or _digest(value()) for name, value in self._described(rules).items()
         }
 
-    def described(self, rules: Iterable[Rule] = ()) -> str:
-        """Return the values of the digests by name, as canonical JSON: all that a certificate depends on."""
-        return canonical({name: value() for name, value in self._described(rules).items()})
+    def described(self, rules: Iterable[Rule] = (), goals: Iterable[int] = ()) -> str:
+        """Return all that a certificate with these goals depends on, as canonical JSON.
+
+        These are the values of the digests by name and, as ``goals``, the text of each goal with its id.
+        """
+        values = {name: value() for name, value in self._described(rules).items()}
+        return canonical({**values, "goals": [(goal, str(self.network.objects[goal])) for goal in goals]})
 
     def _described(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
         network, rates, prices = self.network, self.rates, self.prices
