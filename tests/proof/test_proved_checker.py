@@ -18,14 +18,26 @@ from foon_asp.asp import Settings, solve
 from foon_asp.certificate import certify_outcome
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.network import UnitPrices
-from foon_asp.problem import ContainerRule, Objective
+from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof import proved_checker
 from foon_asp.proof.verify import RefusedError, Subject, read_certificate, read_rules, seal, verify
 from tests.conftest import Cli
 from tests.oracle.constraints import random_rule, settings_of
-from tests.proof.by_hand import PLAIN
+from tests.proof.by_hand import PLAIN, UNPROVED
 from tests.proof.forging import Forged
-from tests.proof.test_forged_certificates import FORGED, PARTS, PLACES, certificate
+from tests.proof.test_forged_certificates import (
+    ANY,
+    BAKED,
+    BEFORE,
+    FIVE,
+    FORGED,
+    INTERMEDIATE,
+    NEVER,
+    PARTS,
+    PLACES,
+    certificate,
+    measured,
+)
 from tests.support.gap_problem import gap_problem
 from tests.support.random_problems import MOTIONS, random_objectives, random_problem
 
@@ -112,13 +124,37 @@ def test_names_are_printable(judge: Judge) -> None:
 
 
 @pytest.mark.parametrize(
+    ("content", "at", "what"),
+    [
+        (certificate(**FIVE, measures=measured()), PLAIN, "measures of your own"),
+        (certificate(rules=[BEFORE]), PLAIN, "the rule before"),
+        (
+            certificate(**ANY, rules=[INTERMEDIATE], **UNPROVED, **BAKED),
+            PLAIN,
+            "the rule require_intermediate",
+        ),
+        (
+            certificate(NEVER, **ANY, **UNPROVED, rules=[{"rule": "least_rate", "least_rate": 0}]),
+            NEVER,
+            "a motion that never succeeds",
+        ),
+    ],
+)
+def test_right_certificates_of_what_is_unknown_are_not_checked(
+    judge: Judge, content: dict[str, Any], at: Problem, what: str
+) -> None:
+    verify(content, subject_of(at))
+    assert judge(content, subject_of(at)) == ("not checked", f"the proved checker does not know {what}")
+
+
+@pytest.mark.parametrize(
     "change",
     [
         {"costs": ["1"]},
         {"rules": [{"rule": "forbid_motion", "forbidden_motion": "sing", "more": 1}]},
         {"rules": [{"rule": "forbid_ingredient", "allergen": ["b", "a"]}]},
-        {"rules": [{"rule": "before", "earlier_motion": "bake", "later_motion": "mix"}], "costs": [2]},
-        {"rules": [{"rule": "before", "earlier_motion": "bake", "later_motion": 1}]},
+        {"rules": [BEFORE], "costs": [2]},
+        {"rules": [{**BEFORE, "later_motion": 1}]},
     ],
 )
 def test_what_can_be_told_without_the_meaning_is_refused(judge: Judge, change: dict[str, Any]) -> None:
