@@ -1,5 +1,6 @@
 """The checker proved in Coq accepts certificates that are written, and refuses forged ones."""
 
+import copy
 import json
 import random
 import re
@@ -219,6 +220,50 @@ def test_certificates_of_random_networks(judge: Judge, seeds: range) -> None:
     assert met.keys() == {"accepted", "optimal", "infeasible", "raised"}
     met = random_certificates(judge, seeds[: len(seeds) // 2], ruled=True)
     assert met["accepted"] > met["not checked"]
+
+
+def changed(rng: random.Random, content: dict[str, Any]) -> dict[str, Any]:
+    """Return a certificate with another value somewhere, sealed."""
+    content = copy.deepcopy(content)
+    inner: list[tuple[Any, Any]] = []
+    waiting: list[Any] = [content]
+    while waiting:
+        at = waiting.pop()
+        keys = [*at] if isinstance(at, dict) else [*range(len(at))]
+        inner += [(at, key) for key in keys if key not in ("seal", "digests")]
+        waiting += [at[key] for key in keys if isinstance(at[key], dict | list)]
+    at, key = rng.choice(inner)
+    values: list[Any] = [None, 0, True, "1", "2", "1/2", [], {}, f"{at[key]} "]
+    if isinstance(at[key], list):
+        values += [at[key][::-1], at[key] + at[key][:1], at[key][1:]]
+    elif isinstance(at[key], int):
+        values += [at[key] + 1, at[key] - 1]
+    at[key] = rng.choice(values)
+    return {**content, "seal": seal(content)}
+
+
+@pytest.mark.parametrize("seeds", [range(20), pytest.param(range(20, 500), marks=pytest.mark.slow)])
+def test_both_checkers_agree_about_changed_certificates(judge: Judge, seeds: range) -> None:
+    met: Counter[tuple[bool, str]] = Counter()
+    for seed in seeds:
+        rng = random.Random(seed)
+        problem = random_problem(seed, list(ContainerRule)[seed % 2])
+        settings = settings_of([random_rule(rng, problem)])
+        objectives = tuple(each for each in random_objectives(rng, 3) if each != Objective.PRICE)
+        _, found = certify_outcome(solve(problem, objectives or (Objective.UNITS,), settings), settings)
+        assert found is not None
+        subject = subject_of(problem)
+        for _ in range(5):
+            content = changed(rng, read_certificate(found.text()))
+            try:
+                verify(content, subject)
+                right = True
+            except (RefusedError, TypeError, AttributeError):
+                right = False
+            verdict, _ = judge(content, subject)
+            assert verdict != ("refused" if right else "accepted")
+            met[right, verdict] += 1
+    assert met.keys() >= {(True, "accepted"), (False, "refused")}
 
 
 @pytest.mark.slow
