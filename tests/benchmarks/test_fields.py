@@ -23,13 +23,12 @@ _MODEL = """<sbml xmlns="http://www.sbml.org/sbml/level3/version1/core"
 
 
 def reaction(name: str, needs: str, gives: str, low: str, up: str) -> str:
-    sides = [
-        f"<{tag}>{''.join(map('<speciesReference species="{}"/>'.format, nodes.split()))}</{tag}>"
+    species = '<speciesReference species="{}"/>'.format
+    lists = "".join(
+        f"<{tag}>{''.join(map(species, nodes.split()))}</{tag}>"
         for tag, nodes in (("listOfReactants", needs), ("listOfProducts", gives))
-    ]
-    return (
-        f'<reaction id="{name}" f:lowerFluxBound="{low}" f:upperFluxBound="{up}">{"".join(sides)}</reaction>'
     )
+    return f'<reaction id="{name}" f:lowerFluxBound="{low}" f:upperFluxBound="{up}">{lists}</reaction>'
 
 
 def test_a_metabolic_model(tmp_path: Path) -> None:
