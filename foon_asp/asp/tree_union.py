@@ -3,6 +3,7 @@
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble
@@ -120,6 +121,15 @@ class _Union:
             return prepared.units
         return tuple(sorted({*kept, *self._in_some}))
 
+    @cached_property
+    def _opt_mode(self) -> str:
+        """The mode of the search: where no cost is rounded, trees above the cost of the best do not count."""
+        scales, by = self._prepared.scales, self._prepared.levels
+        if self._worse or scales.rounded is not None:
+            return "opt"
+        assert self._best.units is not None
+        return ",".join(["opt", *(str(scales.weight(objective, self._best.units)) for objective in by)])
+
     def _limit(self) -> Fraction:
         """Return a value of the first objective just worse than the values of all trees that count."""
         first = self._prepared.levels[0]
@@ -136,7 +146,7 @@ class _Union:
         problem, by = self._prepared.problem, self._prepared.levels
         while True:
             text = write_objectives(by) + question + self._settled
-            ended = self._prepared.run(text, encodings=(question_encoding("union.lp"),))
+            ended = self._prepared.run(text, self._opt_mode, encodings=(question_encoding("union.lp"),))
             if not ended.exhausted:
                 return None
             if ended.units is None:
