@@ -107,7 +107,7 @@ def load(
             dataset = read_dataset(named, lenient, level).measured(definitions)
             if stand_ins:
                 table = StandInTable.usual() if isinstance(stand_ins, bool) else stand_ins
-                dataset = dataset.standing_in(table)
+                dataset = dataset.with_stand_in_table(table)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
     foon = Foon(dataset, name)
     for remark in foon.warnings:
@@ -208,7 +208,9 @@ def build(
         at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
         data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(goals_from=LAST if goals is None else "")
-        dataset = Dataset.of(data).remarked((), (), (), kitchen is not None).measured(read_measures(measures))
+        dataset = (
+            Dataset.of(data).with_remarks((), (), (), kitchen is not None).measured(read_measures(measures))
+        )
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
             listed = (as_entry(node, Source("the goals", number)) for number, node in enumerate(nodes, 1))

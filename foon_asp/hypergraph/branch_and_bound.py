@@ -31,7 +31,9 @@ _OFTEN = 10  # nodes from one at which derivations are guessed to the next
 
 _LONG = 10_000_000  # actions looked at for a proof, at most: about a minute of processor time
 _LENGTH = 2_000_000  # objects and landmark actions that a proof may list
-_PACKING_LENGTH = 5000  # of these, counted for each cost partition: limits the depth of the branching
+_PACKING_LENGTH = (
+    5000  # objects and actions, counted for each cost partition: limits the depth of the branching
+)
 
 Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
 

@@ -107,7 +107,11 @@ class Rules(Protocol):
     """Rules on derivations that neither targets nor limits express."""
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        """Return by rule the actions excluded by the used actions, where ``without`` are excluded."""
+        """Return by rule the barred actions.
+
+        No derivation with the used actions and none of ``without`` that keeps to the rule has a barred
+        action.
+        """
 
     def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
         """Return actions of a derivation that together break a rule; empty where it keeps to all rules."""
@@ -359,6 +363,7 @@ class Prover:
         enough = math.ceil(goal[0] / step)
 
         def still_needed(shared: SharedCosts) -> int:
+            """Return the bound to reach, or 0 to end where enough actions are above the cutoff."""
             cutoff = (enough - 1) * PARTS - shared.bound
             above_cutoff = sum(reduced_cost > cutoff for reduced_cost in shared.reduced_costs.values())
             return 0 if above_cutoff > _WORTH * len(cutter.actions) else enough

@@ -224,7 +224,7 @@ class Counting:
         return plan is not None and self._question.take(plan)
 
     def order(self, counts: Counts) -> Plan | None:
-        """Return an executable order of counts, found by clingo; ``None`` where there is none."""
+        """Return an executable order of counts, found by clingo; ``None`` if no order runs."""
         return self._plan({a: (n, n) for a, n in counts.items()})
 
     def any_order(self, counts: Counts) -> Plan | None:
@@ -294,7 +294,7 @@ def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
 
 
 def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
-    """Return units, repeats included, in an executable order; ``None`` where there is none."""
+    """Return units, repeats included, in an executable order; ``None`` if no order runs."""
     question = PlanQuestion(problem, (Objective.UNITS,), Settings(), Reporter())
     counted = Counter(units)
     return Counting(question, list(counted)).order(dict(enumerate(counted.values())))

@@ -11,7 +11,7 @@ class Flows(NamedTuple):
 
     An action can be executed while there is a copy of each of its preconditions ``asks``. It consumes one
     copy of each object of ``uses``, and adds one of each object of ``adds``. ``start`` maps initial objects
-    to their numbers of copies. Objects that are not consumable are in none of these; ``items`` are the
+    to their numbers of copies. Objects that are not consumable appear nowhere here; ``items`` are the
     preconditions of each action among them. One copy of each of the ``targets`` has to remain.
     """
 

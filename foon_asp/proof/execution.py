@@ -55,7 +55,7 @@ def _execution_of(
 
 @lru_cache(maxsize=4)
 def _by_the_rule(rule: ContainerRule, utensils: frozenset[str]) -> Callable[[FunctionalUnit], Execution]:
-    """Return :func:`_execution_of` for the plain rule, shared by all trees that are checked."""
+    """Return the execution function under the plain rule of docs/plans.md, one for all checked trees."""
     return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None))
 
 
