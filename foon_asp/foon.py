@@ -31,7 +31,7 @@ from foon_asp.text.data_folder import STARTING, Data, find_data
 from foon_asp.text.goal_name import GoalError
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_node
-from foon_asp.text.reading import size_of, telling
+from foon_asp.text.reading import size_of, reporting_to
 from foon_asp.typed import typed
 from foon_asp.warning import warn
 
@@ -103,7 +103,7 @@ def load(
     with _limited(time_limit, cancel, "reading"):
         definitions = read_measures(measures)
         named = find_data(folder, () if folder else paths, *side_files)
-        with _counted(on_progress, size_of(named.network)) as tell, telling(tell):
+        with _counted(on_progress, size_of(named.network)) as tell, reporting_to(tell):
             dataset = read_dataset(named, lenient, level).measured(definitions)
             if stand_ins:
                 table = StandInTable.usual() if isinstance(stand_ins, bool) else stand_ins

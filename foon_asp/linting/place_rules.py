@@ -1,4 +1,4 @@
-"""Places: an object in something that does not contain it, or that is not there."""
+"""Rules about places: objects in containers that do not contain them, or that are not there."""
 
 from collections.abc import Collection, Iterator
 

@@ -293,8 +293,8 @@ def _refuse_far_rules(program: Program) -> None:
         if rule.nonlocality:
             raise UserError(
                 f"{rule.source}: {rule.nonlocality}, so what the rule says changes with the units that can "
-                "be made, and these with what is bought: no shopping list can be found under it; let it look at "
-                "units of the tree alone"
+                "be made, and these with what is bought: no shopping list can be found under it; let it look "
+                "at units of the tree alone"
             )
 
 
