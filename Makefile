@@ -6,7 +6,7 @@
 # make mutants   changes the code on purpose, to see whether a test notices: hours, or with SAMPLE=600 ten minutes;
 #                with SINCE=REVISION only the files that differ from it, with the tests of their rooms
 # make lint   style, types, and names and docstrings that hide a meaning
-# make bench  the benchmarks, in a few minutes, into docs/dev/performance.md; make bench-full the large ones, which
+# make bench  the benchmarks, in a few minutes; make bench-full the large ones into docs/dev/performance.md, which
 #             take about an hour and a half (with DATA=DIR also on the network in a folder)
 # make verified  the checker of certificates that is proved in Coq (docs/proofs.md), where Coq and OCaml are installed
 # Each makes .venv and installs what it needs when run first. With PYTHON=python3.13 VENV=.venv-3.13 it is another
@@ -68,8 +68,8 @@ lint: $(VENV)/installed-dev
 
 bench: $(VENV)/installed-bench
 	$(BIN)/python benchmarks/solve_phases.py
-	$(BIN)/python benchmarks/opponents.py --limit 10 $(PAGE) --section quick-opponents
-	$(BIN)/python benchmarks/scaling.py $(PAGE) --section quick-scaling
+	$(BIN)/python benchmarks/opponents.py --limit 10
+	$(BIN)/python benchmarks/scaling.py
 
 bench-full: $(VENV)/installed-bench
 	for family in recipe-like deep; do \
@@ -79,7 +79,8 @@ bench-full: $(VENV)/installed-bench
 	$(BIN)/python benchmarks/opponents.py --from-rows large.jsonl --plot docs/pictures/opponents.svg
 	$(BIN)/python benchmarks/scaling.py --units 1000 --units 10000 --units 100000 --units 1000000 \
 	  --runs 1 $(PAGE) --plot docs/pictures/scaling.svg
-	test -z "$(DATA)" || $(BIN)/python benchmarks/opponents.py --data "$(DATA)" --goals 20 $(PAGE) --section real
+	test -z "$(DATA)" || $(BIN)/python benchmarks/opponents.py --data "$(DATA)" --goals 20 \
+	  --objective units --objective success $(PAGE) --section real
 	rm -f recipe-like.jsonl deep.jsonl large.jsonl
 
 clean:

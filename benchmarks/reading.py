@@ -82,7 +82,7 @@ def run(contender: str, task: str, file: Path) -> dict[str, object]:
             else:
                 builder.add(*unit, Source(str(file), 1))
     else:
-        for motion, inputs, outputs, sources in FoonReader().units(text, str(file)):
+        for motion, inputs, outputs, sources, _ in FoonReader().units(text, str(file)):
             if task == "units":
                 units.append((motion, inputs, outputs))
             else:

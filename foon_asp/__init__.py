@@ -20,6 +20,7 @@ _ROOMS = {
     "questions.lint": ("Linted", "lint"),
     "questions.merge": ("Merged", "merge"),
     "foon": ("Foon", "build", "load"),
+    "questions.repair": ("Repaired", "repair"),
     "questions.search": ("Retrieved", "search"),
     "questions.export": ("to_unified_planning",),
     "questions.tree": ("Tree",),

@@ -31,6 +31,8 @@ from foon_asp.problem.progress import Progress as Progress
 from foon_asp.proof.simulation import Simulation as Simulation
 from foon_asp.proof.simulation import Verdict as Verdict
 from foon_asp.proof.verify import RefusedError as RefusedError
+from foon_asp.questions.align import Aligned as Aligned
+from foon_asp.questions.align import align as align
 from foon_asp.questions.all_goals import Optima as Optima
 from foon_asp.questions.all_goals import solve_all_goals as solve_all_goals
 from foon_asp.questions.alternatives import Alternatives as Alternatives
@@ -61,6 +63,8 @@ from foon_asp.questions.regret import Regrets as Regrets
 from foon_asp.questions.regret import regret as regret
 from foon_asp.questions.relax import Relaxed as Relaxed
 from foon_asp.questions.relax import relax as relax
+from foon_asp.questions.repair import Repaired as Repaired
+from foon_asp.questions.repair import repair as repair
 from foon_asp.questions.schedule import Schedule as Schedule
 from foon_asp.questions.schedule import schedule as schedule
 from foon_asp.questions.search import Retrieved as Retrieved

@@ -1,14 +1,14 @@
 """Loaded data: a FOON, a kitchen, and the files beside them."""
 
 import contextlib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
 from typing import Any, Self
 
 from foon_asp.dataset import Dataset, read_dataset
-from foon_asp.dataset.items import Stays, Stock, items_of
+from foon_asp.dataset.items import Stays, Stock, items_of, wanted_of
 from foon_asp.dataset.names import in_python, node_ids
 from foon_asp.dataset.paths import File, Files, files
 from foon_asp.deadline import Cancel, seconds, stoppable
@@ -31,7 +31,8 @@ from foon_asp.text.data_folder import STARTING, Data, find_data
 from foon_asp.text.goal_name import GoalError
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_node
-from foon_asp.text.reading import size_of, reporting_to
+from foon_asp.text.reading import reporting_to, size_of
+from foon_asp.text.stated_amounts import StatedAmounts, counted_amounts
 from foon_asp.typed import typed
 from foon_asp.warning import warn
 
@@ -45,6 +46,7 @@ def load(
     utensils: File | None = None,
     goals: File | None = None,
     unit_prices: File | None = None,
+    unit_amounts: File | None = None,
     measures: Files = (),
     stand_ins: StandInTable | bool | None = None,
     level: int = 3,
@@ -68,6 +70,7 @@ def load(
         utensils: The file with the labels of utensils, instead of that of the folder.
         goals: The file with goals, instead of that of the folder.
         unit_prices: The file with the prices of units, instead of that of the folder.
+        unit_amounts: The file that says how many of an object node units take and make, likewise.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
         stand_ins: Whether available nodes may be used in place of those that cannot be made, by the usual
             table of prices or another one.
@@ -98,7 +101,8 @@ def load(
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
     side_files = [
-        None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)
+        None if file is None else Path(file)
+        for file in (kitchen, rates, utensils, goals, unit_prices, unit_amounts)
     ]
     with _limited(time_limit, cancel, "reading"):
         definitions = read_measures(measures)
@@ -163,7 +167,8 @@ def build(
     Parameters:
         units: Units, each as motion, inputs and outputs, where object nodes are in one-line notation:
             ``("pour", ["water; hot", "cup; empty"], ["cup; contains {water}"])``; or as a dictionary with the
-            keys ``motion``, ``inputs`` and ``outputs``; or a :class:`FunctionalUnit`. Or a network, made by a
+            keys ``motion``, ``inputs`` and ``outputs``; or a :class:`FunctionalUnit`. A node that is listed
+            twice is taken or made twice where items are used up. Or a network, made by a
             :class:`NetworkBuilder`.
         kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`.
             Without it, or as ``"@starting"``, it is what makes all units run; ``()`` is nothing.
@@ -200,14 +205,15 @@ def build(
     with _limited(time_limit, cancel, "building"):
         total = len(units) if isinstance(units, Sized) else 0
         with _counted(on_progress, total) as tell:
-            network = units if isinstance(units, Network) else _network(units, tell)
+            stated = StatedAmounts()
+            network = units if isinstance(units, Network) else _network(units, stated, tell)
         making = [unit for unit, outputs in enumerate(network.outputs) if outputs]
         last = {making[-1]: Source("the units", making[-1] + 1)} if making else {}
         entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
         starting = kitchen is None or kitchen == str(STARTING)
         at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
         data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
-        data = data._replace(goals_from=LAST if goals is None else "")
+        data = data._replace(goals_from=LAST if goals is None else "", amounts=stated.settled(network))
         dataset = (
             Dataset.of(data).with_remarks((), (), (), kitchen is not None).measured(read_measures(measures))
         )
@@ -222,10 +228,11 @@ def build(
     return foon
 
 
-def _network(units: Iterable[PlainUnit], tell: Callable[[int], None]) -> Network:
+def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[[int], None]) -> Network:
     """Build a network of units as callers write them; the place of a unit is its number, from 1.
 
-    ``tell`` is called with the number of units added since the last call.
+    A node that is listed several times is meant several times, which ``amounts`` records. ``tell`` is called
+    with the number of units added since the last call.
     """
     builder, number = NetworkBuilder(), 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
@@ -245,7 +252,10 @@ def _network(units: Iterable[PlainUnit], tell: Callable[[int], None]) -> Network
         if not isinstance(motion, str) or not motion.strip():
             raise UserError(f"found the motion {motion!r} of unit {number}, expected a name; {_UNIT}")
         source = Source("the units", number)
-        builder.add(motion, [*_nodes(inputs, number)], [*_nodes(outputs, number)], source)
+        sides = [*_nodes(inputs, number)], [*_nodes(outputs, number)]
+        builder.add(motion, *sides, source)
+        if counted := counted_amounts(*([(node, 1) for node in side] for side in sides)):
+            amounts.add(FunctionalUnit.of(motion, *sides), counted, source)
         if number % _REPORT_EVERY == 0:
             tell(_REPORT_EVERY)
     if number % _REPORT_EVERY:
@@ -334,26 +344,31 @@ class Foon:
         self,
         *goals: str | ObjectNode,
         containers: str = "strict",
-        items: str = "lasting",
+        items: str | None = None,
         stock: Stock | None = None,
         stays: Stays | None = None,
+        amounts: int | Sequence[int] = (),
     ) -> Problem:
         """Make a problem, with goals that one tree has to make.
 
         Parameters:
             goals: Object nodes, by name or as :class:`ObjectNode`; without any, the goal of the goals file.
             containers: The container rule, ``strict`` or ``implied``.
-            items: Whether items are ``lasting``, or ``used-up`` by the rule of docs/plans.md.
+            items: Whether items are ``lasting``, or ``used-up`` by the rule of docs/plans.md, which is the
+                default where several copies of a goal are wanted.
             stock: How many copies the kitchen has of some object nodes, by name, or the path of a stock
                 file; all other items of the kitchen never run out. Only for items that are used up.
             stays: What stays (``True``) or is used up (``False``) whatever the rule says, by label or object
                 node, or the path of such a file. Only for items that are used up.
+            amounts: How many copies of the goal are wanted, or of each of several goals, in their order.
 
         Raises:
             UserError: for a name that means no object node or several, with candidates; or for another rule.
         """
-        used_up = items_of(self._dataset, items, stock, stays)
-        return self._dataset.nearby(self._dataset.named_goals(goals), containers, used_up)
+        ids = self._dataset.named_goals(goals)
+        wanted = wanted_of(self._dataset, ids, [amounts] if isinstance(amounts, int) else amounts)
+        items = items or ("used-up" if wanted else "lasting")
+        return self._dataset.nearby(ids, containers, items_of(self._dataset, items, stock, stays, wanted))
 
     @typed
     def vary(

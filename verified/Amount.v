@@ -23,7 +23,14 @@ Definition compare_part a b :=
   | decided => decided
   end.
 
-Definition power (p : positive) (k : N) := match k with N0 => 1%positive | Npos k => Pos.pow p k end.
+(** Powers by squaring, so that 1 to a large power is found at once. *)
+Fixpoint power_pos (p k : positive) : positive :=
+  match k with
+  | xH => p
+  | xO k => let q := power_pos p k in q * q
+  | xI k => let q := power_pos p k in p * (q * q)
+  end%positive.
+Definition power (p : positive) (k : N) := match k with N0 => 1%positive | Npos k => power_pos p k end.
 Definition times_part k a := Part (Z.of_N k * number a) (power (over a) k) (power (under a) k).
 
 Fixpoint plus (a b : amount) : amount :=
@@ -53,6 +60,7 @@ Definition leb n a b := match compare n a b with Gt => false | _ => true end.
 Fixpoint total {A} (f : A -> amount) (l : list A) : amount :=
   match l with [] => [] | x :: l => plus (f x) (total f l) end.
 
+(** [leb] decides [le]. *)
 Lemma leb_le n a b : leb n a b = true <-> le n a b.
 Proof. unfold leb, le. destruct (compare n a b); intuition congruence. Qed.
 
@@ -62,25 +70,30 @@ Proof. unfold leb, le. destruct (compare n a b); intuition congruence. Qed.
 
 Definition fraction a : Q := Zpos (over a) # under a.
 
+(** The comparison of factors is that of fractions in [Q]. *)
 Lemma compare_part_fraction a b :
   compare_part a b = match number a ?= number b with Eq => (fraction a ?= fraction b)%Q | c => c end.
 Proof. reflexivity. Qed.
 
+(** Each part equals itself. *)
 Lemma part_refl a : compare_part a a = Eq.
 Proof. unfold compare_part. rewrite Z.compare_refl. apply Pos.compare_refl. Qed.
 
+(** Both comparisons, of numbers and of factors, are reversed. *)
 Lemma part_sym a b : compare_part b a = CompOpp (compare_part a b).
 Proof.
   unfold compare_part. rewrite (Z.compare_antisym (number a)), (Pos.compare_antisym (over a * under b)).
   now destruct (number a ?= number b).
 Qed.
 
+(** Equal parts have equal numbers and equal fractions, and [Q] compares equal fractions alike. *)
 Lemma part_eq a b c : compare_part a b = Eq -> compare_part a c = compare_part b c.
 Proof.
   rewrite !compare_part_fraction. destruct (Z.compare_spec (number a) (number b)) as [E| |]; try discriminate.
   intros H. apply Qeq_alt in H. rewrite E. destruct (number b ?= number c); trivial. now rewrite H.
 Qed.
 
+(** The first difference decides: by the order of [Z] for numbers, and else by that of [Q]. *)
 Lemma part_trans a b c : compare_part a b = Lt -> compare_part b c = Lt -> compare_part a c = Lt.
 Proof.
   rewrite !compare_part_fraction.
@@ -100,32 +113,42 @@ Proof.
   apply Pos.mul_compare_mono_l.
 Qed.
 
+(** The numbers add up to 0, and the factors to p*q / q*p. *)
 Lemma part_minus a : compare_part (plus_part a (minus_part a)) nil_part = Eq.
 Proof.
   unfold compare_part; cbn. rewrite Z.add_opp_diag_r. cbn. rewrite Pos.mul_1_r, (Pos.mul_comm (under a)).
   apply Pos.compare_refl.
 Qed.
 
+(** Part by part, from [Z] and [positive]. *)
 Lemma plus_part_comm a b : plus_part a b = plus_part b a.
 Proof. unfold plus_part; f_equal; lia. Qed.
+(** Likewise. *)
 Lemma plus_part_assoc a b c : plus_part a (plus_part b c) = plus_part (plus_part a b) c.
 Proof. unfold plus_part; f_equal; cbn; lia. Qed.
+(** The part of nothing adds 0 and multiplies by 1. *)
 Lemma plus_part_nil a : plus_part a nil_part = a.
 Proof. destruct a; unfold plus_part; cbn; f_equal; lia. Qed.
 
 (** ** Amounts *)
 
+(** Amounts are added part by part, so the laws of parts hold for them, by induction along the list. *)
 Lemma plus_comm a : forall b, plus a b = plus b a.
 Proof. induction a as [|p a IH]; intros [|q b]; cbn; trivial. now rewrite plus_part_comm, IH. Qed.
+(** Nothing adds nothing. *)
 Lemma plus_nil a : plus a [] = a.
 Proof. now destruct a. Qed.
+(** As [plus_comm]. *)
 Lemma plus_assoc a : forall b c, plus a (plus b c) = plus (plus a b) c.
 Proof. induction a as [|p a IH]; intros [|q b] [|r c]; cbn; trivial. now rewrite plus_part_assoc, IH. Qed.
+(** From the two laws before. *)
 Lemma plus_swap a b c : plus a (plus b c) = plus b (plus a c).
 Proof. now rewrite plus_assoc, (plus_comm a), <- plus_assoc. Qed.
 
+(** The first part of a sum is the sum of first parts, also where one is missing. *)
 Lemma first_plus a b : first (plus a b) = plus_part (first a) (first b).
 Proof. destruct a, b; cbn; rewrite ?plus_part_nil; trivial. now rewrite plus_part_comm, plus_part_nil. Qed.
+(** Likewise of the parts after the first. *)
 Lemma tl_plus a b : tl (plus a b) = plus (tl a) (tl b).
 Proof. destruct a, b; cbn; trivial. now rewrite plus_nil. Qed.
 
@@ -133,15 +156,18 @@ Section Order.
 Variable n : nat.
 Implicit Types a b c : amount.
 
+(** By induction on the number of parts, here and in the next lemmas; the first part decides, or the others do. *)
 Lemma refl a : compare n a a = Eq.
 Proof. revert a; induction n as [|k IH]; intros a; cbn; trivial. now rewrite part_refl. Qed.
 
+(** Each part is compared the other way round. *)
 Lemma sym a b : compare n b a = CompOpp (compare n a b).
 Proof.
   revert a b; induction n as [|k IH]; intros a b; cbn; trivial.
   rewrite (part_sym (first a)). destruct (compare_part (first a) (first b)); cbn; trivial.
 Qed.
 
+(** Equal amounts have equal parts, which compare alike. *)
 Lemma eq_l a b c : compare n a b = Eq -> compare n a c = compare n b c.
 Proof.
   revert a b c; induction n as [|k IH]; intros a b c; cbn; trivial.
@@ -149,6 +175,7 @@ Proof.
   intros H. rewrite (part_eq _ _ _ E). destruct (compare_part (first b) (first c)); auto.
 Qed.
 
+(** Where the first parts differ somewhere, they decide; otherwise the parts after them do. *)
 Lemma lt_trans a b c : compare n a b = Lt -> compare n b c = Lt -> compare n a c = Lt.
 Proof.
   revert a b c; induction n as [|k IH]; intros a b c; cbn; try discriminate.
@@ -159,9 +186,11 @@ Proof.
     + intros _. now rewrite (part_trans _ _ _ E F).
 Qed.
 
+(** From [refl]. *)
 Lemma le_refl a : le n a a.
 Proof. unfold le. now rewrite refl. Qed.
 
+(** Either comparison is equal, and then [eq_l] applies, or both are below, and then [lt_trans] does. *)
 Lemma le_trans a b c : le n a b -> le n b c -> le n a c.
 Proof.
   unfold le. destruct (compare n a b) eqn:E; [now rewrite (eq_l _ _ _ E)| |congruence].
@@ -169,17 +198,21 @@ Proof.
   rewrite sym, <- (eq_l b c a F), <- sym, E. congruence.
 Qed.
 
+(** The same part is added to each part on both sides, which changes no comparison ([part_plus]). *)
 Lemma plus_both a b c : compare n (plus a c) (plus b c) = compare n a b.
 Proof.
   revert a b c; induction n as [|k IH]; intros a b c; cbn; trivial.
   now rewrite !first_plus, !tl_plus, part_plus, IH.
 Qed.
 
+(** From [plus_both]. *)
 Lemma le_plus_r a b c : le n (plus a c) (plus b c) <-> le n a b.
 Proof. unfold le. now rewrite plus_both. Qed.
+(** From [plus_both], as the order of addition does not matter. *)
 Lemma le_plus_l a b c : le n (plus c a) (plus c b) <-> le n a b.
 Proof. rewrite !(plus_comm c). apply le_plus_r. Qed.
 
+(** Two comparisons are added one after the other. *)
 Lemma le_plus a b a' b' : le n a b -> le n a' b' -> le n (plus a a') (plus b b').
 Proof. intros H K. apply le_trans with (plus b a'); [now apply le_plus_r|now apply le_plus_l]. Qed.
 
@@ -187,6 +220,7 @@ Proof. intros H K. apply le_trans with (plus b a'); [now apply le_plus_r|now app
 Lemma le_more a b c : le n a b -> le n [] c -> le n a (plus b c).
 Proof. intros H K. rewrite <- (plus_nil a). now apply le_plus. Qed.
 
+(** Part by part, from [part_minus]. *)
 Lemma minus_nil a : compare n (plus a (minus a)) [] = Eq.
 Proof.
   revert a; induction n as [|k IH]; intros a; cbn; trivial.
@@ -206,21 +240,29 @@ Qed.
 
 (** ** Multiples *)
 
+(** By the binary digits of the exponent: one more multiplies by the base once more. *)
 Lemma power_succ p k : power p (N.succ k) = (p * power p k)%positive.
-Proof. destruct k; [reflexivity|apply Pos.pow_succ_r]. Qed.
+Proof.
+  destruct k as [|k]; cbn; [now rewrite Pos.mul_1_r|]. induction k as [k IH|k IH|]; cbn; trivial.
+  rewrite IH. lia.
+Qed.
 
+(** One more factor of 1 changes nothing. *)
 Lemma power_1 k : power 1 k = 1%positive.
 Proof. induction k as [|k IH] using N.peano_ind; [reflexivity|]. now rewrite power_succ, IH. Qed.
 
+(** Factor by factor. *)
 Lemma power_mul p q k : power (p * q) k = (power p k * power q k)%positive.
 Proof. induction k as [|k IH] using N.peano_ind; [reflexivity|]. rewrite !power_succ, IH. lia. Qed.
 
+(** A multiple is a repeated sum, part by part. *)
 Lemma times_succ k a : times (N.succ k) a = plus a (times k a).
 Proof.
   induction a as [|p a IH]; cbn; trivial. f_equal; trivial.
   unfold times_part, plus_part; cbn. f_equal; [lia| |]; apply power_succ.
 Qed.
 
+(** No number and the factor 1, in each part. *)
 Lemma times_0 a : compare n (times 0 a) [] = Eq.
 Proof.
   revert a; induction n as [|k IH]; intros a; cbn; trivial.
@@ -228,12 +270,14 @@ Proof.
   replace (tl (times 0 a)) with (times 0 (tl a)) by now destruct a. apply IH.
 Qed.
 
+(** Part by part. *)
 Lemma times_1 a : times 1 a = a.
 Proof.
   induction a as [|[z p q] a IH]; cbn [times map]; trivial. f_equal; trivial.
-  unfold times_part, power; cbn [number over under]. rewrite !Pos.pow_1_r. f_equal. lia.
+  unfold times_part, power; cbn [number over under]. cbn [power_pos]. f_equal. lia.
 Qed.
 
+(** Part by part: multiplication distributes, and powers of products are products of powers. *)
 Lemma times_plus k a : forall b, times k (plus a b) = plus (times k a) (times k b).
 Proof.
   induction a as [|p a IH]; intros [|q b]; cbn; trivial. f_equal; [|apply IH].
@@ -248,6 +292,7 @@ Proof.
   - rewrite times_succ. now apply le_more.
 Qed.
 
+(** Adding a comparison to itself again and again. *)
 Lemma times_le k a b : le n a b -> le n (times k a) (times k b).
 Proof.
   intros H. induction k as [|k IH] using N.peano_ind.
@@ -255,6 +300,7 @@ Proof.
   - rewrite !times_succ. now apply le_plus.
 Qed.
 
+(** If the multiples were not below, adding up what is known would give b at most a. *)
 Lemma times_lt k a b : (0 < k)%N -> compare n a b = Lt -> compare n (times k a) (times k b) = Lt.
 Proof.
   intros Hk H. destruct (N.lt_exists_pred _ _ Hk) as (j & -> & _). clear Hk.
@@ -272,6 +318,7 @@ Proof.
   intros Hk H G. apply H. rewrite sym, times_lt; trivial. now rewrite sym, G.
 Qed.
 
+(** Each further copy is at least nothing. *)
 Lemma times_more j k a : le n [] a -> (j <= k)%N -> le n (times j a) (times k a).
 Proof.
   intros H L. replace k with (j + (k - j))%N by lia. induction (k - j)%N as [|i IH] using N.peano_ind.
@@ -281,31 +328,29 @@ Qed.
 
 (** ** Sums *)
 
+(** The sums here are over lists; each lemma is by induction along the list. *)
 Lemma total_app {A} (f : A -> amount) l m : total f (l ++ m) = plus (total f l) (total f m).
 Proof. induction l as [|x l IH]; cbn; trivial. now rewrite IH, plus_assoc. Qed.
 
+(** Sums are regrouped. *)
 Lemma total_plus {A} (f g : A -> amount) l : total (fun x => plus (f x) (g x)) l = plus (total f l) (total g l).
 Proof.
   induction l as [|x l IH]; cbn; trivial. rewrite IH, <- !plus_assoc. f_equal. apply plus_swap.
 Qed.
 
+(** Each comparison is added. *)
 Lemma total_le {A} (f g : A -> amount) l : (forall x, In x l -> le n (f x) (g x)) -> le n (total f l) (total g l).
 Proof. induction l as [|x l IH]; intros H; cbn; [apply le_refl|apply le_plus; auto with datatypes]. Qed.
 
+(** Nothing many times is nothing. *)
 Lemma total_nil {A} (l : list A) : total (fun _ => []) l = [].
 Proof. induction l; cbn; trivial. Qed.
 
+(** By comparison with the sum of nothings. *)
 Lemma total_nonneg {A} (f : A -> amount) l : (forall x, In x l -> le n [] (f x)) -> le n [] (total f l).
 Proof. intros H. rewrite <- (total_nil l). now apply total_le. Qed.
 
+(** Each summand is multiplied. *)
 Lemma total_times {A} k (f : A -> amount) l : total (fun x => times k (f x)) l = times k (total f l).
 Proof. induction l as [|x l IH]; cbn [total]; trivial. now rewrite IH, times_plus. Qed.
-
-(** A sum of amounts of at least nothing is at least each of them. *)
-Lemma total_member {A} (f : A -> amount) l x : (forall y, In y l -> le n [] (f y)) -> In x l -> le n (f x) (total f l).
-Proof.
-  induction l as [|y l IH]; cbn; intros H M; [easy|]. destruct M as [->|M].
-  - apply le_more; [apply le_refl|]. apply total_nonneg. auto.
-  - rewrite plus_comm. apply le_more; auto.
-Qed.
 End Order.

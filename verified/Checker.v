@@ -98,23 +98,27 @@ Definition accept_tree (us : list id) (costs : amount) : bool :=
 
 (** ** Correctness *)
 
+(** By the laws of finite maps. *)
 Lemma makers_add o o' l ix : makers_of o (PositiveMap.add o' l ix) = if Pos.eq_dec o o' then l else makers_of o ix.
 Proof.
   unfold makers_of. destruct (Pos.eq_dec o o') as [->|H]; [now rewrite PositiveMap.gss|]. now rewrite PositiveMap.gso.
 Qed.
 
+(** The action is entered for each object that it gives. *)
 Lemma enter_makers m o ix : In o (given_by m) -> In m (makers_of o (enter m ix)).
 Proof.
   unfold enter. induction (given_by m) as [|o' l IH]; cbn; [easy|]. intros H. rewrite makers_add.
   destruct (Pos.eq_dec o o') as [->|N]; [now left|]. destruct H as [->|H]; [easy|auto].
 Qed.
 
+(** Entries stay when others are added. *)
 Lemma enter_keeps m m' o ix : In m' (makers_of o ix) -> In m' (makers_of o (enter m ix)).
 Proof.
   intros H. unfold enter. induction (given_by m) as [|o' l IH]; cbn; trivial. rewrite makers_add.
   destruct (Pos.eq_dec o o') as [->|N]; [right|]; trivial.
 Qed.
 
+(** Each action is entered once, and stays. *)
 Lemma index_makers actions m o : In m actions -> In o (given_by m) -> In m (makers_of o (index_of actions)).
 Proof.
   intros Hm Ho. induction actions as [|m' actions IH]; [easy|]. cbn. destruct Hm as [->|Hm].
@@ -122,6 +126,7 @@ Proof.
   - now apply enter_keeps, IH.
 Qed.
 
+(** What is found in a map is among its elements. *)
 Lemma in_numbers {A} k (m : PositiveMap.t A) x : PositiveMap.find k m = Some x -> In k (numbers m).
 Proof. intros H. apply PositiveMap.elements_correct in H. apply in_map_iff. now exists (k, x). Qed.
 
@@ -135,6 +140,7 @@ Proof.
     left. apply in_or_app. left. apply in_map. eapply in_numbers; eauto.
 Qed.
 
+(** The index has all actions, and the check of costs looked at all of them. *)
 Lemma problem_sound : costs_fit = true -> sound (problem_of (index_of all_actions)).
 Proof.
   unfold costs_fit. rewrite forallb_forall. intros H. constructor; cbn.
@@ -158,12 +164,14 @@ Variable P : problem.
 Hypothesis P_needs : needs P = needed_by.
 Hypothesis P_gives : gives P = given_by.
 
+(** Nothing that is there goes away. *)
 Lemma ends_have s : forall have, incl have (ends P have s).
 Proof.
   induction s as [|m s IH]; cbn; intros have; [apply incl_refl|].
   intros o Ho. apply IH, in_or_app. now right.
 Qed.
 
+(** What a run gives is there at its end. *)
 Lemma ends_gives m o s : forall have, In m s -> In o (given_by m) -> In o (ends P have s).
 Proof.
   induction s as [|m' s IH]; cbn; intros have; [easy|]. intros [->|H] Ho; auto.
@@ -181,6 +189,7 @@ Proof.
   - intros x Hx. apply H2. now right.
 Qed.
 
+(** What a unit needs is a kitchen item, which was taken, or was made by a unit before it, which gave it. *)
 Lemma runs_units us : forall have have',
   executes w have us ->
   (forall o, In o have -> at_hand o = true \/ In o have') ->
@@ -200,9 +209,11 @@ Proof.
     + intros o Ho E. apply in_or_app. right. apply Hk; trivial. apply in_or_app. now right.
 Qed.
 
+(** By the laws of lists. *)
 Lemma taken_spec us o : In o (taken w us) <-> In o (flat_map (needed w) us) /\ at_hand o = true.
 Proof. unfold taken. rewrite nodup_In, filter_In. reflexivity. Qed.
 
+(** The items are taken first, and then the units find what they need. *)
 Lemma runs_tree us : executes w [] us -> runs P [] (actions_of us).
 Proof.
   intros H. apply runs_items; [intros o Ho; now apply taken_spec in Ho|].
@@ -211,15 +222,19 @@ Proof.
 Qed.
 End Solution.
 
+(** By induction along the run. *)
 Lemma executes_units us : forall have u, executes w have us -> In u us -> is_unit w u = true.
 Proof. induction us as [|u' us IH]; cbn; intros have u H; [easy|]. destruct H as (Hu & _ & H). intros [<-|Hi]; eauto. Qed.
 
+(** Taking items takes nothing of limits. *)
 Lemma count_actions f us : count (fun m => match m with xO u => f u | _ => 0%N end) (actions_of us) = count f us.
 Proof.
   unfold actions_of. rewrite count_app. assert (E : forall l, count (fun m => match m with xO u => f u | _ => 0%N end) (map xI l) = 0%N)
     by (induction l; cbn; trivial). rewrite E. cbn. induction us; cbn; congruence.
 Qed.
 
+(** It runs; a goal is at hand, or a unit makes it; a node that a rule asks for is given by a unit of the run; and
+    limits count the same. *)
 Lemma tree_solution us ix :
   task_tree w (map snd rules) us -> solution (problem_of ix) (actions_of us).
 Proof.
@@ -246,6 +261,7 @@ Proof.
     rewrite count_actions. destruct (Hk _ E) as (_ & _ & _ & Hl). now apply Hl.
 Qed.
 
+(** A run that keeps to the rules has no unit that a rule removes. *)
 Lemma tree_fits us : task_tree w (map snd rules) us -> fits [] removed (actions_of us).
 Proof.
   intros (He & _ & Hk). rewrite Forall_map, Forall_forall in Hk. split; [easy|]. intros m Hm.
@@ -255,6 +271,7 @@ Proof.
   apply in_app_or in Hm. destruct Hm as [Hm|Hm]; apply in_map_iff in Hm; destruct Hm as (y & Ey & Hy); congruence.
 Qed.
 
+(** Units and items cost in the problem what they cost in the FOON. *)
 Lemma tree_cost us ix : executes w [] us ->
   total (cost (problem_of ix)) (actions_of us) = times (Npos denominator) (run_cost w fs us).
 Proof.
@@ -283,6 +300,7 @@ Proof.
   apply (PositiveMap.map_1 (cut_of P)) in E. unfold PositiveMap.MapsTo in E. congruence.
 Qed.
 
+(** The set that the checker keeps has what the run has made. *)
 Lemma executesb_ok us : forall have l, (forall o, mem o have = true <-> In o l) -> executesb have us = true -> executes w l us.
 Proof.
   induction us as [|u us IH]; cbn; intros have l Hl H; trivial.

@@ -20,6 +20,7 @@ Definition insert (x : id) (s : set) : set := PositiveMap.add x tt s.
 Definition of_list (l : list id) : set := fold_right insert (PositiveMap.empty unit) l.
 Definition among (x : id) (l : list id) : bool := existsb (Pos.eqb x) l.
 
+(** By the laws of finite maps. *)
 Lemma mem_insert x y s : mem x (insert y s) = true <-> x = y \/ mem x s = true.
 Proof.
   unfold mem, insert. destruct (Pos.eq_dec x y) as [->|H].
@@ -27,6 +28,7 @@ Proof.
   - rewrite PositiveMap.gso by trivial. tauto.
 Qed.
 
+(** By induction along the list. *)
 Lemma mem_of_list x l : mem x (of_list l) = true <-> In x l.
 Proof.
   induction l as [|y l IH]; cbn.
@@ -34,6 +36,7 @@ Proof.
   - rewrite mem_insert, IH. intuition congruence.
 Qed.
 
+(** By the meaning of [existsb]. *)
 Lemma among_in x l : among x l = true <-> In x l.
 Proof.
   unfold among. rewrite existsb_exists. split.
@@ -45,6 +48,7 @@ Qed.
 
 Fixpoint count (f : id -> N) (l : list id) : N := match l with [] => 0 | x :: l => f x + count f l end%N.
 
+(** By induction along the list. *)
 Lemma count_app f l m : count f (l ++ m) = (count f l + count f m)%N.
 Proof. induction l as [|x l IH]; cbn; lia. Qed.
 
@@ -209,6 +213,7 @@ Fixpoint check (used : list id) (without : set) (p : proof) : bool :=
 Hypothesis ok : sound P.
 Hypothesis cuts_ok : forall k c, PositiveMap.find k cuts = Some c -> exists l, c = cut_of l.
 
+(** Each part is at least that of nothing. *)
 Lemma good_nonneg k a : Forall good_part a -> le k [] a.
 Proof.
   unfold le. revert a; induction k as [|k IH]; intros a H; cbn; try discriminate.
@@ -220,6 +225,7 @@ Proof.
   now apply IH.
 Qed.
 
+(** Costs are good, by the checks of the problem. *)
 Lemma cost_nonneg k m : le k [] (cost P m).
 Proof. apply good_nonneg, cost_good, ok. Qed.
 
@@ -256,6 +262,7 @@ Qed.
 Definition fits (used : list id) (without : set) (s : list id) : Prop :=
   incl used s /\ forall m, In m s -> mem m without = false.
 
+(** A goal is there at the end, and what a used action needs is there before it: [crossed] applies. *)
 Lemma required_crossed used without s c k :
   solution s -> fits used without s -> PositiveMap.find k cuts = Some c -> required used c = true ->
   exists m, In m s /\ In m (members c).
@@ -269,12 +276,14 @@ Qed.
 
 (** *** Weights *)
 
+(** By the laws of finite maps. *)
 Lemma load_add m m' a l : load_of m (PositiveMap.add m' a l) = if Pos.eq_dec m m' then a else load_of m l.
 Proof.
   unfold load_of. destruct (Pos.eq_dec m m') as [->|H]; [now rewrite PositiveMap.gss|].
   now rewrite PositiveMap.gso.
 Qed.
 
+(** Pouring a weight on some actions lowers no load, and raises those of these actions by the weight. *)
 Lemma pour_more w ms l m : le n [] w ->
   le n (load_of m l) (load_of m (pour w ms l)) /\ (In m ms -> le n (plus w (load_of m l)) (load_of m (pour w ms l))).
 Proof.
@@ -285,6 +294,7 @@ Proof.
   - split; trivial. intros [->|Hm]; [easy|auto].
 Qed.
 
+(** A function that is nowhere smaller, and larger by w at one member, has a sum larger by w. *)
 Lemma total_gain (f g : id -> amount) s x w :
   (forall y, le n (f y) (g y)) -> In x s -> le n (plus w (f x)) (g x) -> le n (plus w (total f s)) (total g s).
 Proof.
@@ -313,6 +323,7 @@ Proof.
     + apply pour_more; trivial. apply filter_In. split; trivial. destruct Hf as [_ Hf]. now rewrite Hf.
 Qed.
 
+(** All that is found was looked up. *)
 Lemma find_all_rows ks : forall ls, find_all (rows P) ks = Some ls -> forall x, In x ls -> exists k, rows P k = Some (fst x).
 Proof.
   induction ks as [|[k w] ks IH]; cbn; intros ls H; [injection H as <-; easy|].
@@ -320,6 +331,7 @@ Proof.
   injection H as <-. intros x [<-|Hx]; eauto.
 Qed.
 
+(** By induction on one of the two numbers. *)
 Lemma times_sum i j w : compare n (times (i + j) w) (plus (times i w) (times j w)) = Eq.
 Proof.
   induction i as [|i IH] using N.peano_ind.
@@ -328,6 +340,7 @@ Proof.
     rewrite !times_succ, <- plus_assoc, !(plus_comm w), plus_both. exact IH.
 Qed.
 
+(** A limit takes as much of a sequence as of its actions together. *)
 Lemma times_count (f : id -> N) w l : compare n (total (fun m => times (f m) w) l) (times (count f l) w) = Eq.
 Proof.
   induction l as [|m l IH]; cbn [total count].
@@ -335,6 +348,7 @@ Proof.
   - rewrite sym, (eq_l _ _ _ _ (times_sum _ _ _)), !(plus_comm (times (f m) w)), plus_both, sym, IH. reflexivity.
 Qed.
 
+(** Equal amounts are at most each other. *)
 Lemma eq_le a b : compare n a b = Eq -> le n a b /\ le n b a.
 Proof. unfold le. intros H. rewrite (sym n a b), H. split; discriminate. Qed.
 
@@ -349,8 +363,10 @@ Proof.
   - rewrite total_plus. apply le_plus; trivial. exact (proj1 (eq_le _ _ (times_count (takes r) w s))).
 Qed.
 
+(** The order of a sum does not matter. *)
 Lemma perm_total (f : id -> amount) s t : Permutation s t -> total f s = total f t.
 Proof. induction 1; cbn; try congruence. apply plus_swap. Qed.
+(** Nor that of a count. *)
 Lemma perm_count f s t : Permutation s t -> count f s = count f t.
 Proof. induction 1; cbn; lia. Qed.
 
@@ -408,6 +424,7 @@ Qed.
 
 (** *** Rounding *)
 
+(** Numbers from 0 add up, and factors from 1 multiply, to such. *)
 Lemma good_plus a : forall b, Forall good_part a -> Forall good_part b -> Forall good_part (plus a b).
 Proof.
   induction a as [|p a IH]; intros [|q b] Ha Hb; cbn; trivial.
@@ -415,11 +432,13 @@ Proof.
   unfold good_part; cbn. split; [lia|nia].
 Qed.
 
+(** Multiples of a number add up to multiples. *)
 Lemma aligned_plus g : forall a b, aligned g a -> aligned g b -> aligned g (plus a b).
 Proof.
   induction g as [|z g IH]; intros [|p a] [|q b]; cbn; trivial. intros [] []. split; auto. now apply Z.divide_add_r.
 Qed.
 
+(** So what a sequence costs is good and aligned, by induction along it. *)
 Lemma cost_total s : Forall good_part (total (cost P) s) /\ aligned (grid P) (total (cost P) s).
 Proof.
   induction s as [|m s [IH IH']]; cbn.
@@ -472,6 +491,8 @@ Proof.
   - cbn [first hd tl]. destruct (compare_part p (times_part k q)); try easy. apply IH; trivial.
 Qed.
 
+(** What the used actions cost and the bound on the rest are together the cost of the solution; all is divided by the
+    scale. *)
 Lemma enough_least used without s rest l bound :
   Permutation s (used ++ rest) -> fits used without s -> (0 < scale l)%N ->
   le n bound (times (scale l) (total (cost P) rest)) -> enough used l bound = true -> le n least (total (cost P) s).
@@ -521,6 +542,7 @@ Proof.
     eapply lower_bound; eauto. rewrite !plus_nil. apply total_le. intros. apply Lc.
 Qed.
 
+(** Actions that a solution does not have can be left out. *)
 Lemma fits_without used without s ds :
   fits used without s -> (forall d, In d ds -> ~ In d s) -> fits used (fold_right insert without ds) s.
 Proof.

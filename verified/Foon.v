@@ -12,11 +12,17 @@ Open Scope bool_scope.
 (** An object node: its label, its ingredients, and the objects that it is in or on. *)
 Record node := Node { label : id; ingredients : list id; located : list id }.
 
-(** A functional unit. *)
-Record functional_unit := Unit { motion : id; inputs : list id; outputs : list id }.
+(** A unit as it was written, in full detail: its number there, and its sides. *)
+Record detail := Detail { its_number : id; ins : list id; outs : list id }.
+
+(** A functional unit. Where contents or states do not count (levels 2 and 1), nodes and units are merged, and a unit has
+    the details of all units that it stands for; at level 3 it stands for itself. *)
+Record functional_unit := Unit { motion : id; inputs : list id; outputs : list id; details : list detail }.
 
 Record foon := Foon {
   nodes : PositiveMap.t node;
+  detailed_nodes : PositiveMap.t node;            (* those of details *)
+  merged : PositiveMap.t id;                      (* of each of these the node that it became *)
   units : PositiveMap.t functional_unit;
   kitchen : set;                                  (* nodes that are there at first, and last *)
   wanted : list id;                               (* the goals: nodes *)
@@ -30,25 +36,35 @@ Record foon := Foon {
 Section Meaning.
 Variable w : foon.
 
+Definition find_or {A} (otherwise : A) (x : id) (m : PositiveMap.t A) : A :=
+  match PositiveMap.find x m with Some y => y | None => otherwise end.
 Definition no_node := Node 1 [] [].
-Definition no_unit := Unit 1 [] [].
-Definition node_of o := match PositiveMap.find o (nodes w) with Some x => x | None => no_node end.
-Definition unit_of u := match PositiveMap.find u (units w) with Some x => x | None => no_unit end.
+Definition node_of o := find_or no_node o (nodes w).
+Definition unit_of u := find_or (Unit 1 [] [] []) u (units w).
 Definition is_unit u := match PositiveMap.find u (units w) with Some _ => true | None => false end.
 
 (** ** What a unit needs and makes
 
     Under [implied], a utensil with one ingredient is taken as given when this ingredient, located in the utensil, is
-    another input. The unit then neither needs nor makes it. *)
-Definition skipped u o : bool :=
+    another input. The unit then neither needs nor makes it. A unit that stands for several needs what all of them need,
+    and makes what one of them makes. *)
+Definition skipped d o : bool :=
+  let node_of o := find_or no_node o (detailed_nodes w) in
   implied w && mem (label (node_of o)) (utensils w)
   && match ingredients (node_of o) with
      | [only] => existsb (fun i => negb (Pos.eqb i o) && Pos.eqb (label (node_of i)) only
-                                   && among (label (node_of o)) (located (node_of i))) (inputs (unit_of u))
+                                   && among (label (node_of o)) (located (node_of i))) (ins d)
      | _ => false
      end.
-Definition needed u := filter (fun o => negb (skipped u o)) (inputs (unit_of u)).
-Definition made u := filter (fun o => negb (among o (inputs (unit_of u)) && skipped u o)) (outputs (unit_of u)).
+Definition merge := map (fun o => find_or 1%positive o (merged w)).
+Definition detail_needs d := merge (filter (fun o => negb (skipped d o)) (ins d)).
+Definition detail_makes d := merge (filter (fun o => negb (among o (ins d) && skipped d o)) (outs d)).
+Definition needed u :=
+  match details (unit_of u) with
+  | [] => []
+  | d :: others => filter (fun o => forallb (fun e => among o (detail_needs e)) others) (detail_needs d)
+  end.
+Definition made u := flat_map detail_makes (details (unit_of u)).
 
 (** ** Runs
 
@@ -65,14 +81,23 @@ Definition makes_goals (us : list id) : Prop :=
 (** ** Costs
 
     [attempts] is counted in fractions of one, so many that each unit's is whole. A figure that is missing or not whole
-    is -1, which is no cost: no certificate with it is accepted. *)
-Inductive objective := Units | Inputs | Inputs_and_ingredients | Success | Kitchen | Attempts (fractions : positive) | Price.
+    is -1, which is no cost: no certificate with it is accepted. Without stand-ins nothing is dissimilar, and networks
+    with stand-ins are not checked. *)
+Inductive objective := Units | Inputs | Inputs_and_ingredients | Success | Kitchen | Attempts (fractions : positive) | Price | Dissimilarity.
 
-Definition price u : option N :=
-  match PositiveMap.find u (unit_prices w) with
+Definition detail_price u d : option N :=
+  match PositiveMap.find (its_number d) (unit_prices w) with
   | Some p => Some p
   | None => PositiveMap.find (motion (unit_of u)) (motion_prices w)
   end.
+(** A unit that stands for several has the least of their prices, if all are known. *)
+Fixpoint least_price u (ds : list detail) : option N :=
+  match ds with
+  | [] => None
+  | [d] => detail_price u d
+  | d :: ds => match detail_price u d, least_price u ds with Some p, Some q => Some (N.min p q) | _, _ => None end
+  end.
+Definition price u := least_price u (details (unit_of u)).
 
 Definition sum_of (z : Z) := Part z 1 1.
 Definition missing := sum_of (-1).
@@ -83,7 +108,7 @@ Definition figure (f : objective) u : part :=
   | Inputs => sum_of (Z.of_nat (length ins))
   | Inputs_and_ingredients =>
       sum_of (Z.of_nat (length ins) + Z.of_nat (length (flat_map (fun o => ingredients (node_of o)) ins)))
-  | Kitchen => sum_of 0
+  | Kitchen | Dissimilarity => sum_of 0
   | Price => match price u with Some p => sum_of (Z.of_N p) | None => missing end
   | Success => match PositiveMap.find (motion (unit_of u)) (rates w) with Some (a, b) => Part 0 b a | None => missing end
   | Attempts n => match PositiveMap.find (motion (unit_of u)) (rates w) with

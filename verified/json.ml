@@ -59,7 +59,7 @@ let read text start =
   let rec value () =
     blank ();
     let found = match next () with
-      | '{' -> incr place; Object (items '}' [] (fun () ->
+      | '{' -> incr place; once (items '}' [] (fun () ->
           blank (); let key = string () in blank (); expect ':'; (key, value ())))
       | '[' -> incr place; List (items ']' [] value)
       | '"' -> Text (string ())
@@ -69,6 +69,10 @@ let read text start =
       | _ -> Number (number ()) in
     blank ();
     found
+  and once pairs =
+    let keys = List.sort compare (List.map fst pairs) in
+    let rec twice = function a :: (b :: _ as others) -> a = b || twice others | _ -> false in
+    if twice keys then refuse "a key stands twice in one object" else Object pairs
   and items : 'a. char -> 'a list -> (unit -> 'a) -> 'a list = fun close found one ->
     blank ();
     if found = [] && next () = close then (incr place; [])
@@ -80,12 +84,54 @@ let read text start =
   let found = value () in
   (found, !place)
 
+(* The text of which digests are computed: keys in order, no blanks, and ASCII only. *)
+let canonical value =
+  let out = Buffer.create 1_000_000 in
+  let put = Buffer.add_string out in
+  let escape code = put (Printf.sprintf "\\u%04x" code) in
+  let rec character s i =
+    if i < String.length s then begin
+      let decoded = if s.[i] < '\128' then Uchar.of_char s.[i] else utf8_at s i in
+      let code = Uchar.to_int decoded in
+      (match s.[i] with
+       | '"' -> put "\\\"" | '\\' -> put "\\\\" | '\n' -> put "\\n" | '\r' -> put "\\r" | '\t' -> put "\\t"
+       | '\b' -> put "\\b" | '\012' -> put "\\f"
+       | c when c >= ' ' && c < '\127' -> Buffer.add_char out c
+       | '\127' -> put "\127"
+       | _ when code < 0x10000 -> escape code
+       | _ -> escape (0xD800 + ((code - 0x10000) lsr 10)); escape (0xDC00 + ((code - 0x10000) land 0x3FF)));
+      character s (i + if code < 0x80 then 1 else if code < 0x800 then 2 else if code < 0x10000 then 3 else 4)
+    end
+  and utf8_at s i =
+    let byte k = if i + k < String.length s then Char.code s.[i + k] land 0x3F else refuse "not UTF-8" in
+    let b = Char.code s.[i] in
+    let code =
+      if b < 0xE0 then ((b land 0x1F) lsl 6) lor byte 1
+      else if b < 0xF0 then ((b land 0x0F) lsl 12) lor (byte 1 lsl 6) lor byte 2
+      else ((b land 0x07) lsl 18) lor (byte 1 lsl 12) lor (byte 2 lsl 6) lor byte 3 in
+    if Uchar.is_valid code then Uchar.of_int code else refuse "not UTF-8" in
+  let quoted s = put "\""; character s 0; put "\"" in
+  let rec write = function
+    | Null -> put "null"
+    | Bool b -> put (string_of_bool b)
+    | Number n -> put (Z.to_string n)
+    | Text s -> quoted s
+    | List l -> between "[" "]" write l
+    | Object l -> between "{" "}" (fun (k, v) -> quoted k; put ":"; write v) (List.sort compare l)
+  and between : 'a. string -> string -> ('a -> unit) -> 'a list -> unit = fun opening closing one l ->
+    put opening;
+    List.iteri (fun i x -> if i > 0 then put ","; one x) l;
+    put closing in
+  write value;
+  Buffer.contents out
+
 let pairs = function
-  | Object pairs ->
-    let keys = List.sort compare (List.map fst pairs) in
-    let rec twice = function a :: (b :: _ as others) -> a = b || twice others | _ -> false in
-    if twice keys then refuse "a key stands twice in one object" else pairs
+  | Object pairs -> pairs
   | _ -> refuse "expected an object"
+let rec ascending = function a :: (b :: _ as others) -> compare a b < 0 && ascending others | _ -> true
+let exactly keys value =
+  if List.sort compare (List.map fst (pairs value)) <> List.sort compare keys then
+    refuse ("expected the keys " ^ String.concat ", " keys)
 let get key value = match List.assoc_opt key (pairs value) with Some v -> v | None -> refuse ("expected the key " ^ key)
 let get_opt key value = List.assoc_opt key (pairs value)
 let list = function List l -> l | _ -> refuse "expected a list"

@@ -15,7 +15,30 @@ from foon_asp.text.neutral_writer import write_neutral_unit
 
 COFACTORS = tuple(
     f"M_{name}_c"
-    for name in ["atp", "adp", "amp", "nad", "nadh", "nadp", "nadph", "coa", "accoa", "ACP", "q8", "q8h2", "mqn8", "mql8", "trdrd", "grxrd", "iscu", "iscs", "moadcoo", "trnaglu", "udcpdp", "octdp"]
+    for name in [
+        "atp",
+        "adp",
+        "amp",
+        "nad",
+        "nadh",
+        "nadp",
+        "nadph",
+        "coa",
+        "accoa",
+        "ACP",
+        "q8",
+        "q8h2",
+        "mqn8",
+        "mql8",
+        "trdrd",
+        "grxrd",
+        "iscu",
+        "iscs",
+        "moadcoo",
+        "trnaglu",
+        "udcpdp",
+        "octdp",
+    ]
 )
 _SBML = "{http://www.sbml.org/sbml/level3/version1/core}"
 _FLUX = "{http://www.sbml.org/sbml/level3/version1/fbc/version2}"
@@ -27,10 +50,18 @@ def sides(reaction: ElementTree.Element) -> list[list[str]]:
     return [[str(each.get("species")) for each in found] if found is not None else [] for found in lists]
 
 
+def text_of(wheel: Path, name: str) -> bytes:
+    """Return the SBML of a model in the wheel of ``cobra``."""
+    with zipfile.ZipFile(wheel) as files:
+        return gzip.decompress(files.read(f"cobra/data/{name}.xml.gz"))
+
+
 def read_model(wheel: Path, name: str) -> ElementTree.Element:
-    """Return a model in the wheel of ``cobra``."""
-    text = gzip.decompress(zipfile.ZipFile(wheel).read(f"cobra/data/{name}.xml.gz"))
-    return ElementTree.fromstring(text).find(f"{_SBML}model") or ElementTree.Element("model")
+    """Return a model in the wheel of ``cobra``; raises ``ValueError`` for SBML without one."""
+    model = ElementTree.fromstring(text_of(wheel, name)).find(f"{_SBML}model")
+    if model is None:
+        raise ValueError(f"{wheel}: {name} has no model")
+    return model
 
 
 def write_network(model: ElementTree.Element, folder: Path, kitchen: tuple[str, ...] = COFACTORS) -> None:

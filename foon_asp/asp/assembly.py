@@ -179,7 +179,10 @@ def _warn_of_names(
     warn: Callable[[str], None],
 ) -> None:
     """Warn of names in rules, measures and parameters that do not occur in the network of a problem."""
-    if problem is None or not (added or problem.measures):
+    if problem is None:
+        return
+    measures = {(measure.place, measure.text): None for measure in problem.measures.values() if measure.text}
+    if not (added or measures):
         return
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (which takes clingo along)
     from foon_asp.rules.fact_values import FactValues  # noqa: PLC0415 (only of use with constraints)
@@ -196,7 +199,7 @@ def _warn_of_names(
             warn(message)
     for diagnostic in unmatched(theirs, ours, constants, values):
         warn(str(diagnostic))
-    for origin, text in {(measure.place, measure.text): None for measure in problem.measures.values()}:
+    for origin, text in measures:
         for diagnostic in unmatched([read_encoding(Stated(origin, text))], [], (), values):
             warn(str(diagnostic))
 

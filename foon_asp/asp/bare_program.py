@@ -59,6 +59,7 @@ def bare_program(
         penalty = write_least_penalty(len(levels(tuple(objectives))) + 1)
     program = assemble(settings, lambda _: None, used_up=problem.items is not None)
     if problem.items is not None:
+        _require_no_amounts(problem)
         if soft:
             raise UserError("soft constraints are not built for items that are used up")
         executions = most_executions(problem, objectives, settings)
@@ -105,6 +106,12 @@ def bare_plans(
     number = problem.network.unit_number
     caps = {unit: (number(unit), cap) for unit, cap in executions.items()}
     return _written(program, facts + write_objectives(objectives)), caps
+
+
+def _require_no_amounts(problem: Problem) -> None:
+    """Raise :class:`UserError` where amounts are counted: in the encodings each execution has one copy."""
+    if problem.counts_amounts:
+        raise UserError("amounts are not built for bare clingo, whose encodings have one copy of each output")
 
 
 def _written(program: Program, facts: str) -> BareProgram:

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,16 @@ from foon_asp.asp.settings import Settings
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
-from foon_asp.hypergraph import NONE, Bounds, Listener, Reduced, Reduction, reduce
+from foon_asp.hypergraph import (
+    NONE,
+    Bounds,
+    Listener,
+    Reduced,
+    Reduction,
+    bound_under_rules,
+    reduce,
+    reduce_under_rules,
+)
 from foon_asp.problem import Objective, Problem, Restriction, first_tree, levels, reach, relevant
 
 if TYPE_CHECKING:  # often clingo need not run
@@ -194,16 +203,17 @@ def prepare(
             return prepared
         program, kept = prepared.program, prepared.kept or problem
         if listener is not None and (program.own or _limits_unsettled(prepared)):
-            reduced = reduce(
+            presolve = reduce
+            if prepared.unsettled:
+                under_rules = bound_under_rules if brief else reduce_under_rules
+                presolve = partial(under_rules, redundant=prepared.redundant)
+            reduced = presolve(
                 kept,
                 by,
                 NONE if program.bounded else settings.reductions,
                 lambda: deadline.passed,
                 Bounds(listener) if prepared.unsettled else listener,
                 lambda: deadline.watched("cutting the network", late=True),
-                prepared.redundant,
-                prepared.unsettled,
-                brief and prepared.unsettled,
             )
             if reduced.interrupted:
                 deadline.interrupt()

@@ -14,7 +14,7 @@ from foon_asp.asp.program import Program
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
 from foon_asp.encoding.own_encodings import question_encoding
-from foon_asp.errors import UserError
+from foon_asp.errors import BugError, UserError
 from foon_asp.hypergraph import ExactCosts, Listener, Reduced, Reduction, Subproblem
 from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
@@ -57,6 +57,8 @@ def solve(
     encodings and options, and where ``success`` is asked for and no rates are known.
     """
     settings, reporter = settings or Settings(), reporter or Reporter()
+    if not problem.has_stand_ins_for(objectives):
+        raise BugError("only the nearest stand-ins are there, of which another tree may be the best")
     program = program_of(problem, settings, reporter.warning)
     began = time.perf_counter()
     listener = _IncumbentListener(problem, objectives, reporter)

@@ -14,8 +14,7 @@ from foon_asp.asp.solver import solve
 from foon_asp.encoding.facts import write_avoided, write_in_all, write_objectives, write_unseen
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
-from foon_asp.hypergraph import reduce
-from foon_asp.hypergraph.reduction import at_costs
+from foon_asp.hypergraph.reduction import at_costs, reduce_under_rules
 from foon_asp.problem import Costs, Objective, Problem, multiplies, reach
 from foon_asp.problem.restriction import Restriction
 
@@ -74,7 +73,7 @@ class _Union:
         self._best = best
         self._some, self._every = set(best.units), set(best.units)
         self._number = prepared.problem.network.unit_number
-        self._settled = "" if not worse else "_without_spare.\n"
+        self._settled = "" if not worse else "_without_spare(1).\n"
         self._avoided = 0
 
     def run(self) -> TreeUnion:
@@ -102,8 +101,8 @@ class _Union:
             return prepared.units
         problem, by = prepared.kept or prepared.problem, prepared.levels
         try:
-            reduced = reduce(
-                problem, by, expired=lambda: deadline.passed, redundant=prepared.redundant, brief=True
+            reduced = reduce_under_rules(
+                problem, by, expired=lambda: deadline.passed, redundant=prepared.redundant
             )
             subproblem, costs = reduced.subproblem, reduced.costs
             if subproblem is None or costs is None:

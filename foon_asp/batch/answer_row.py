@@ -13,7 +13,7 @@ from foon_asp.comparison.rows_file import RowForm
 from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import UserError
-from foon_asp.problem import parse_objectives
+from foon_asp.problem import parse_objectives, with_dissimilarity
 from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.results.plain import costs_by_name, exact_measures, plain, read_plain
 from foon_asp.results.values import Figure
@@ -69,11 +69,14 @@ def answer_row(
         with deadline.watched("reading", late=True):
             problem = asker.problem(question)
         objectives = parse_objectives([question.objective], problem.measures)
+        if problem.stand_ins is not None:
+            objectives = with_dissimilarity(objectives)
         nearby = near_goals(problem, objectives, settings)
         outcome = None if nearby is None else solve_nearby(nearby, objectives, settings)
         if outcome is None:
             with deadline.watched("reading", late=True):
-                problem = problem.whole if need_whole_network(problem, settings) else problem
+                if need_whole_network(problem, settings) or not problem.has_stand_ins_for(objectives):
+                    problem = problem.whole
                 assert problem.goals  # reads the units that the goals can need
             outcome = solve(problem, objectives, settings)
         row = _answered(question, outcome)

@@ -306,6 +306,7 @@ def subject_of(problem: Problem) -> verify.Subject:
     """Return the data that certificates of a problem over a whole network are about."""
     return verify.Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
+        amounts=problem.amounts,
         stand_ins=problem.stand_ins.table if problem.stand_ins else None,
     )
 

@@ -13,7 +13,7 @@ from foon_asp.certificate.certificate import Certificate, Claimed, subject_of, w
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus_log
 from foon_asp.network import ObjectNode
-from foon_asp.plans.conditions import Balance, Condition, Landmark, Level, Measure, Sum, SumLimit
+from foon_asp.plans.conditions import Balance, Condition, Landmark, Level, Measure, Sum, SumLimit, Supply
 from foon_asp.plans.count_proof import Claim, CountProof, PlanProver, Split
 from foon_asp.plans.flows import Flows, flows_of
 from foon_asp.problem import (
@@ -251,6 +251,16 @@ class _Question:
                 waiting += (unit for unit in self._achievers.get(lacking, ()) if unit not in removed)
         return sorted(unreached)
 
+    def _amounts(self) -> list[list[Any]]:
+        """Return the amounts of all units of the data."""
+        network = self._problem.network
+        by_id = ((network.unit_id(unit), sides) for unit, sides in self._problem.amounts.items())
+        return [
+            [unit, *(sorted([network.object_id(node), n] for node, n in side.items()) for side in sides)]
+            for unit, sides in sorted(((u, s) for u, s in by_id if u is not None), key=lambda row: row[0])
+            if any(sides)
+        ]
+
     def write(
         self,
         claim: str,
@@ -287,6 +297,8 @@ class _Question:
             items={
                 "stock": [list(pair) for pair in stock],
                 "stays": [list(pair) for pair in (*sorted(stated_labels), *sorted(stated_nodes))],
+                "wanted": [[o, n] for o in sorted(problem.goals) if (n := problem.wanted(o)) > 1],
+                "amounts": self._amounts(),
             },
             unreached=self._unreached(),
         )
@@ -334,6 +346,9 @@ class _Stated:
             return "before", (cut, question.unit(condition.action)), 1
         if isinstance(condition, Balance):
             return "balance", (question.balance(condition.object),), 1
+        if isinstance(condition, Supply):
+            key = question.balance(condition.object), question.unit(condition.action)
+            return "supply", key, 1
         if isinstance(condition, Sum):
             index, scale = question.limit(condition.limit)
             return "limits", (index,), scale

@@ -12,6 +12,7 @@ from foon_asp.problem import Objective
 from foon_asp.rules.constraint_library import library_constraints
 from foon_asp.text.goal_name import entry_names, nodes_beginning
 
+_TABLES = ("kitchen", "rates", "utensils", "goals", "unit_prices", "unit_amounts")
 _MAX_NAMES = 200  # of a completion: a shell cannot list more in a readable way
 
 # Endings of the names of constants whose values are motions, or labels.
@@ -30,7 +31,7 @@ def _dataset(context: click.Context) -> Dataset:
     sources = values.get("sources") or filter(os.path.exists, context.args)
     networks = (*sources, *(values.get("network") or ()))
     source = networks[0] if len(networks) == 1 else networks or values.get("folder")
-    tables = {name: values.get(name) for name in ("kitchen", "rates", "utensils", "goals", "unit_prices")}
+    tables = {name: values.get(name) for name in _TABLES}
     measures, level = values.get("measures") or (), values.get("level") or 3
     return load(source, **tables, measures=measures, level=level, lenient=True).dataset
 

@@ -45,6 +45,9 @@ _DATA_OPTIONS = (
         "--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name: JSON, or FOON objects."
     ),
     click.option("--unit-prices", type=_PATH, metavar="FILE", help="Prices of motions and of single units."),
+    click.option(
+        "--unit-amounts", type=_PATH, metavar="FILE", help="How many of a node units take and make."
+    ),
     lenient_option,
 )
 
@@ -220,6 +223,7 @@ def read_dataset(
     utensils: Path | None,
     goals: Path | None,
     unit_prices: Path | None,
+    unit_amounts: Path | None,
     lenient: bool,
     level: int,
     measures: Sequence[Path] = (),
@@ -234,7 +238,7 @@ def read_dataset(
     """
     folder, network = with_sources(sources, folder, network)
     with reading():
-        files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
+        files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices, unit_amounts)
     with bytes_bar("reading", files.network), reading():
         dataset = read_data(files, lenient, level)
         if measures:

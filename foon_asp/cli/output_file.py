@@ -13,7 +13,7 @@ from foon_asp.errors import UserError
 from foon_asp.rules.constraint import LibraryUse, find_constraint
 from foon_asp.text.data_folder import find_data, network_files
 
-_DATA_OPTIONS = ("kitchen", "rates", "utensils", "goals", "unit_prices")
+_DATA_OPTIONS = ("kitchen", "rates", "utensils", "goals", "unit_prices", "unit_amounts")
 _STDIN = Path("/dev/stdin")  # may be a file: foon-asp lint - < recipe.txt
 
 

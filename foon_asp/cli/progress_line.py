@@ -17,7 +17,7 @@ from foon_asp.asp.reporter import Reporter
 from foon_asp.cli.output import console, say
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective
-from foon_asp.text.reading import size_of, reporting_to
+from foon_asp.text.reading import reporting_to, size_of
 
 if TYPE_CHECKING:
     from rich.text import Text

@@ -46,8 +46,9 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
 
     An object is renamed on object lines, in relations ([bowl]) and in contents ({salt}); a state, a motion
     and the word of a relation where they stand. Where NEW has an id already, the lines of OLD get it. Of a
-    folder, networks, kitchens, goals and the tables (motion.txt, utensils.txt, unit_prices.txt, tools.txt,
-    durations.txt) are changed together. Everything else in the files stays as it is, comments included.
+    folder, networks, kitchens, goals and the tables (motion.txt, utensils.txt, unit_prices.txt,
+    unit_amounts.txt, tools.txt, durations.txt) are changed together. Everything else in the files stays as it
+    is, comments included.
 
     Where one file cannot be written, all stay as they were, as after ctrl-C. If the process is killed while
     it writes, each file is the old one or the new one, and the same command again writes the others. Exits

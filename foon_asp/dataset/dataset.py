@@ -48,7 +48,6 @@ from foon_asp.standins import with_stand_ins
 from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning
 from foon_asp.text.goal_name import entry_names, find_goal, listed_goal, listed_nodes
 from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.repeated_node import refuse_repeated
 from foon_asp.warning import warn
 
 if TYPE_CHECKING:  # plain answers do not need it
@@ -64,8 +63,8 @@ def ask(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
     """Return the problem of goals, by id in the network of ``data``, a part of the dataset ``origin``."""
-    if items is not None:
-        refuse_repeated(data.repeated)
+    if items is not None and data.amounts.conflict:
+        raise UserError(data.amounts.conflict)
     unrated = origin.unrated
     return Problem(
         data.network,
@@ -80,6 +79,7 @@ def ask(
         items=items,
         starting=data.starting,
         unrated=unrated,
+        amounts=data.amounts.units,
     )
 
 
@@ -116,7 +116,7 @@ class Dataset:
     def of(cls, data: Data, seconds: float = 0.0) -> Self:
         """Return the dataset of data that are in memory; ``seconds`` is how long reading them took."""
         return cls(
-            Source(data.network, seconds, data.left_out, data.repeated),
+            Source(data.network, seconds, data.left_out, data.repeated, data.amounts),
             Kitchen(data.kitchen),
             data.goals,
             data.rates,
@@ -179,6 +179,7 @@ class Dataset:
             self.starting,
             self.goals_from,
             self.source.repeated,
+            self.source.amounts,
         )
 
     def _unit_prices(self, network: Network) -> UnitPrices | None:
@@ -296,8 +297,15 @@ class Dataset:
         return replace(self, measures=measures)
 
     def with_stand_in_table(self, table: StandInTable | None) -> "Dataset":
-        """Return the same data with stand-ins by a table, ``None`` for none."""
-        return replace(self, stand_ins=table)
+        """Return the same data with stand-ins by a table, ``None`` for none.
+
+        With stand-ins, the goals assumed are those of the first file: the others are what helps it.
+        """
+        goals = self.listed
+        if table is not None and self.goals_from and len(goals) > 1:
+            copies = next(iter(self.whole_network.sources), ())
+            goals = [goal for goal in goals if copies and goal.source.file == copies[0].file] or goals
+        return replace(self, stand_ins=table, listed=goals)
 
     def varied(
         self,
@@ -396,9 +404,21 @@ class Dataset:
             stated.pop("prices", None)
         if everything:
             data = self.data
-            return Subject(data.network, stocked.kitchen.ids, rates, self.utensils, data.unit_prices, stated)
+            kitchen, prices, trusted = stocked.kitchen.ids, data.unit_prices, ()
+            return Subject(
+                data.network, kitchen, rates, self.utensils, prices, stated, trusted, data.amounts.units
+            )
         network = source.touched()
-        return Subject(network, stocked.kitchen, rates, self.utensils, None, stated, tuple(sorted(stated)))
+        return Subject(
+            network,
+            stocked.kitchen,
+            rates,
+            self.utensils,
+            None,
+            stated,
+            tuple(sorted(stated)),
+            source.amounts.units,
+        )
 
     def subject_with_stand_ins(self, goals: Sequence[int], containers: str, everything: bool) -> "Subject":
         """Return the subject of a certificate about a network with the stand-ins for goals."""

@@ -1,13 +1,14 @@
 """Items that are used up: the options of a question, checked against the data."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
+from types import MappingProxyType
 
 from foon_asp.dataset.dataset import Dataset
 from foon_asp.dataset.names import node_id
 from foon_asp.errors import UserError
-from foon_asp.network import ObjectNode
+from foon_asp.network import MAX_AMOUNT, ObjectNode, counted
 from foon_asp.problem import ITEMS, UsedUp
 from foon_asp.text.line import LineError
 from foon_asp.text.tables import STAYS, read_stock, stated_name
@@ -19,7 +20,28 @@ Stays = str | PathLike[str] | Mapping[str | ObjectNode, bool]
 """The path of a file that says what stays, or the same by label or object node."""
 
 
-def items_of(dataset: Dataset, items: str, stock: Stock | None, stays: Stays | None) -> UsedUp | None:
+def wanted_of(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) -> dict[ObjectNode, int]:
+    """Return how many copies of goals are wanted, where that is not one; ``amounts`` has one for each.
+
+    Raises :class:`UserError` where there are more or fewer, and for one that is out of range.
+    """
+    if amounts and len(amounts) != len(goals):
+        found = f"{counted(len(amounts), 'amount')} for {counted(len(goals), 'goal')}"
+        raise UserError(f"found {found}, expected one for each, in the order of the goals")
+    for amount in amounts:
+        if not 1 <= amount <= MAX_AMOUNT:
+            raise UserError(f"found the amount {amount} of a goal, expected one from 1 to {MAX_AMOUNT}")
+    nodes = map(dataset.names.node, goals)
+    return {node: amount for node, amount in zip(nodes, amounts, strict=False) if amount > 1}
+
+
+def items_of(
+    dataset: Dataset,
+    items: str,
+    stock: Stock | None,
+    stays: Stays | None,
+    wanted: Mapping[ObjectNode, int] = MappingProxyType({}),
+) -> UsedUp | None:
     """Return how items are used up; ``None`` if they last.
 
     Raises :class:`UserError` for another word, a stock or an exception where items last, a node that the
@@ -31,10 +53,12 @@ def items_of(dataset: Dataset, items: str, stock: Stock | None, stays: Stays | N
         if stock is not None or stays is not None:
             option = "a stock" if stock is not None else "what stays"
             raise UserError(f"{option} is for items that are used up: add --items used-up (items='used-up')")
+        if wanted:
+            raise UserError("an amount of a goal is for items that are used up: leave --items lasting out")
         return None
     require_contents(dataset.names.level)
     exceptions = {} if stays is None else _exceptions(dataset, stays)
-    return UsedUp(exceptions, {} if stock is None else _copies(dataset, stock))
+    return UsedUp(exceptions, {} if stock is None else _copies(dataset, stock), dict(wanted))
 
 
 def require_contents(level: int) -> None:

@@ -35,6 +35,11 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
             f"{files.network[0]} and {files.network[1]}: a store is read alone; import "
             "the files together into one"
         )
+    if files.unit_amounts:
+        raise UserError(
+            f"{files.unit_amounts}: a table of amounts is read beside text alone; give the units of "
+            f"{files.network[0]} their amounts in neutral lines or JSON"
+        )
     began = time.perf_counter()
     store = Store(files.network[0])
     source = StoreSource(store)

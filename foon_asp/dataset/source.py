@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from foon_asp.dataset.names import NamesAndUnits
 from foon_asp.dataset.prices import DataPrices
-from foon_asp.network import FunctionalUnit, Network, StartingKitchen, UnitPrices, starting_kitchen
+from foon_asp.network import (
+    NO_AMOUNTS,
+    DataAmounts,
+    FunctionalUnit,
+    Network,
+    StartingKitchen,
+    UnitPrices,
+    starting_kitchen,
+)
 from foon_asp.network import Source as Place
 from foon_asp.problem import ContainerRule, Objective, Unpriced, count_unpriced, first_places
 from foon_asp.text.object_list import ListedObject
@@ -22,9 +30,9 @@ class Source:
     """A network in memory; the subclass :class:`~foon_asp.dataset.store_source.StoreSource` is a store.
 
     Ids are those of the whole network. ``names`` has its nodes and units, ``unit_count`` counts these.
-    ``seconds`` are those that reading took so far, ``left_out`` counts lines that were not understood, and
-    ``repeated`` are nodes that a unit lists twice. A store has the ``kitchen`` and the ``prices`` that were
-    imported, and states ``digests`` of them and of the network.
+    ``seconds`` are those that reading took so far, ``left_out`` counts lines that were not understood.
+    ``repeated`` are nodes that a unit lists twice, and ``amounts`` those of units. A store has the
+    ``kitchen`` and the ``prices`` that were imported, and states ``digests`` of them and of the network.
     """
 
     kitchen: Collection[int] | None = None
@@ -32,11 +40,21 @@ class Source:
     names: NamesAndUnits
 
     def __init__(
-        self, network: Network, seconds: float, left_out: int = 0, repeated: tuple[RepeatedNode, ...] = ()
+        self,
+        network: Network,
+        seconds: float,
+        left_out: int = 0,
+        repeated: tuple[RepeatedNode, ...] = (),
+        amounts: DataAmounts = NO_AMOUNTS,
     ) -> None:
         self.names = self._network = network
         self.unit_count, self.seconds = len(network), seconds
-        self.left_out, self.repeated = left_out, repeated
+        self.left_out, self.repeated, self._amounts = left_out, repeated, amounts
+
+    @property
+    def amounts(self) -> DataAmounts:
+        """The amounts of units."""
+        return self._amounts
 
     @property
     def digests(self) -> Mapping[str, str]:

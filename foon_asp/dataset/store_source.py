@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from foon_asp.dataset.prices import DataPrices
 from foon_asp.dataset.source import Source
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Network, UnitPrices
+from foon_asp.network import DataAmounts, FunctionalUnit, Network, UnitPrices
 from foon_asp.network import Source as Place
 from foon_asp.problem import ContainerRule, Objective, Unpriced
 from foon_asp.store.cone import Cone
@@ -37,6 +37,11 @@ class StoreSource(Source):
         self.kitchen = StoredIds(store, "kitchen")
         self.prices = DataPrices(store.motion_prices, {}, from_file=True)
         self._starting = StoredStartingKitchen(store)
+
+    @property
+    def amounts(self) -> DataAmounts:
+        """The amounts of units."""
+        return self.names.amounts
 
     @property
     def starting(self) -> StoredStartingKitchen:

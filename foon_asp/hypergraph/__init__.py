@@ -12,7 +12,9 @@ if TYPE_CHECKING:
     from foon_asp.hypergraph.reduction import Bounds as Bounds
     from foon_asp.hypergraph.reduction import Listener as Listener
     from foon_asp.hypergraph.reduction import Reduced as Reduced
+    from foon_asp.hypergraph.reduction import bound_under_rules as bound_under_rules
     from foon_asp.hypergraph.reduction import reduce as reduce
+    from foon_asp.hypergraph.reduction import reduce_under_rules as reduce_under_rules
     from foon_asp.hypergraph.reductions import ALL as ALL
     from foon_asp.hypergraph.reductions import NONE as NONE
     from foon_asp.hypergraph.reductions import SAFE as SAFE
@@ -20,7 +22,9 @@ if TYPE_CHECKING:
     from foon_asp.hypergraph.reductions import parse_reductions as parse_reductions
 else:  # not for type checkers, which then know each name
     _MODULES = {"ExactCosts": "exact_costs", "Subproblem": "gap_bounded_subproblem"}
-    _MODULES |= dict.fromkeys(("Bounds", "Listener", "Reduced", "reduce"), "reduction")
+    _MODULES |= dict.fromkeys(
+        ("Bounds", "Listener", "Reduced", "bound_under_rules", "reduce", "reduce_under_rules"), "reduction"
+    )
     _MODULES |= dict.fromkeys(("ALL", "NONE", "SAFE", "Reduction", "parse_reductions"), "reductions")
 
     def __getattr__(name: str) -> object:

@@ -9,31 +9,23 @@ to look.
 """
 
 import math
-import random
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heappop, heappush
 from typing import Any
 
-from foon_asp.hypergraph.cost_partition import PARTS, in_parts, renumbered, shared_out, stalled
-from foon_asp.hypergraph.covering import Covering, UnsolvedError
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.cost_partition import stalled
+from foon_asp.hypergraph.covering import UnsolvedError
 from foon_asp.hypergraph.cut import Cut, Cutter
-from foon_asp.hypergraph.first_achievers import FirstAchievers
 from foon_asp.hypergraph.hypergraph import Hypergraph
+from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 from foon_asp.hypergraph.optimality_proof import Branch, Cases, CostFixing, Hopeless, Packing, Proof
-from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
 
 _WHOLE = 1e-6  # integrality tolerance of LP values
-_CUTS = 40  # cuts separated for one LP solution, at most
-_ROUNDS = 3  # of separation, at each node but the root
-_OFTEN = 10  # nodes from one at which derivations are guessed to the next
 
-_LONG = 10_000_000  # actions looked at for a proof, at most: about a minute of processor time
-_LENGTH = 2_000_000  # objects and landmark actions that a proof may list
-_PACKING_LENGTH = (
-    5000  # objects and actions, counted for each cost partition: limits the depth of the branching
-)
+_PACKING_LENGTH = 5000  # objects and actions, counted per cost partition: limits the branching depth
 
 Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
 
@@ -67,8 +59,9 @@ class Branching:
 
     All of the actions can run, and each costs more than 0. ``cuts`` are sets of objects of cuts to begin
     with. ``guess`` is the primal heuristic: it proposes derivations from the LP values of the actions and
-    from the forbidden ones. ``better`` is called with each new incumbent, ``bounded`` with each new bound.
-    ``effort`` is what remains of the search budget after a search, in actions looked at.
+    from the forbidden ones. ``incumbent`` is the best derivation found, if any; no derivation costs less than
+    ``bound`` and it. ``closed`` is true where it is proved that none costs less than the incumbent, or than
+    ``total`` without one. ``effort`` is what remains of the budget of a search, in actions looked at.
     """
 
     def __init__(
@@ -80,66 +73,56 @@ class Branching:
         cuts: Iterable[Collection[int]],
         total: int,
         guess: Guess,
-        better: Callable[[set[int]], None],
-        bounded: Callable[[int], None],
     ) -> None:
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         self._np = np
-        self._actions = sorted(actions)
-        plain, self._objects, self._targets = renumbered(graph, targets, self._actions)
-        self._achievers = FirstAchievers(plain)
-        self._graph = self._achievers.graph
-        self._costs = [cost(a) for a in self._actions]
+        self._relaxation = LandmarkRelaxation(graph, targets, actions, cost)
+        self._actions, self._costs = self._relaxation.actions, self._relaxation.costs
+        self._graph, self._targets = self._relaxation.graph, self._relaxation.targets
+        self._relative, self._covering = self._relaxation.relative, self._relaxation.covering
         self._unit = math.gcd(*self._costs) or 1  # costs of derivations are multiples of it
-        self._dearest = max(self._costs, default=1)
-        self._relative = np.array([c / self._dearest for c in self._costs])
-        self._parts = in_parts(self._costs)
-        self._total, self._guess, self._better, self._bounded = total, guess, better, bounded
-        self._random = random.Random(0)
-        self._covering = Covering(self._relative.tolist())
-        self._rows: list[Any] = []
-        self._cuts: list[frozenset[int]] = []
-        self._active: list[bool] = []  # rows whose cut has a target at the current node
+        self._parts = self._relaxation.in_parts()
+        self._total, self._guess = total, guess
+        self.incumbent: frozenset[int] | None = None
+        self.bound, self.closed = 0, False
+        self._active: dict[int, bool] = {}  # by row, whether its cut has a target at the current node
         self._relaxed_at: tuple[frozenset[int], frozenset[int]] = frozenset(), frozenset()
         self.effort = 0
         self._length_budget: float = math.inf  # objects and actions that the proof may still list
         self._expired: Callable[[], bool] = lambda: False
-        self._whole_cuts: dict[frozenset[int], tuple[int, ...]] = {}  # by cut, its objects in the whole graph
         self._root = _Node(frozenset(), frozenset(), 0, [])
-        position = {o: i for i, o in enumerate(self._objects)}
-        for cut in cuts:
-            self._add(frozenset(position[o] for o in cut if o in position))
+        self._relaxation.add_known(cuts)
 
-    def search(self, effort: int, expired: Callable[[], bool]) -> bool:
+    def search(self, effort: int, expired: Callable[[], bool]) -> Iterator[None]:
         """Branch, best bound first, until no node is open or ``effort`` actions were looked at.
 
-        Returns whether it is proved that no derivation costs less than the incumbent, or than ``total`` where
-        there is no incumbent.
+        Yields after each new incumbent or bound, and at the end.
         """
         self.effort = effort
         waiting = [(0, 0, 0, self._root)]
         number = 0
-        reported = 0
         try:
             while waiting:
                 bound, depth, _, node = waiting[0]
-                reached = min(-(-bound // PARTS), self._total)
-                if reached > reported:
-                    reported = reached
-                    self._bounded(reported)
-                if self._stopped(expired):
-                    return False
-                if not self._closes(bound) and not self._solve(node, number, expired):
-                    return False
+                before = self.bound, self._total
+                self.bound = max(self.bound, min(-(-bound // PARTS), self._total))
+                stopped = self._stopped(expired)
+                if not stopped and not self._closes(bound):
+                    stopped = not self._solve(node, number, expired)
+                if (self.bound, self._total) != before:
+                    yield
+                if stopped:
+                    return
                 heappop(waiting)
                 for child in (node.using, node.without):
                     if child is not None:
                         number += 1
                         heappush(waiting, (child.bound, depth - 1, number, child))
         except UnsolvedError:
-            return False
-        return True
+            return
+        self.closed = True
+        yield
 
     def proof(self, max_length: float = math.inf, expired: Callable[[], bool] = lambda: False) -> Proof:
         """Return the proof of a search that closed all nodes.
@@ -170,13 +153,6 @@ class Branching:
         """Return the greatest cost of a derivation that is better than the incumbent: the cutoff."""
         return (self._total - 1) // self._unit * self._unit
 
-    def _add(self, cut: frozenset[int]) -> None:
-        """Add a row for a cut: all actions that cross it, forbidden at the current node or not."""
-        self._rows.append(self._np.array(self._achievers.members(cut), dtype=self._np.int32))
-        self._cuts.append(cut)
-        self._active.append(True)
-        self._covering.add(self._rows[-1])
-
     def _go_to(self, node: _Node, targets: set[int]) -> None:
         """Change the bounds and rows of the relaxation to those of a node."""
         used, forbidden = self._relaxed_at
@@ -184,9 +160,9 @@ class Branching:
             upper = 0.0 if action in node.forbidden else 1.0 if action in node.used else math.inf
             self._covering.bound(action, float(action in node.used), upper)
         self._relaxed_at = node.used, node.forbidden
-        for row, cut in enumerate(self._cuts):
+        for row, cut in enumerate(self._relaxation.cuts):
             active = not cut.isdisjoint(targets)
-            if active != self._active[row]:
+            if active != self._active.get(row, True):
                 self._active[row] = active
                 self._covering.demand(row, float(active))
 
@@ -223,12 +199,12 @@ class Branching:
                 )  # rounding left a gap that floats do not close
                 break
             if number:
-                ends = len(values) > _ROUNDS
+                ends = len(values) > tuning.RELAXATION.node_rounds
             else:
-                ends = stalled(values, self._total / self._dearest - relaxed.value)
+                ends = stalled(values, self._total / self._relaxation.dearest - relaxed.value)
             if ends or not self._separate(cutter, shares, node, expired):
                 break
-        if number % _OFTEN == 0:
+        if number % tuning.RELAXATION.guess_interval == 0:
             self._try_guesses(shares, node)
             if self._closes(node.bound):
                 return True
@@ -252,7 +228,7 @@ class Branching:
         self.effort -= len(cutter.actions)
         cut = cutter.cut(chosen, cutter.actions)
         if cut is not None:
-            self._add(frozenset(cut.objects))
+            self._relaxation.add(frozenset(cut.objects))
             return set()
         self._record({self._actions[a] for a in chosen})
         return set(chosen)
@@ -260,8 +236,7 @@ class Branching:
     def _record(self, actions: set[int]) -> None:
         total = sum(self._costs[i] for i, a in enumerate(self._actions) if a in actions)
         if total < self._total:
-            self._total = total
-            self._better(actions)
+            self._total, self.incumbent = total, frozenset(actions)
 
     def _try_guesses(self, shares: Any, node: _Node) -> None:
         """Make derivations that the heuristic proposes the incumbent, where they are better."""
@@ -273,15 +248,9 @@ class Branching:
 
     def _separate(self, cutter: Cutter, shares: Any, node: _Node, expired: Callable[[], bool]) -> bool:
         """Add disjoint cuts that an LP solution violates; return whether there are any."""
-        cuts = disjoint_violated_cuts(cutter, node.used, shares.copy(), self._relative, self._random.random)
-        added = 0
-        while added < _CUTS and not self._stopped(expired):
-            self.effort -= len(cutter.actions)
-            cut = next(cuts, None)
-            if cut is None:
-                break
-            added += 1
-            self._add(frozenset(cut.objects))
+        budget = min(self.effort, tuning.RELAXATION.cuts * len(cutter.actions))
+        added, looks = self._relaxation.separate([cutter], node.used, shares.copy(), budget, expired)
+        self.effort -= looks
         return added > 0
 
     def _weigh(self, node: _Node) -> None:
@@ -290,8 +259,10 @@ class Branching:
         paid = sum(self._costs[a] for a in node.used) * PARTS
         reduced_costs[list(node.used)] = 0
         reduced_costs[list(node.forbidden)] = sum(self._costs) * PARTS  # more than cuts can take
-        dual_values = ((row, w) for row, w in enumerate(self._covering.weights()) if self._active[row])
-        weights = shared_out(dual_values, self._dearest * PARTS, self._rows, reduced_costs)
+        dual_values = (
+            (row, w) for row, w in enumerate(self._covering.weights()) if self._active.get(row, True)
+        )
+        weights = self._relaxation.shared_out(dual_values, reduced_costs)
         bound = paid + sum(weights.values())
         if bound > node.bound or not node.weights:
             node.bound = max(bound, node.bound)
@@ -301,20 +272,20 @@ class Branching:
         """Return the reduced cost of each action by the weights of a node, in parts."""
         reduced_costs = self._parts.copy()
         for row, weight in self._carrying(node):
-            reduced_costs[self._rows[row]] -= weight
+            reduced_costs[self._relaxation.rows[row]] -= weight
         return reduced_costs
 
     def _carrying(self, node: _Node) -> Iterator[tuple[int, int]]:
         """Return the rows with their weights, without rows that a used action satisfies."""
         for row, weight in node.weights:
-            if node.used.isdisjoint(self._rows[row].tolist()):
+            if node.used.isdisjoint(self._relaxation.rows[row].tolist()):
                 yield row, weight
 
     def _proof(self, node: _Node) -> tuple[Proof, set[int]]:
         """Return the proof of a closed node, and the forbidden actions that the proof relies on."""
         if node.hopeless is not None:
             cut = frozenset(node.hopeless.objects)
-            return Hopeless(self._stated(cut, node)), {*self._achievers.members(cut)} & node.forbidden
+            return Hopeless(self._stated(cut, node)), {*self._relaxation.members(cut)} & node.forbidden
         if node.without is None or node.using is None or node.action is None:
             return self._packing(node)
         proof, barred = self._proof(node.without)
@@ -333,7 +304,7 @@ class Branching:
         weights: list[tuple[Cut, tuple[Fraction]]] = []
         self._length_budget -= _PACKING_LENGTH
         for row, weight in self._carrying(node):
-            cut = self._stated(self._cuts[row], node)
+            cut = self._stated(self._relaxation.cuts[row], node)
             self._length_budget -= len(cut.objects) + len(cut.members)
             if self._length_budget < 0 or self._expired():
                 raise TooLongError
@@ -343,11 +314,8 @@ class Branching:
 
     def _stated(self, cut: frozenset[int], node: _Node) -> Cut:
         """Return a cut in the whole graph, with the actions that cross it at a node."""
-        crossing = (self._actions[a] for a in self._achievers.members(cut) if a not in node.forbidden)
-        if cut not in self._whole_cuts:
-            objects = self._achievers.widened(cut)
-            self._whole_cuts[cut] = tuple(sorted(self._objects[o] for o in objects))
-        return Cut(self._whole_cuts[cut], tuple(sorted(crossing)))
+        crossing = (self._actions[a] for a in self._relaxation.members(cut) if a not in node.forbidden)
+        return Cut(tuple(sorted(self._relaxation.whole(cut))), tuple(sorted(crossing)))
 
 
 def branched(
@@ -368,13 +336,13 @@ def branched(
     costs = [cost(action) for action in actions]
     if math.gcd(*costs) != 1 or 0 in costs:
         return None
-    cheaper: list[set[int]] = []
-    search = Branching(
-        *(graph, targets, actions, cost, cuts, total, lambda *_: (), cheaper.append, lambda _: None)
-    )
-    if not search.search(_LONG, expired) or cheaper:
+    search = Branching(graph, targets, actions, cost, cuts, total, lambda *_: ())
+    for _ in search.search(tuning.PROOF.search_budget, expired):
+        if search.incumbent is not None:
+            return None
+    if not search.closed:
         return None
     try:
-        return search.proof(_LENGTH, expired)
+        return search.proof(tuning.PROOF.proof_length, expired)
     except TooLongError:
         return None

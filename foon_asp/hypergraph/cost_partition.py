@@ -10,23 +10,16 @@ import math
 import random
 from collections.abc import Callable, Collection, Iterable, Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from foon_asp.hypergraph.covering import Covering, UnsolvedError, Weighed
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.covering import UnsolvedError, Weighed
 from foon_asp.hypergraph.cut import Cutter
-from foon_asp.hypergraph.first_achievers import FirstAchievers
 from foon_asp.hypergraph.hypergraph import Hypergraph
-from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
+from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 
-PARTS = 720720  # of 1: most weights are simple fractions
-_CUTS = 40  # cuts of all targets separated for one LP solution; more where targets need few actions
-_ALONE = 8  # times all actions: the total size of the cutters for single targets, at most
 _SMALL = 0.5  # of the actions: the size of a cutter for a single target, at most
-_STALLED = 8  # solutions after which a bound that hardly grows counts as optimal
-_GROWS = 0.01  # of the gap: what these solutions have to gain
-_OFTEN = 8  # solutions from one call of ``on_solution`` to the next
 _TWICE = 1.001  # a cut with a greater sum of LP values is not tight
-_LARGE = 2**62  # sums that do not fit into 64 bits
 _LOST = Fraction(1, 100)  # how much the rounded bound may be below the LP value
 
 
@@ -45,52 +38,6 @@ class SharedCosts(NamedTuple):
     tight: Sequence[frozenset[int]] = ()
 
 
-def share_costs(
-    graph: Hypergraph,
-    targets: Iterable[int],
-    actions: Collection[int],
-    cost: Callable[[int], int],
-    known_cuts: Iterable[Iterable[int]],
-    enough: int,
-    expired: Callable[[], bool],
-    on_solution: Callable[[SharedCosts], int] | None = None,
-    every: int = _OFTEN,
-) -> SharedCosts | None:
-    """Find landmark cuts of the targets and an optimal cost partition over them.
-
-    All of the actions can run, and actions of cost 0 count as used. ``known_cuts`` are the objects of cuts to
-    begin with. The search ends at a bound of ``enough``. After each ``every`` solutions, ``on_solution`` is
-    called with the cost partition so far, and returns the bound that is enough from then on, or 0 to end.
-    Returns ``None`` where the targets cannot be reached or are all available, and where HiGHS fails.
-    """
-    return _Sharing(graph, targets, actions, cost, expired).share(
-        known_cuts, enough, expired, on_solution, every
-    )
-
-
-def renumbered(
-    graph: Hypergraph, targets: Iterable[int], actions: Sequence[int]
-) -> tuple[Hypergraph, list[int], list[int]]:
-    """Return the graph of the given actions, the old numbers of its objects, and its targets."""
-    targets, start = tuple(targets), graph.start
-    objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))
-    number = {o: i for i, o in enumerate(objects)}
-    small = Hypergraph(
-        len(number),
-        [[number[o] for o in graph.needs[a] if o in number] for a in actions],
-        [[number[o] for o in graph.gives[a] if o in number] for a in actions],
-        (),
-    )
-    return small, objects, [number[o] for o in targets]
-
-
-def in_parts(costs: Sequence[int]) -> Any:
-    """Return an array of costs in parts: 64-bit integers where their sum fits, else Python integers."""
-    import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
-
-    return np.array(costs, dtype=np.int64 if sum(costs) * PARTS < _LARGE else object) * PARTS
-
-
 def _quotient(a: int, b: int) -> float:
     """Return ``a / b``, or infinity where no float is so large."""
     try:
@@ -99,33 +46,22 @@ def _quotient(a: int, b: int) -> float:
         return math.inf
 
 
-def shared_out(
-    dual_values: Iterable[tuple[int, float]], of_1: int, rows: Sequence[Any], capacity: Any
-) -> dict[int, int]:
-    """Return a feasible weight for each row: its dual value rounded to parts, limited by ``capacity``.
-
-    Capacity that rounding leaves over is used greedily. ``of_1`` are the parts of a weight of 1, ``rows`` the
-    columns of each row, and ``capacity`` the cost of each column in parts, which becomes its reduced cost.
-    """
-    wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in dual_values}
-    weights = dict.fromkeys(wanted, 0)
-    dearest_first = sorted(wanted, key=lambda row: -wanted[row])
-    for limited in (True, False):
-        for row in dearest_first:
-            upper = wanted[row] if limited else math.inf
-            weight = int(min(upper, capacity[rows[row]].min())) if upper else 0
-            if weight:
-                weights[row] += weight
-                capacity[rows[row]] -= weight
-    return weights
-
-
 def stalled(values: Sequence[float], lacks: float) -> bool:
-    """Return whether the last LP solutions hardly reduced the gap ``lacks`` between the bound and enough."""
-    return len(values) > _STALLED and values[-1] - values[-1 - _STALLED] < _GROWS * lacks
+    """Return whether the last solutions closed hardly any of the gap ``lacks``."""
+    return (
+        len(values) > tuning.RELAXATION.stalled_solutions
+        and values[-1] - values[-1 - tuning.RELAXATION.stalled_solutions]
+        < tuning.RELAXATION.stalled_growth * lacks
+    )
 
 
-class _Sharing:
+class CostPartitioning:
+    """An optimal cost partition over landmark cuts of the targets, found solution by solution.
+
+    All of the actions can run, and actions of cost 0 count as used. ``known_cuts`` are the objects of cuts to
+    begin with. ``converged`` is true where no further solution is of use, or time is up.
+    """
+
     def __init__(
         self,
         graph: Hypergraph,
@@ -133,113 +69,87 @@ class _Sharing:
         actions: Collection[int],
         cost: Callable[[int], int],
         expired: Callable[[], bool],
+        known_cuts: Iterable[Iterable[int]],
     ) -> None:
-        self._actions = sorted(actions)
-        plain, self._objects, small_targets = renumbered(graph, targets, self._actions)
-        self._achievers = FirstAchievers(plain, expired)
-        small = self._achievers.graph
-        self._cutter = Cutter(small, small_targets)
-        self._costs = [cost(a) for a in self._actions]
-        self._dearest = max(self._costs, default=1)
+        self._expired = expired
+        self._relaxation = relaxation = LandmarkRelaxation(graph, targets, actions, cost, expired)
+        self._cutter = Cutter(relaxation.graph, relaxation.targets)
         self._random = random.Random(0)
         self._single_target_cutters, self._other_targets_cutters = (
-            ([], []) if self._cutter.hopeless else self._by_target(small)
+            ([], []) if self._cutter.hopeless else self._by_target(relaxation.graph)
         )
-        self._relative = [
-            c / self._dearest for c in self._costs
-        ]  # between 0 and 1, as costs may be too great for floats
-        self._covering = Covering(self._relative)
-        self._rows: list[list[int]] = []
-        self._cuts: list[frozenset[int]] = []
-        self._whole_cuts: dict[int, frozenset[int]] = {}  # by row, the objects of its cut in the whole graph
         self._interior_point = True  # faster, until it is not exact enough
+        self._values: list[float] = []
+        self._last: Weighed | None = None
+        self.converged = False
+        if not self._cutter.hopeless:
+            relaxation.add_known(known_cuts)
 
-    def share(
-        self,
-        known_cuts: Iterable[Iterable[int]],
-        enough: int,
-        expired: Callable[[], bool],
-        on_solution: Callable[[SharedCosts], int] | None,
-        every: int,
-    ) -> SharedCosts | None:
+    def advance(self, enough: int, max_solutions: float = math.inf) -> SharedCosts | None:
+        """Solve, and separate violated cuts, up to a bound of ``enough`` or ``max_solutions`` times.
+
+        ``None`` where the targets cannot be reached or are all available, and where HiGHS fails.
+        """
         if self._cutter.hopeless or not self._cutter.targets:
+            self.converged = True
             return None
-        position = {o: i for i, o in enumerate(self._objects)}
-        for objects in known_cuts:
-            self._add(frozenset(position[o] for o in objects if o in position))
-        values: list[float] = []
-        last: Weighed | None = None
-        while last is None or not expired():
-            relaxed = self._solved(expired)
+        above = 100 * enough - 99  # hundredths: costs are whole, and so are bounds
+        solutions = 0
+        while self._last is None or not self._expired():
+            relaxed = self._solved()
             if relaxed is None:
                 break
-            last = relaxed
-            values.append(relaxed.value)
-            above = 100 * enough - 99  # hundredths: costs are whole, and so are bounds
-            lacks = _quotient(above, 100 * self._dearest) - relaxed.value
-            ends = lacks <= 0 or stalled(values, lacks)
-            if ends or not self._separate(relaxed.x, expired):
+            self._last = relaxed
+            self._values.append(relaxed.value)
+            solutions += 1
+            lacks = _quotient(above, 100 * self._relaxation.dearest) - relaxed.value
+            ends = lacks <= 0 or stalled(self._values, lacks)
+            if ends or not self._separate(relaxed.x):
                 if self._interior_point and not ends:
                     self._interior_point = False
                     continue
                 shared = self._shared(relaxed)
-                lost = Fraction(relaxed.value) * self._dearest - Fraction(shared.bound, PARTS)
+                lost = Fraction(relaxed.value) * self._relaxation.dearest - Fraction(shared.bound, PARTS)
                 if not self._interior_point or lost < _LOST:
+                    self.converged = True
                     return shared
                 self._interior_point = False
-            elif on_solution is not None and len(values) % every == 0:
-                shared = self._shared(relaxed)
-                enough = on_solution(shared)
-                if not enough:
-                    return shared
-        return None if last is None else self._shared(last)
+            elif solutions >= max_solutions:
+                return self._shared(relaxed)
+        self.converged = True
+        return None if self._last is None else self._shared(self._last)
 
-    def _solved(self, expired: Callable[[], bool]) -> Weighed | None:
+    def _solved(self) -> Weighed | None:
         """Return an LP solution; ``None`` where HiGHS finds none before time is up."""
         if self._interior_point:
-            relaxed = self._covering.interior_point(expired)
+            relaxed = self._relaxation.covering.interior_point(self._expired)
             if relaxed is not None:
                 return relaxed
             self._interior_point = False
         try:
-            solved = self._covering.solve(expired)
+            solved = self._relaxation.covering.solve(self._expired)
         except UnsolvedError:
             return None
-        return Weighed(solved.value, solved.x, self._covering.weights())
+        return Weighed(solved.value, solved.x, self._relaxation.covering.weights())
 
-    def _add(self, cut: frozenset[int]) -> None:
-        self._cuts.append(cut)
-        self._rows.append(self._achievers.members(cut))
-        self._covering.add(self._rows[-1])
-
-    def _separate(self, x: list[float], expired: Callable[[], bool]) -> bool:
+    def _separate(self, x: list[float]) -> bool:
         """Add disjoint cuts that an LP solution violates; return whether there are any."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
-        relative, random_number = np.array(self._relative), self._random.random
-        shares = np.where(relative > 0, x, 1.0)
-        any_added = False
-        effort = _CUTS * len(self._actions)
+        relaxation = self._relaxation
+        shares = np.where(relaxation.relative > 0, x, 1.0)
         self._random.shuffle(self._single_target_cutters)
-        for cutter in (*self._single_target_cutters, *self._other_targets_cutters):
-            cuts = disjoint_violated_cuts(cutter, (), shares, relative, random_number)
-            while effort > 0:
-                if expired():
-                    return False
-                effort -= len(cutter.actions)
-                cut = next(cuts, None)
-                if cut is None:
-                    break
-                any_added = True
-                self._add(frozenset(cut.objects))
-        return any_added
+        cutters = (*self._single_target_cutters, *self._other_targets_cutters)
+        budget = tuning.RELAXATION.cuts * len(relaxation.actions)
+        added, _ = relaxation.separate(cutters, (), shares, budget, self._expired)
+        return added > 0
 
     def _by_target(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
-        """Return a :class:`Cutter` for each target that needs few actions, and one for all other targets."""
-        count, targets = len(self._actions), self._cutter.targets
+        """Return cutters of single targets that need few of the actions, and one of all other targets."""
+        count, targets = len(self._relaxation.actions), self._cutter.targets
         alone: list[Cutter] = []
         others: list[int] = []
-        effort = _ALONE * count if len(targets) > 1 else 0
+        effort = tuning.RELAXATION.target_cutters * count if len(targets) > 1 else 0
         everything = bytearray(b"\1") * graph.size
         for target in targets:
             if effort > 0:
@@ -253,24 +163,17 @@ class _Sharing:
         return alone, together
 
     def _shared(self, solved: Weighed) -> SharedCosts:
-        capacity = in_parts(self._costs)
-        dual_values = [*solved.weights] + [0.0] * (
-            len(self._rows) - len(solved.weights)
-        )  # for rows added since
-        weights = shared_out(enumerate(dual_values), self._dearest * PARTS, self._rows, capacity)
-        shares = solved.x
-        tight = [row for row, members in enumerate(self._rows) if sum(shares[a] for a in members) < _TWICE]
+        import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
+
+        relaxation, shares = self._relaxation, np.array(solved.x)
+        capacity, rows = relaxation.in_parts(), relaxation.rows
+        dual_values = [*solved.weights] + [0.0] * (len(rows) - len(solved.weights))  # for rows added since
+        weights = relaxation.shared_out(enumerate(dual_values), capacity)
+        whole, cuts = relaxation.whole, relaxation.cuts
         return SharedCosts(
             sum(weights.values()),
-            dict(zip(self._actions, capacity.tolist(), strict=True)),
-            [(self._whole(row), weight) for row, weight in weights.items() if weight],
-            {a: shares[n] for n, a in enumerate(self._actions)},
-            [self._whole(row) for row in tight],
+            dict(zip(relaxation.actions, capacity.tolist(), strict=True)),
+            [(whole(cuts[row]), weight) for row, weight in weights.items() if weight],
+            dict(zip(relaxation.actions, solved.x, strict=True)),
+            [whole(cut) for cut, row in zip(cuts, rows, strict=True) if shares[row].sum() < _TWICE],
         )
-
-    def _whole(self, row: int) -> frozenset[int]:
-        """Return a row's cut as objects of the whole graph, widened to the same landmark there."""
-        if row not in self._whole_cuts:
-            objects = self._achievers.widened(self._cuts[row])
-            self._whole_cuts[row] = frozenset(self._objects[o] for o in objects)
-        return self._whole_cuts[row]

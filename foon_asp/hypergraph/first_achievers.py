@@ -8,9 +8,9 @@ add effects the same derivations remain, and fewer actions cross a cut: actions 
 from collections import deque
 from collections.abc import Callable, Iterable
 
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.hypergraph import Hypergraph
 
-_BITS = 400_000_000  # of the landmark sets of all objects: large graphs track landmarks among fewer objects
 _STEPS = 1000  # actions processed between two looks at the time
 
 
@@ -22,7 +22,11 @@ class FirstAchievers:
 
     def __init__(self, graph: Hypergraph, expired: Callable[[], bool] = lambda: False) -> None:
         self._plain = graph
-        tracked = graph.size if graph.size**2 <= _BITS else _BITS // graph.size
+        tracked = (
+            graph.size
+            if graph.size**2 <= tuning.RELAXATION.landmark_bits
+            else tuning.RELAXATION.landmark_bits // graph.size
+        )
         self._landmarks = _landmarks(graph, tracked, expired)
         self._before = [self._of(needed) for needed in graph.needs]
         self.graph = Hypergraph(

@@ -70,16 +70,14 @@ def derive(
                 for consumer in consumers.get(o, nobody):
                     count = missing[consumer] - 1
                     missing[consumer] = count
-                    if not count:
-                        own = price(consumer)
-                        if h_add:
-                            total = own + sum([costs[n] for n in needs[consumer] if n in costs])
-                        else:
-                            total = own + h_value
-                        bucket = buckets.get(total)
-                        if bucket is None:
-                            buckets[total] = [consumer]
-                            heappush(h_values, total)
-                        else:
-                            bucket.append(consumer)
+                    if count:
+                        continue
+                    before = sum([costs[n] for n in needs[consumer] if n in costs]) if h_add else h_value
+                    total = price(consumer) + before
+                    bucket = buckets.get(total)
+                    if bucket is None:
+                        buckets[total] = [consumer]
+                        heappush(h_values, total)
+                    else:
+                        bucket.append(consumer)
     return Derivations(costs, maker, h_actions)

@@ -10,12 +10,8 @@ from collections import deque
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.hypergraph import Hypergraph
-
-_FRESH = 64  # cuts, or one for each target, after which the h-values are computed anew
-# how often h-values are computed for as many cuts as there are objects: each computation looks at all of the
-# objects, and more of them would make cuts quadratic (benchmarks/shapes.py, grid by kitchen)
-_GUIDES = 32
 
 
 class WeightedCut(NamedTuple):
@@ -130,7 +126,7 @@ def landmark_cuts(
     """
     search = _Search(graph, allowed, cost, guide_costs)
     queue = deque(_Target(o) for o in sorted(targets, key=search.guide_key, reverse=True))
-    next_guide = max(_FRESH, len(queue))  # how many cuts there are when the guide is asked
+    next_guide = max(tuning.CUTS.guided_cuts, len(queue))  # how many cuts there are when the guide is asked
     effort = 0
     try:
         while queue and effort < max_members and not expired():
@@ -143,7 +139,10 @@ def landmark_cuts(
                 search.guide_costs = guide(search.reduced_cost)
                 waiting = sum(len(level_above.objects) for level_above in target.levels)
                 next_guide = len(search.cuts) + max(
-                    _FRESH, len(queue), waiting, len(search.guide_costs) // _GUIDES
+                    tuning.CUTS.guided_cuts,
+                    len(queue),
+                    waiting,
+                    len(search.guide_costs) // tuning.CUTS.guides,
                 )
                 level.begin()
             cut = search.cut(level, target.outer_zones)

@@ -3,10 +3,8 @@
 import math
 from collections.abc import Callable, Container
 
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.goal_graph import GoalGraph
-
-_DEEP = 100  # depth of the recursion
-_LOOKS = 200_000  # actions looked at in all: in cycles, an object can be asked about at very many limits
 
 
 def within_reach(
@@ -21,9 +19,9 @@ def within_reach(
     needs, achievers, start = graph.needs, graph.makers, graph.start
     lower_bounds: dict[int, float] = {}  # on the h_max of objects
     sufficient_limits: dict[int, float] = {}  # limits for which the answer was ``True``
-    budget = _LOOKS
+    budget = tuning.CUTS.lazy_looks
 
-    def reached(o: int, limit: float, deep: int = _DEEP) -> bool:
+    def reached(o: int, limit: float, deep: int = tuning.CUTS.lazy_depth) -> bool:
         nonlocal budget
         if lower_bounds.get(o, 0) > limit:
             return False

@@ -14,24 +14,23 @@ import random
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, cmp_to_key, partial
+from itertools import islice
 from operator import mul
 from typing import NamedTuple, Protocol
 
-from foon_asp.hypergraph.cost_partition import PARTS, SharedCosts, share_costs
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
 from foon_asp.hypergraph.covering import Covering
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.hypergraph.hypergraph import Hypergraph
+from foon_asp.hypergraph.landmark_relaxation import PARTS
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
 
 _SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
 _STEP = 0.99  # of the step of costs: bounds are rounded up
-_DISJOINT_CUTS = 40  # cuts with disjoint landmarks separated for one solution
-_ORDERS = 3  # orders in which cuts are grown before the relaxation counts as optimal
 _FINER = 1e-4  # factor from a cost level to the next in floats
-_MANY = 1000  # with more actions, rounded weights are tried before exact ones
-_GREEDY = 200  # known cuts that get weights greedily; the others get weights only from the LP
-_WORTH = 0.5  # of the actions: with more above the cutoff, they are fixed before anything else
 
 _EXCESS_COST_FACTOR = 1000  # times the goal of the proof: what exceeding a limit by 1 costs an LP solution
 
@@ -249,7 +248,9 @@ class Prover:
                     derivation, goal, used, forbidden | above_cutoff, known_cuts, cases, at_root
                 )
 
-            many = len(cutter.actions) > _MANY or (at_root and forbidden != self._forbidden)
+            many = len(cutter.actions) > tuning.PROOF.rounded_actions or (
+                at_root and forbidden != self._forbidden
+            )
             step = self._step() if many else Fraction(0)
             alone = cases is not None and not at_root
             proof, widened = self._packed(
@@ -348,7 +349,7 @@ class Prover:
         """
         targets = set(cutter.targets)
         known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
-        cuts = [self._widened(cutter, cut) for cut in known_cuts[:_GREEDY]]
+        cuts = [self._widened(cutter, cut) for cut in known_cuts[: tuning.PROOF.greedy_cuts]]
         cuts = [cut for cut in cuts if used.isdisjoint(cut.members)]
         packing, reduced_costs = self._share_out((cut, None) for cut in cuts)
         if self._reaches(packing, goal):
@@ -362,16 +363,7 @@ class Prover:
 
         enough = math.ceil(goal[0] / step)
 
-        def still_needed(shared: SharedCosts) -> int:
-            """Return the bound to reach, or 0 to end where enough actions are above the cutoff."""
-            cutoff = (enough - 1) * PARTS - shared.bound
-            above_cutoff = sum(reduced_cost > cutoff for reduced_cost in shared.reduced_costs.values())
-            return 0 if above_cutoff > _WORTH * len(cutter.actions) else enough
-
-        shared = share_costs(
-            *(self._graph, targets, cutter.actions, steps, known_cuts, enough, self._expired, still_needed),
-            every=1,
-        )
+        shared = self._optimal_partition(cutter, steps, known_cuts, enough)
         if shared is not None:
             weighted_cuts = [
                 (self._widened(cutter, cut), (weight * step / PARTS,)) for cut, weight in shared.cuts
@@ -385,6 +377,22 @@ class Prover:
                 return proof, cuts
             cuts += [cut for cut, _ in weighted_cuts]
         return self._searched(cutter, goal, cuts, step) if at_root else None, cuts
+
+    def _optimal_partition(
+        self, cutter: Cutter, cost: Callable[[int], int], known_cuts: Iterable[frozenset[int]], enough: int
+    ) -> SharedCosts | None:
+        """Return the optimal cost partition, or one by which enough actions are above the cutoff."""
+        partitioning = CostPartitioning(
+            self._graph, cutter.targets, cutter.actions, cost, self._expired, known_cuts
+        )
+        while True:
+            shared = partitioning.advance(enough, max_solutions=1)
+            if shared is None or partitioning.converged:
+                return shared
+            cutoff = (enough - 1) * PARTS - shared.bound
+            above_cutoff = sum(reduced_cost > cutoff for reduced_cost in shared.reduced_costs.values())
+            if above_cutoff > tuning.PROOF.fixed_share * len(cutter.actions):
+                return shared
 
     def _step(self) -> Fraction:
         """Return the step that all costs are multiples of, where they are one number each; else 0."""
@@ -412,7 +420,7 @@ class Prover:
         cutoff = (math.ceil(goal[0] / step) - 1) * step - sum(weight[0] for _, weight in packing.weights)
         remaining = ((a, reduced_costs.get(a, self._costs[a])[0]) for a in cutter.actions if a not in used)
         above_cutoff = frozenset(a for a, reduced_cost in remaining if reduced_cost > cutoff)
-        if len(above_cutoff) <= _WORTH * len(cutter.actions):
+        if len(above_cutoff) <= tuning.PROOF.fixed_share * len(cutter.actions):
             return None
         proof = others(above_cutoff, known_cuts)
         needed = above_cutoff.intersection(self._crossing(proof))
@@ -627,26 +635,21 @@ class _Node:
 
     def _separate(self) -> bool:
         """Add cuts that the LP solution violates; return whether there were any."""
-        return self._add_disjoint_cuts() or any(self._add_violated_cuts() for _ in range(_ORDERS))
+        return self._add_disjoint_cuts() or any(self._add_violated_cuts() for _ in range(tuning.PROOF.orders))
 
     def _add_disjoint_cuts(self) -> bool:
         """Add violated cuts with disjoint landmarks; return whether there were any."""
+        import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
+
+        shares = np.zeros(len(self._prover._costs))
+        shares[self._actions] = self.shares[: len(self._actions)]
+        costs = np.zeros(len(self._prover._costs))
+        costs[self._actions] = self._floats
         random_number = self._prover._random.random
-        shares = dict(zip(self._actions, self.shares, strict=False))
-        missed: list[Cut] = []
-        while len(missed) < _DISJOINT_CUTS:
-            random_costs = {
-                a: cost * (0.5 + random_number()) for a, cost in zip(self._actions, self._floats, strict=True)
-            }
-            cut = self._cutter.cut(
-                self._used, sorted(self._actions, key=lambda a: (-shares[a], random_costs[a]))
-            )
-            if cut is None or sum(shares[a] for a in cut.members) >= _SATISFIED:
-                break
-            missed.append(cut)
-            shares.update(dict.fromkeys(cut.members, 1.0))
-        self.admit(missed)
-        return bool(missed)
+        cuts = disjoint_violated_cuts(self._cutter, self._used, shares, costs, random_number, _SATISFIED)
+        violated = list(islice(cuts, tuning.RELAXATION.cuts))
+        self.admit(violated)
+        return bool(violated)
 
     def _add_violated_cuts(self) -> bool:
         """Add violated cuts grown around the incumbent less one action; return whether there were any.

@@ -6,16 +6,11 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem
 from foon_asp.hypergraph.reduction import Reduced, at_costs
 from foon_asp.problem import Objective
-
-_PRICES = 2  # prices that are tried
-_EASY = 1000  # with fewer units, clingo is faster than trying another price
-_MANY = 2000  # with more units, rising prices are tried
-_RISING = 8  # rising prices, at most
-_LOW = Fraction(3, 2)  # the lowest of the rising prices, times the mean cost of a unit
 
 Units = frozenset[int]
 
@@ -55,7 +50,7 @@ def limited(
         return first
     incumbent, over = first.tree, tree
     remaining: Units | None = None
-    for _ in range(_PRICES):
+    for _ in range(tuning.PRICES.prices):
         ratio = -(
             -(subproblem.total(incumbent) - subproblem.total(over)) // (count_of(over) - count_of(incumbent))
         )
@@ -63,7 +58,13 @@ def limited(
             break
         allowed = subproblem.total(incumbent) + ratio * max_count
         reduced = _reduced_at(
-            subproblem, subproblem.costs.priced(counts, ratio), objectives, expired, incumbent, allowed, _MANY
+            subproblem,
+            subproblem.costs.priced(counts, ratio),
+            objectives,
+            expired,
+            incumbent,
+            allowed,
+            tuning.PRICES.rising_units,
         )
         if reduced.tree is None:
             break
@@ -73,13 +74,13 @@ def limited(
         incumbent = reduced.tree if better else incumbent
         if remaining is None or len(reduced.units) < len(remaining):
             remaining = frozenset(reduced.units)
-        if len(remaining) > _MANY:
+        if len(remaining) > tuning.PRICES.rising_units:
             return _by_rising_prices(subproblem, objectives, incumbent, over, counts, max_count, expired)
         if count_of(reduced.tree) > max_count and subproblem.total(reduced.tree) > subproblem.total(over):
             over = reduced.tree
         elif not better:
             break
-        if len(remaining) <= _EASY:
+        if len(remaining) <= tuning.PRICES.easy_units:
             break
     return Limited(incumbent, remaining)
 
@@ -103,10 +104,10 @@ def _by_rising_prices(
     def count_of(units: Units) -> int:
         return sum(map(counts, units))
 
-    next_price = _LOW * subproblem.total(over) / len(over)
+    next_price = tuning.LOWEST_PRICE * subproblem.total(over) / len(over)
     greatest: tuple[Fraction, Fraction] | None = None  # bound, and its price
     subproblem = _restricted_to_cost(subproblem, incumbent, expired)
-    for _ in range(_RISING):
+    for _ in range(tuning.PRICES.rising_prices):
         tie = Fraction(
             subproblem.total(incumbent) - subproblem.total(over), count_of(over) - count_of(incumbent)
         )

@@ -1,49 +1,48 @@
-"""Presolve of a question: an incumbent, a lower bound, and the units that a better tree can have."""
+"""Presolve of a question: an incumbent, a lower bound, and the units that a better tree can have.
+
+Stages (:mod:`greedy_stages`, :mod:`relaxation_stages`) pass a :class:`Gap`, each a smaller one than the stage
+before it.
+"""
 
 import math
-import random
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.garbage import uncollected
-from foon_asp.hypergraph.action_landmarks import relevant_beside_landmarks
-from foon_asp.hypergraph.dominance import undominated
+from foon_asp.hypergraph import greedy_stages as greedy
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineError
 from foon_asp.hypergraph.extension import extended, extensions
-from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem, reduced_cost_fixing, reduced_costs_of
-from foon_asp.hypergraph.goal_graph import GoalGraph, graph_of
+from foon_asp.hypergraph.gap import Gap, Stage
+from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem
+from foon_asp.hypergraph.goal_graph import graph_of
 from foon_asp.hypergraph.h_values import derive
-from foon_asp.hypergraph.incumbent_trees import following, guessed, improved, irredundant, perturbation_search
-from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
+from foon_asp.hypergraph.incumbent_trees import irredundant
+from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.reductions import ALL, Reduction
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
+from foon_asp.hypergraph.task import Task
+from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import Objective, Problem
 
 if TYPE_CHECKING:  # few questions need it
     from foon_asp.hypergraph.cost_partition import SharedCosts
     from foon_asp.hypergraph.optimality_proof import Cases
 
-_LARGE = 40_000  # with more actions, it pays not to look at all of them
-_FIRST = 4000  # actions nearest to the goals, among which a first tree is looked for
-_ABLE = 50  # units kept of a required set while trees are looked for
-_MANY = 2000  # actions among which better trees are looked for
-_EASY = 600  # with fewer actions, clingo is faster than looking for better trees here
-_SMALL = 200  # with fewer actions, clingo is faster than optimal cost partitioning
-_ROUNDS = 24  # of cuts, better trees and reductions
-_ROUNDS_AT_COSTS = 6  # of cuts, better trees and reductions where other costs are tried
-_EFFORT = 3_000_000  # actions looked at while branching, before clingo is called: some 20 s of processor time
-_BRANCHING_GAP = 4, 3  # branching pays where 4 times the bound is at least 3 times the cost of the incumbent
-_TRIES, _THOROUGH = 10, 40  # times all actions: the effort of perturbation search, or half that of branching
-_DENSE = 20  # landmark actions per action, after which the LP is better than greedy cuts
-_SPARSE = 50, 0.01  # landmark actions, or share of all: larger landmarks make the LP slow and are weak
-_TWOFOLD = 2  # landmark actions per action: with more, the LP begins with sparse landmarks only
-_CLOSE = 0.98  # of the incumbent's cost: from such a bound on, branching is faster than more cuts
-_AMONG = 0.2  # of the actions: fewer are searched by branching, more by perturbation search
-_USED = 1e-4  # an action of a greater LP value counts as used by an LP solution
-_WORTH = 0.9  # of the actions: another round pays if no more remain
+Expired = Callable[[], bool]
+Guard = Callable[[], AbstractContextManager[object]]
+HValues = Mapping[int, int]
+Stages = Callable[[Task, Gap, HValues], Stage]
+
+
+class Course(NamedTuple):
+    """The stages from a first tree on, where little of a large network was looked at, and elsewhere."""
+
+    near_goals: Stages
+    whole: Stages
 
 
 class Reduced(NamedTuple):
@@ -98,41 +97,80 @@ def reduce(
     problem: Problem,
     objectives: Sequence[Objective],
     reductions: Collection[Reduction] = ALL,
-    expired: Callable[[], bool] = lambda: False,
+    expired: Expired = lambda: False,
     listener: Listener | None = None,
-    guard: Callable[[], AbstractContextManager[object]] = nullcontext,
-    redundant: bool = False,
-    other_rules: bool = False,
-    brief: bool = False,
+    guard: Guard = nullcontext,
 ) -> Reduced:
     """Reduce a problem to the units that a search for the best tree still has to look at.
 
     ``objectives`` is the list as it is optimized, with ``units`` in it, so that every unit costs something.
     Without reductions, the relevant units that can be executed remain. ``expired`` returns whether time is
-    up; longer computations are interrupted, as by ctrl-C, by the ``guard``. With ``other_rules``, trees have
-    to keep to rules unknown here, for which ``subproblem`` is computed; with ``redundant``, they may have
-    units that lead to no goal. ``brief`` computes any tree and ``subproblem`` only.
+    up; longer computations are interrupted, as by ctrl-C, by the ``guard``.
     """
     with uncollected():
         with guard():
-            reducer = _Reducer(
-                problem,
-                tuple(objectives),
-                frozenset(reductions),
-                expired,
-                listener or Listener(),
-                redundant,
-                other_rules,
-            )
-            reducer.brief = brief
-        return reducer.reduce(guard)
+            presolve = _Presolve(_task(problem, objectives, reductions, expired), listener, guard)
+        presolve.extend_or_run()
+        return presolve.reduced()
+
+
+def reduce_under_rules(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    reductions: Collection[Reduction] = ALL,
+    expired: Expired = lambda: False,
+    listener: Listener | None = None,
+    guard: Guard = nullcontext,
+    redundant: bool = False,
+) -> Reduced:
+    """Reduce a problem whose trees have to keep to rules unknown here, for which ``subproblem`` is computed.
+
+    With ``redundant``, its trees may have units that lead to no goal. Other arguments are those of
+    :func:`reduce`.
+    """
+    return _without_branching(problem, objectives, reductions, expired, listener, guard, redundant, ROUNDS)
+
+
+def bound_under_rules(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    reductions: Collection[Reduction] = ALL,
+    expired: Expired = lambda: False,
+    listener: Listener | None = None,
+    guard: Guard = nullcontext,
+    redundant: bool = False,
+) -> Reduced:
+    """Compute any tree and ``subproblem``; arguments are those of :func:`reduce_under_rules`."""
+    course = Course(_bound_lazily, _bound_once)
+    return _without_branching(problem, objectives, reductions, expired, listener, guard, redundant, course)
+
+
+def _without_branching(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    reductions: Collection[Reduction],
+    expired: Expired,
+    listener: Listener | None,
+    guard: Guard,
+    redundant: bool,
+    course: Course,
+) -> Reduced:
+    presolve_tuning = replace(tuning.PRESOLVE, branching_budget=0, landmark_actions=math.inf)
+    with uncollected():
+        with guard():
+            task = _task(problem, objectives, reductions, expired, presolve_tuning)
+            if redundant:  # costs of all actions are needed later
+                task = _with_costs(task, range(len(task.graph.needs)))
+            presolve = _Presolve(task, listener, guard)
+        presolve.run(course)
+        return presolve.reduced(redundant)
 
 
 def at_costs(
     subproblem: Subproblem,
     objectives: Sequence[Objective],
     costs: ExactCosts,
-    expired: Callable[[], bool],
+    expired: Expired,
     known_tree: Collection[int] = (),
     below: int = 0,
     max_actions: float = math.inf,
@@ -143,480 +181,311 @@ def at_costs(
     the incumbent; that is given up where more than ``max_actions`` remain and the first cuts exclude hardly
     any.
     """
+    presolve_tuning = replace(tuning.PRESOLVE, rounds=6, branching_budget=0, landmark_actions=math.inf)
+    if below:  # clingo gets the remaining actions with an incumbent
+        presolve_tuning = replace(presolve_tuning, relaxed_actions=presolve_tuning.easy_actions)
+    reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
     with uncollected():
-        reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
-        reducer = _Reducer(
-            subproblem.problem,
-            tuple(objectives),
-            frozenset(reductions),
-            expired,
-            Listener(),
-            subproblem.redundant,
-            other_rules=True,
-        )
-        reducer.costs = reducer.coarse = costs
-        if not isinstance(subproblem.remaining, range):  # other objectives may count no items
-            reducer.relevant = {
-                action for action in subproblem.remaining if action < len(reducer.graph.needs)
-            }
-        reducer.known_tree, reducer.below = subproblem.actions(known_tree), below
-        reducer.rounds, reducer.many = _ROUNDS_AT_COSTS, max_actions
-        if below:  # clingo gets the remaining actions with an incumbent
-            reducer.small = _EASY
-        return reducer.reduce(nullcontext)
+        task = _task(subproblem.problem, objectives, reductions, expired, presolve_tuning)
+        task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
+
+        def fixed_first(task: Task, gap: Gap, h_values: HValues) -> Stage:
+            if below and len(gap.candidates) > max_actions:
+                before = len(gap.candidates)
+                gap, cuts = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap))
+                gap = greedy.fix(task, gap, cuts)  # the cutoff does not depend on the incumbent
+                yield gap
+                if len(gap.candidates) > max(max_actions, task.tuning.worthwhile_share * before):
+                    return gap
+                h_values = derive(task.graph, gap.candidates, costs, h_add=False).cost
+            return (yield from rounds(task, gap, h_values))
+
+        presolve = _Presolve(task, None, nullcontext)
+        presolve.run(Course(rounds_near_goals, fixed_first), subproblem.actions(known_tree))
+        return presolve.reduced(subproblem.redundant)
 
 
-class _Reducer:
-    def __init__(
-        self,
-        problem: Problem,
-        objectives: tuple[Objective, ...],
-        reductions: frozenset[Reduction],
-        expired: Callable[[], bool],
-        listener: Listener,
-        redundant: bool,
-        other_rules: bool,
-        extended: bool = False,
-    ) -> None:
-        self.problem, self.objectives, self.reductions = problem, objectives, reductions
-        self.expired, self.listener, self.redundant, self.other_rules = (
-            expired,
-            listener,
-            redundant,
-            other_rules,
-        )
-        self.extended = extended  # costs of all actions are needed later
-        self.rounds, self.effort, self.small = _ROUNDS, _EFFORT, _SMALL
-        self.many = math.inf  # actions with which to give up if hardly any are left out
-        self.extending = False  # whether trees were left out before there were cuts
-        self.graph: GoalGraph = graph_of(problem, objectives)
-        self.coarse: Callable[[int], int] = CoarseCosts(problem, objectives[0])
-        self.thin = self.graph.thin(_ABLE, self.coarse)
-        self.relevant: Collection[int] | None = None  # actions that can run and lead to a goal
-        self.remaining: Collection[int]  # assigned before ``tree``
-        self.tree: set[int] = set()
-        self.known_tree: set[int] = set()  # a tree known from the start, if any
-        self.below = 0  # trees that cost less count, even if they are no better than the incumbent
-        self.costs: ExactCosts | None = None
-        self.bound = 0
-        self.cuts: Cuts | None = None
-        self.subproblem: Subproblem | None = None
-        self.shared: SharedCosts | None = None
-        self.tight: Sequence[frozenset[int]] = ()  # cuts to begin optimal cost partitioning with
-        self.once: dict[frozenset[int], None] = {}  # cuts tight at any time, in order
-        self.chance = random.Random(0)
-        self.cases: Cases = None
-        self.brief = False  # whether only cuts are wanted
-        self.proved = False  # whether the tree is optimal because its cost is optimal for the goals alone
+def _task(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    reductions: Collection[Reduction],
+    expired: Expired,
+    presolve_tuning: PresolveTuning | None = None,
+) -> Task:
+    presolve_tuning = presolve_tuning or tuning.PRESOLVE
+    graph, coarse = graph_of(problem, objectives), CoarseCosts(problem, objectives[0])
+    return Task(
+        problem,
+        tuple(objectives),
+        frozenset(reductions),
+        expired,
+        graph,
+        graph.thin(presolve_tuning.required_achievers, coarse),
+        coarse,
+        presolve_tuning,
+        range(len(graph.needs)),
+    )
 
-    def reduce(self, guard: Callable[[], AbstractContextManager[object]]) -> Reduced:
-        """Reduce the network in stages, from cheap to expensive, and return the result.
 
-        The ``guard`` interrupts the longer stages.
-        """
-        ended = settled = hopeless = False
-        try:
-            h_values = self._by_extending(guard)
-            if self.proved:
-                return self._result(settled=True)
-            with guard():
-                h_values = h_values or self._near_goals() or self._whole()
-                hopeless = h_values is None
-                if h_values is not None and self.reductions:
-                    if not self.extending:  # else the listener has it already
-                        if self.known_tree:
-                            self.tree = min(
-                                self.tree, self.known_tree, key=lambda tree: sum(map(self.coarse, tree))
-                            )
-                        self._take(irredundant(self.graph, self.tree, self.coarse))
-                    settled = self._reduce(h_values)
-                ended = True
-        except KeyboardInterrupt:
-            if not (self.tree or hopeless):
-                raise
-        if hopeless:
-            return Reduced(None, (), False, None, 0, None)
-        result = self._result(settled)
-        return result if ended else result._replace(interrupted=True)
-
-    def _by_extending(self, guard: Callable[[], AbstractContextManager[object]]) -> dict[int, int] | None:
-        """Keep the units of cheap trees for the goals alone, and of cheap extensions to the required sets.
-
-        Every tree contains one for the goals alone, which costs no more; the other units cost at most the
-        difference. A tree as cheap as the best one for the goals alone is optimal. Returns h-values of
-        objects, or ``None`` where nothing is required or this relaxation does not help.
-        """
-        graph, restriction, limits = self.graph, self.problem.restriction, Reduction.DEAR in self.reductions
-        if self.other_rules or restriction is None or not restriction.required or not limits:
-            return None
-        goals_only = _Reducer(
-            replace(self.problem, restriction=replace(restriction, required=())),
-            self.objectives,
-            self.reductions,
-            self.expired,
-            Bounds(self.listener),
-            self.redundant,
-            self.other_rules,
-            extended=True,
-        )
-        reduced = goals_only.reduce(guard)
-        costs, subproblem = goals_only.costs, goals_only.subproblem
-        if costs is None or subproblem is None:
-            return None
-        with guard():
-            tree = extended(self.thin, goals_only.tree, costs, len(graph.needs) // 4)
-            if tree is None:
-                return None
-            self.remaining = range(len(graph.needs))
-            self._take(irredundant(graph, tree, costs))
-            if reduced.interrupted:
-                raise KeyboardInterrupt
-            only_better, total = Reduction.BOUNDS in self.reductions, self._total(costs)
-            optimal = (
-                reduced.settled and self.tree == goals_only.tree if costs.doubt else total == reduced.bound
-            )
-            if only_better and optimal:
-                self.costs, self.bound, self.cuts = costs, reduced.bound, reduced.cuts
-                self.shared, self.cases, self.proved = reduced.shared, reduced.cases, True
-                return None
-            limit = total - only_better
-            candidates = {*subproblem.actions_within(limit, self.expired), *self.tree}
-            candidates |= extensions(
-                graph, candidates, costs, limit - reduced.bound + costs.doubt, self.expired
-            )
-            if self.expired():
-                raise KeyboardInterrupt
-            derivations = derive(graph, candidates, self.coarse, h_add=False)
-            self.remaining, self.extending = graph.cone(derivations.h_actions)[0], True
-        return derivations.cost
-
-    def _near_goals(self) -> dict[int, int] | None:
-        """Find a first tree among the actions nearest to the goals, so that large networks are read lazily.
-
-        Most of a large network is too far from the goals for a good tree, and is never looked at. Returns
-        h-values of objects, or ``None`` where the network is small or no tree is found.
-        """
-        graph = self.graph
-        size = len(graph.needs)
-        if not self.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= _LARGE:
-            return None
-        all_actions = range(size)
-        candidates = neighbourhood(self.thin, all_actions, self.coarse, math.inf, enough=_FIRST)
-        subproblem = (
-            restricted_subproblem(self.thin, candidates, self.coarse, size // 4)
-            if len(candidates) >= _FIRST
-            else None
-        )
-        if subproblem is None:
-            return None
-        self.remaining = all_actions
-        derivations, self.tree = subproblem
-        return derivations.cost
-
-    def _whole(self) -> dict[int, int] | None:
-        """Keep the relevant actions that can run; return h-values of objects, ``None`` without a tree."""
-        graph = self.graph
-        cone = graph.cone()[0] if self.relevant is None else self.relevant
-        derivations = derive(graph, cone, self.coarse, h_add=False)
-        tree = derivations.tree(graph, graph.goals)
-        if tree is None:
-            return None
-        self.remaining = derivations.h_actions
-        if len(derivations.h_actions) < len(cone):  # others may lead only to actions that cannot run
-            self.remaining, _ = graph.cone(derivations.h_actions)
-        self.tree = self.tree or tree
-        return derivations.cost
-
-    def _reduce(self, h_values: dict[int, int]) -> bool:
-        """Repeat bounds, heuristics and reductions up to a fixpoint; return whether optimality is proved."""
+def _with_costs(task: Task, actions: Collection[int]) -> Task:
+    """Return the task with exact costs of actions, unless it has costs or rates are too fine for them."""
+    if task.costs is None:
         with suppress(TooFineError):
-            all_costs = range(len(self.graph.needs)) if self.redundant or self.extended else self.remaining
-            self.costs = self.costs or ExactCosts(self.problem, self.objectives, all_costs)
-        costs = self.costs
-        if costs is not None and self.brief:
-            self._bound(costs, h_values)
-            return False
-        if costs is not None and not isinstance(self.remaining, range) and len(self.remaining) > _EASY:
-            self._follow_added(costs)
-        if costs is not None and costs.limited:  # any tree below the limit will do
-            self._improve(costs, Cuts(0, {}, []), thorough=False)
-            if self._met(costs, Cuts(0, {}, [])):
-                return True
-        thorough = False  # as a last resort
-        for turn in range(self.rounds):
-            previous = len(self.remaining), self.tree
-            if costs is not None and self.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
-                cuts = self._bound(costs, h_values)
-                lazy = isinstance(self.remaining, range)  # most of it is not relevant, and goes anyway
-                if not turn and self.below and not lazy and len(self.remaining) > self.many:
-                    self._fix_by_reduced_cost(costs, cuts)  # the cutoff does not depend on the incumbent
-                    if len(self.remaining) > max(self.many, _WORTH * previous[0]):
-                        return False
-                optimal = self._met(costs, cuts)
-                if not optimal and not self.expired():
-                    self._improve(costs, cuts, thorough)
-                    optimal = self._met(costs, cuts)
-                if optimal:
-                    return True
-                if Reduction.DEAR in self.reductions and not self.expired():
-                    self._fix_by_reduced_cost(costs, cuts)
-            if self.expired():
-                break
-            if isinstance(self.remaining, range):
-                self._whole()
-            if costs is not None and Reduction.DOMINATED in self.reductions:
-                self.remaining = undominated(self.graph, self.remaining, costs)
-            changed = (len(self.remaining), self.tree) != previous
-            if not changed and Reduction.FORCED in self.reductions and len(self.remaining) <= _MANY:
-                self.remaining = relevant_beside_landmarks(self.graph, self.remaining)
-                changed = len(self.remaining) < previous[0]
-            slow = len(self.remaining) > max(_MANY, _WORTH * previous[0])  # another turn would bring little
-            if (slow or not changed) and costs is not None and not thorough:
-                if self._share_costs(costs) or self._branch(costs):
-                    return True
-                changed = (len(self.remaining), self.tree) != previous
-            if not changed and (thorough or len(self.remaining) <= _EASY):
-                break
-            thorough = not changed
-            h_values = derive(self.graph, self.remaining, costs or self.coarse, h_add=False).cost
-        return False
+            return replace(task, costs=ExactCosts(task.problem, task.objectives, actions))
+    return task
 
-    def _branch(self, costs: ExactCosts) -> bool:
-        """Branch and cut over the remaining actions, up to an effort; return whether optimality is proved.
 
-        Where rounding may decide, and where rules restrict trees, branching is left to clingo.
-        """
-        if not self._branches(costs):
-            return False
-        total, (parts, enough) = self._total(costs), _BRANCHING_GAP
-        if len(self.remaining) <= _SMALL or self.bound * parts < total * enough:
-            return False
-        self._improve_on(costs)
-        total = self._total(costs)
-        from foon_asp.hypergraph.branch_and_bound import Branching  # noqa: PLC0415 (few questions need it)
+def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
+    """Repeat bounds, better trees and reductions, until nothing changes or the incumbent is optimal."""
+    costs, limits = task.costs, task.tuning
+    if costs is not None and len(gap.candidates) > limits.easy_actions:
+        gap = greedy.follow_h_add(task, gap)
+        yield gap
+    if costs is not None and costs.limited:  # any tree below the limit will do
+        gap = greedy.improve(task, gap, greedy.NO_CUTS, thorough=False)
+        gap = gap.closed() if greedy.meets(task, gap, greedy.NO_CUTS) else gap
+        yield gap
+    thorough = False  # as a last resort
+    for _ in range(0 if gap.proved else limits.rounds):
+        before = gap
+        if costs is not None and task.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
+            guide = greedy.guide_by(task, gap)
+            gap = yield from greedy.tighten(task, gap, h_values, guide, thorough)
+        if gap.proved or task.expired():
+            return gap
+        gap = greedy.prune_dominated(task, gap)
+        if not _differs(gap, before):
+            gap = greedy.prune_beside_landmarks(task, gap)
+        yield gap
+        slow = len(gap.candidates) > max(
+            limits.neighbourhood_actions, limits.worthwhile_share * len(before.candidates)
+        )  # another turn would bring little
+        if (slow or not _differs(gap, before)) and costs is not None and not thorough:
+            gap = yield from _relaxed(task, gap)
+            if gap.proved:
+                return gap
+        changed = _differs(gap, before)
+        if not changed and (thorough or len(gap.candidates) <= limits.easy_actions):
+            return gap
+        thorough = not changed
+        h_values = derive(task.graph, gap.candidates, costs or task.coarse, h_add=False).cost
+    return gap
 
-        graph, remaining = self.graph, self.remaining
 
-        def on_bound(bound: int) -> None:
-            if bound > self.bound:
-                self.bound = bound
-                self.listener.bound(costs, bound)
+def _differs(gap: Gap, before: Gap) -> bool:
+    """Return whether there are fewer candidates, or another incumbent."""
+    return (len(gap.candidates), gap.incumbent) != (len(before.candidates), before.incumbent)
 
-        cuts = [cut.objects for cut in self.cuts.cuts] if self.cuts else []
-        cuts += [objects for objects, _ in self.shared.cuts] if self.shared else []
-        branching = Branching(
-            *(graph, graph.goals, remaining, costs, cuts, total),
-            lambda shares, without: guessed(graph, remaining, costs, shares, without),
-            *(self._take, on_bound),
-        )
-        settled = branching.search(self.effort, self.expired)
-        self.effort = branching.effort
-        if settled:
-            self.cases = branching.cases()
-            on_bound(self._total(costs))
-            return True
-        if self.shared is not None and self._total(costs) < total:
-            self._apply(costs, self.shared)
-        return False
 
-    def _branches(self, costs: ExactCosts) -> bool:
-        """Return whether branching may prove a tree optimal."""
-        only_better = Reduction.BOUNDS in self.reductions and self._total(costs) >= self.below
-        return only_better and not (costs.doubt or costs.limited or self.other_rules) and self.effort > 0
+def _relaxed(task: Task, gap: Gap) -> Stage:
+    """Go on with linear programs, where there are enough candidates for these to be of use."""
+    if len(gap.candidates) <= task.tuning.relaxed_actions:
+        return gap
+    from foon_asp.hypergraph.relaxation_stages import (  # noqa: PLC0415 (few questions need it)
+        branch,
+        partition_costs,
+    )
 
-    def _share_costs(self, costs: ExactCosts) -> bool:
-        """Reduce by optimal cost partitioning; return whether optimality is proved."""
-        from foon_asp.hypergraph.cost_partition import share_costs  # noqa: PLC0415 (few questions need it)
+    gap = yield from partition_costs(task, gap)
+    return gap if gap.proved else (yield from branch(task, gap))
 
-        if not self.tight and self.cuts:
-            min_members, ratio = _SPARSE
-            dense = sum(len(cut.members) for cut in self.cuts.cuts) > _TWOFOLD * len(self.remaining)
-            max_members = max(min_members, ratio * len(self.remaining)) if dense else math.inf
-            self.tight = [cut.objects for cut in self.cuts.cuts if len(cut.members) <= max_members]
-        before, settled, almost_closed = math.inf, False, False
 
-        def on_solution(shared: "SharedCosts") -> int:
-            nonlocal settled, almost_closed
-            settled = self._followed(costs, shared, _TRIES)
-            total = self._total(costs)
-            almost_closed = self._branches(costs) and self.bound > total * _CLOSE
-            return 0 if settled or almost_closed or len(self.remaining) < _WORTH * before else total
+def rounds_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
+    """Look at what a large network has near the goals, and go on with the candidates that remain.
 
-        while (
-            not (settled or almost_closed)
-            and self.small < len(self.remaining) < _WORTH * before
-            and not self.expired()
-        ):
-            before = len(self.remaining)
-            goals, total = self.graph.goals, self._total(costs)
-            shared = share_costs(
-                self.graph, goals, self.remaining, costs, self.tight, total, self.expired, on_solution
-            )
-            if shared is None:
-                break
-            self.tight = shared.tight
-            settled = settled or self._followed(costs, shared, _THOROUGH)
-        return settled
-
-    def _followed(self, costs: ExactCosts, shared: "SharedCosts", tries: int) -> bool:
-        """Look for a better tree by an LP solution, and reduce by it; return whether optimality is proved."""
-        from foon_asp.hypergraph.cost_partition import PARTS  # noqa: PLC0415 (few questions need it)
-
-        candidates = {action for action, share in shared.shares.items() if share > _USED} | self.tree
-        for tree in following(self.graph, self.remaining, costs, shared):
-            candidates |= tree
-            self._take_better(tree, costs)
-        least = -(-shared.bound // PARTS)
-        if least < self._total(costs):
-            if len(candidates) <= _AMONG * len(self.remaining):
-                cuts, effort = [cut for cut, _ in shared.cuts], 2 * tries * len(self.remaining)
-                self._search_among(candidates, costs, cuts, effort)
-            else:
-                tree = perturbation_search(
-                    *(self.graph, self.remaining, self.tree, costs, least, self.expired),
-                    *(shared.shares, self.chance.random, tries),
-                )
-                self._take_better(tree, costs)
-        return self._apply(costs, shared)
-
-    def _search_among(
-        self, actions: Collection[int], costs: ExactCosts, cuts: Sequence[frozenset[int]], effort: int
-    ) -> None:
-        """Look for a better tree among a few actions, by branching up to an effort (sub-MIP heuristic)."""
-        from foon_asp.hypergraph.branch_and_bound import Branching  # noqa: PLC0415 (few questions need it)
-
-        graph = self.graph
-        runnable = derive(graph, actions, costs, h_add=False).h_actions
-        search = Branching(
-            *(graph, graph.goals, runnable, costs, cuts, self._total(costs)),
-            lambda shares, without: guessed(graph, runnable, costs, shares, without),
-            lambda tree: self._take_better(irredundant(graph, tree, costs), costs),
-            lambda _: None,
-        )
-        search.search(effort, self.expired)
-
-    def _apply(self, costs: ExactCosts, shared: "SharedCosts") -> bool:
-        """Apply the bound and the reduced costs of a cost partition; return whether optimality is proved.
-
-        Costs of trees are whole, so bounds are rounded up.
-        """
-        from foon_asp.hypergraph.cost_partition import PARTS  # noqa: PLC0415 (few questions need it)
-
-        total = self._total(costs)
-        self.once.update(dict.fromkeys(shared.tight))
-        bound = min(-(-shared.bound // PARTS), total)
-        if bound > self.bound:
-            self.bound, self.shared = bound, shared
-            self.listener.bound(costs, bound)
-        only_better = Reduction.BOUNDS in self.reductions
-        if Reduction.DEAR in self.reductions:
-            limit = (max(total, self.below) + costs.doubt - only_better) * PARTS - shared.bound
-            self.remaining = reduced_cost_fixing(
-                self.graph, self.remaining, shared.reduced_costs.__getitem__, limit, self.expired
-            )
-        if Reduction.DOMINATED in self.reductions:
-            self.remaining = undominated(self.graph, self.remaining, costs)
-        return only_better and not costs.doubt and bound == total >= self.below
-
-    def _follow_added(self, costs: ExactCosts) -> None:
-        """Make the tree that follows h_add the incumbent, if it is better."""
-        tree = derive(self.graph, self.remaining, costs, h_add=True).tree(self.graph, self.graph.goals)
-        self._take_better(irredundant(self.graph, tree or self.tree, costs), costs)
-
-    def _bound(self, costs: ExactCosts, h_values: dict[int, int]) -> Cuts:
-        """Compute landmark cuts and raise the bound; the remaining actions always contain a tree."""
-        lazy = isinstance(self.remaining, range)  # h-values would have to look at all actions
-        cuts = landmark_cuts(
-            self.graph,
-            self.graph.goals,
-            self.remaining,
-            costs,
-            h_values,
-            self.expired,
-            None
-            if lazy
-            else lambda reduced_cost: derive(self.graph, self.remaining, reduced_cost, h_add=False).cost,
-            math.inf if self.other_rules or self.brief else _DENSE * max(_EASY, len(self.remaining)),
-        )
-        if self.subproblem is None and not cuts.interrupted and not self.extending:  # no reduction so far
-            self.subproblem = Subproblem(
-                self.problem, self.graph, self.remaining, costs, cuts, self.redundant
-            )
-        if self.cuts is None or cuts.bound > self.cuts.bound:
-            self.cuts = cuts
-        bound = min(cuts.bound, self._total(costs))
-        if bound > self.bound:
-            self.bound = bound
-            self.listener.bound(costs, bound)
-        if cuts.interrupted:
+    h-values of reduced costs would look at all actions, so no guide is asked.
+    """
+    if task.costs is not None:
+        gap = yield from greedy.tighten(task, gap, h_values, None, thorough=False)
+    if gap.proved:
+        return gap
+    if len(gap.candidates) == len(task.graph.needs):
+        if task.expired():  # before any reduction
             raise KeyboardInterrupt
-        return cuts
+        opening = greedy.relevant(task, gap)
+        assert opening is not None
+        gap, _ = opening
+    gap = greedy.prune_dominated(task, gap)
+    yield gap
+    if not task.expired():
+        h_values = derive(task.graph, gap.candidates, task.costs or task.coarse, h_add=False).cost
+        gap = yield from rounds(task, gap, h_values)
+    return gap
 
-    def _met(self, costs: ExactCosts, cuts: Cuts) -> bool:
-        """Return whether cuts prove the incumbent optimal, and no tree below ``below`` is wanted."""
-        enough = Reduction.BOUNDS in self.reductions and self._total(costs) >= self.below
-        return enough and costs.met(cuts, self.tree)
 
-    def _improve(self, costs: ExactCosts, cuts: Cuts, thorough: bool) -> None:
-        """Look for better trees in the reduced-cost neighbourhood."""
-        reduced_cost = reduced_costs_of(costs, cuts)
-        candidates = neighbourhood(
-            self.thin, self.remaining, reduced_cost, self._total(costs) - cuts.bound, enough=_MANY
-        )
-        better = improved(
-            self.graph, candidates | self.tree, self.tree, costs, reduced_cost, self.expired, thorough
-        )
-        if better is not self.tree:
-            self._take(better)
+ROUNDS = Course(rounds_near_goals, rounds)
 
-    def _improve_on(self, costs: ExactCosts) -> None:
-        """Look thoroughly for better trees, again from each new incumbent, up to an effort."""
-        effort, previous = _EFFORT, set[int]()
-        while self.tree != previous and not self.expired():
-            previous = self.tree
-            effort -= len(previous) * len(self.remaining)
-            if effort < 0:
-                break
-            self._improve(costs, self.cuts or Cuts(0, {}, []), thorough=True)
 
-    def _fix_by_reduced_cost(self, costs: ExactCosts, cuts: Cuts) -> None:
-        """Remove the actions above the cutoff by reduced-cost fixing."""
-        limit = max(self._total(costs), self.below) - cuts.bound + costs.doubt
-        if Reduction.BOUNDS in self.reductions:
-            limit -= 1  # trees as good as the incumbent are not needed
-        self.remaining = reduced_cost_fixing(
-            self.graph, self.remaining, reduced_costs_of(costs, cuts), limit, self.expired
-        )
+def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
+    """Bound trees by landmark cuts."""
+    if task.costs is not None:
+        gap = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap)).gap
+        yield gap
+    return gap
 
-    def _take(self, tree: set[int]) -> None:
-        self.tree = tree
-        self.listener.tree(self._units(tree))
 
-    def _take_better(self, tree: set[int], costs: ExactCosts) -> None:
-        if sum(map(costs, tree)) < self._total(costs):
-            self._take(tree)
+def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
+    """Bound trees by landmark cuts, which are not guided: that would look at all actions."""
+    if task.costs is not None:
+        gap = greedy.bound(task, gap, h_values, None).gap
+        yield gap
+    return gap
 
-    def _total(self, costs: ExactCosts) -> int:
-        return sum(map(costs, self.tree))
+
+def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
+    """Find a first tree among the actions nearest to the goals, so that large networks are read lazily.
+
+    Most of a large network is too far from the goals for a good tree, and is never looked at. Returns the gap
+    over all actions and h-values of objects, ``None`` where the network is small or no tree is found.
+    """
+    size, limits = len(task.graph.needs), task.tuning
+    if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= limits.lazy_actions:
+        return None
+    all_actions = range(size)
+    nearest = neighbourhood(task.thin, all_actions, task.coarse, math.inf, enough=limits.first_actions)
+    if len(nearest) < limits.first_actions:
+        return None
+    narrowed = restricted_subproblem(task.thin, nearest, task.coarse, size // 4)
+    if narrowed is None:
+        return None
+    derivations, tree = narrowed
+    return Gap(frozenset(tree), 0, all_actions), derivations.cost
+
+
+class _Presolve:
+    """A run of the stages of a task: its last gap, ``None`` before there is a tree.
+
+    ``ended`` is true where nothing interrupted it.
+    """
+
+    def __init__(self, task: Task, listener: Listener | None, guard: Guard) -> None:
+        self.task, self.ended = task, False
+        self.gap: Gap | None = None
+        self._listener, self.guard = listener or Listener(), guard
+
+    @property
+    def bounds_listener(self) -> Listener:
+        """The listener for trees of another task, whose bounds hold here too."""
+        return Bounds(self._listener)
+
+    def guarded(self, step: Callable[[], None]) -> None:
+        """Take a step that may be interrupted, which raises ``KeyboardInterrupt`` before there is a tree."""
+        self.ended = False
+        try:
+            with self.guard():
+                step()
+                self.ended = True
+        except KeyboardInterrupt:
+            if self.gap is None and not self.ended:
+                raise
+
+    def run(self, course: Course, known_tree: Collection[int] = ()) -> None:
+        """Find a first tree, and take a course from there."""
+        self.guarded(lambda: self._run(course, known_tree))
+
+    def _run(self, course: Course, known_tree: Collection[int]) -> None:
+        task, stages = self.task, course.near_goals
+        opening = _near_goals(task)
+        if opening is None:
+            opening, stages = greedy.relevant(task, Gap(frozenset(), 0, ())), course.whole
+        if opening is None:
+            return
+        self.gap, h_values = opening
+        if task.reductions:
+            trees = [self.gap.incumbent, known_tree] if known_tree else [self.gap.incumbent]
+            tree = min(trees, key=lambda tree: sum(map(task.coarse, tree)))
+            self.report(self.gap.with_incumbent(irredundant(task.graph, tree, task.coarse)))
+            self.take(stages, h_values)
+
+    def extend_or_run(self) -> None:
+        """Take all rounds, from trees for the goals alone where sets are required and that helps."""
+        restriction = self.task.problem.restriction
+        if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:
+            _extend(self)
+        if self.gap is None:
+            self.run(ROUNDS)
+
+    def take(self, stages: Stages, h_values: HValues) -> None:
+        """Take stages from the gap; report trees and bounds on the way."""
+        assert self.gap is not None
+        self.task = task = _with_costs(self.task, self.gap.candidates)
+        for gap in stages(task, replace(self.gap, budget=task.tuning.branching_budget), h_values):
+            self.report(gap)
+
+    def report(self, gap: Gap) -> None:
+        """Go on to another gap; report its tree and its bound where these are new."""
+        before, self.gap = self.gap, gap
+        if before is None or gap.incumbent is not before.incumbent:
+            self._listener.tree(self._units(gap.incumbent))
+        if self.task.costs is not None and before is not None and gap.lower_bound > before.lower_bound:
+            self._listener.bound(self.task.costs, gap.lower_bound)
 
     def _units(self, actions: Collection[int]) -> frozenset[int]:
-        return frozenset(a for a in actions if a < self.graph.units)
+        return frozenset(a for a in actions if a < self.task.graph.units)
 
-    def _result(self, settled: bool) -> Reduced:
-        """Return the result of the reductions so far."""
-        tree = self._units(self.tree)
-        early = isinstance(self.remaining, range)  # time was up before any reduction
-        units = tree if settled or early else tree | self._units(self.remaining)
+    def reduced(self, redundant: bool = False) -> Reduced:
+        """Return the result; trees of its subproblem may be ``redundant``."""
+        task, gap = self.task, self.gap
+        if gap is None:
+            return Reduced(None, (), False, None, 0, None)
+        evidence, tree = gap.evidence, self._units(gap.incumbent)
+        units = tree if gap.proved or not self.ended else tree | self._units(gap.candidates)
+        subproblem = None
+        if evidence.first is not None and task.costs is not None:
+            cuts, actions = evidence.first
+            subproblem = Subproblem(task.problem, task.graph, actions, task.costs, cuts, redundant)
         return Reduced(
-            tree,
-            tuple(sorted(units)),
-            settled,
-            self.costs,
-            self.bound,
-            self.cuts,
-            early and not settled,
-            self.subproblem,
-            self.shared,
-            self.cases,
-            tuple(self.once),
+            *(tree, tuple(sorted(units)), gap.proved, task.costs, gap.lower_bound, evidence.cuts),
+            *(not self.ended, subproblem, evidence.shared, evidence.cases, evidence.tight),
         )
+
+
+def _extend(presolve: _Presolve) -> None:
+    """Keep the units of cheap trees for the goals alone, and of cheap extensions to the required sets.
+
+    Every tree contains one for the goals alone, which costs no more; the other units cost at most the
+    difference. A tree as cheap as the best one for the goals alone is optimal. Leaves no gap where this
+    relaxation does not help.
+    """
+    task = presolve.task
+    graph, restriction = task.graph, task.problem.restriction
+    assert restriction is not None
+    alone = replace(task.problem, restriction=replace(restriction, required=()))
+    goals_task = _task(alone, task.objectives, task.reductions, task.expired)
+    goals_task = _with_costs(goals_task, range(len(goals_task.graph.needs)))
+    goals_only = _Presolve(goals_task, presolve.bounds_listener, presolve.guard)
+    goals_only.run(ROUNDS)
+    reduced, gap, costs = goals_only.reduced(), goals_only.gap, goals_task.costs
+    if costs is None or gap is None or reduced.subproblem is None:
+        return
+    subproblem, h_values = reduced.subproblem, dict[int, int]()
+
+    def extend() -> None:
+        tree = extended(task.thin, gap.incumbent, costs, len(graph.needs) // 4)
+        if tree is None:
+            return
+        incumbent = frozenset(irredundant(graph, tree, costs))
+        first = Gap(incumbent, 0, range(len(graph.needs)))
+        presolve.report(first)
+        if reduced.interrupted:
+            raise KeyboardInterrupt
+        only_better, total = Reduction.BOUNDS in task.reductions, sum(map(costs, incumbent))
+        optimal = gap.proved and incumbent == gap.incumbent if costs.doubt else total == gap.lower_bound
+        if only_better and optimal:
+            presolve.task = replace(task, costs=costs)
+            evidence = gap.evidence._replace(first=None, tight=())
+            presolve.gap = first.raised(gap.lower_bound, evidence).closed()
+            return
+        limit = total - only_better
+        candidates = {*subproblem.actions_within(limit, task.expired), *incumbent}
+        distance = limit - gap.lower_bound + costs.doubt
+        candidates |= extensions(graph, candidates, costs, distance, task.expired)
+        if task.expired():
+            raise KeyboardInterrupt
+        derivations = derive(graph, candidates, task.coarse, h_add=False)
+        h_values.update(derivations.cost)
+        presolve.gap = first.with_candidates(graph.cone(derivations.h_actions)[0])
+
+    presolve.guarded(extend)
+    if presolve.gap is not None and presolve.ended and not presolve.gap.proved:
+        presolve.guarded(lambda: presolve.take(rounds, h_values))

@@ -92,7 +92,7 @@ class LintedFiles:
             for unit in self.reader.listed_units(text, str(file)):
                 self._add(unit.motion.motion, unit.sides, unit.inputs[0].source.line - 1)
         else:
-            for motion, inputs, outputs, sources in self.reader.units(text, str(file)):
+            for motion, inputs, outputs, sources, _ in self.reader.units(text, str(file)):
                 self._add(motion, (inputs, outputs), sources[0].line - 1)
 
     def _read_json(self, text: str, file: Path, format_: Format, source_lines: list[str]) -> None:

@@ -54,12 +54,15 @@ def duplicate_unit(context: Context) -> Iterator[Diagnostic]:
 def repeated_object(context: Context) -> Iterator[Diagnostic]:
     """The inputs of a unit are a set, and so are its outputs and the states of an object: each counts once.
 
-    Two eggs are two nodes only if they differ, for example in where they are. Often a state line is missing
-    under one of the two.
+    Two eggs are two nodes only if they differ, for example in where they are; how many are taken is said by a
+    table (`unit_amounts.txt`). Often a state line is missing under one of the two. In JSON and neutral lines,
+    a node that is listed twice is meant twice.
     """
     network = context.network
     for unit, copies in enumerate(context.files.copies):
         for copy in copies:
+            if context.sheets[copy.sheet].places is not None:  # JSON, in which two are meant
+                continue
             if copy.inputs > len(network.inputs[unit]) or copy.outputs > len(network.outputs[unit]):
                 yield from _repeated_nodes(context, copy)
     for sheet in context.sheets:

@@ -20,8 +20,15 @@ from foon_asp.network.stand_in_table import STAND_IN as STAND_IN
 from foon_asp.network.stand_in_table import Difference as Difference
 from foon_asp.network.stand_in_table import Edit as Edit
 from foon_asp.network.stand_in_table import StandInTable as StandInTable
+from foon_asp.network.stand_in_table import spelled_alike as spelled_alike
+from foon_asp.network.stand_in_table import spelling_key as spelling_key
 from foon_asp.network.starting import StartingKitchen as StartingKitchen
 from foon_asp.network.starting import starting_kitchen as starting_kitchen
 from foon_asp.network.starting import starting_nodes as starting_nodes
 from foon_asp.network.task_tree import TaskTree as TaskTree
+from foon_asp.network.unit_amounts import MAX_AMOUNT as MAX_AMOUNT
+from foon_asp.network.unit_amounts import NO_AMOUNTS as NO_AMOUNTS
+from foon_asp.network.unit_amounts import Amounts as Amounts
+from foon_asp.network.unit_amounts import DataAmounts as DataAmounts
+from foon_asp.network.unit_amounts import UnitAmounts as UnitAmounts
 from foon_asp.network.unit_prices import UnitPrices as UnitPrices

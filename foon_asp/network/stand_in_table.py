@@ -30,6 +30,8 @@ class Edit(StrEnum):
     """An ingredient that it lacks."""
     CONTENTS = "other contents"
     """Contents of which not more than half are in common: an empty bowl for a full one."""
+    SPELLING = "spelling"
+    """The same label in the plural, or with other blanks, hyphens or capitals: ``cherrytomatoes``."""
     LABEL = "label"
     """Another label, as a list of pairs has it."""
     NODE = "node"
@@ -117,8 +119,11 @@ class StandInTable(NamedTuple):
         if (serving, served) in self.pairs:
             yield Edit.NODE, str(served), str(serving), self.pairs[serving, served]
             return
-        if serving.label != served.label:
-            yield Edit.LABEL, served.label, serving.label, self.pairs.get((serving.label, served.label))
+        labels = serving.label, served.label
+        if serving.label != served.label and labels not in self.pairs and spelled_alike(*labels):
+            yield Edit.SPELLING, served.label, serving.label, self.edits[Edit.SPELLING]
+        elif serving.label != served.label:
+            yield Edit.LABEL, served.label, serving.label, self.pairs.get(labels)
         yield from self._of_contents(serving, served)
         for state in sorted(served.states - serving.states):
             yield Edit.FEWER_STATE, state, "", self.price(Edit.FEWER_STATE, state)
@@ -157,7 +162,22 @@ class StandInTable(NamedTuple):
             yield Edit.MORE_INGREDIENT, "", item, self.price(Edit.MORE_INGREDIENT, item)
 
 
+def spelled_alike(label: str, other: str) -> bool:
+    """Return whether two labels differ only in number, blanks, hyphens and capitals."""
+    return spelling_key(label) == spelling_key(other)
+
+
+def spelling_key(label: str) -> str:
+    """Return what labels have in common that differ only in number, blanks, hyphens and capitals."""
+    letters = label.casefold().replace(" ", "").replace("-", "").replace("_", "")
+    for plural, singular in (("ies", "y"), ("oes", "o"), ("s", "")):
+        if letters.endswith(plural) and len(letters) > len(plural) + 2 and not letters.endswith("ss"):
+            return letters.removesuffix(plural) + singular
+    return letters
+
+
 _EDITS: Mapping[Edit, Fraction | None] = {
+    Edit.SPELLING: Fraction(1),
     Edit.WORD: Fraction(1),
     Edit.CONTAINER: Fraction(2),
     Edit.MORE_STATE: Fraction(3),
@@ -166,4 +186,35 @@ _EDITS: Mapping[Edit, Fraction | None] = {
     Edit.FEWER_INGREDIENT: Fraction(5),
     Edit.CONTENTS: None,
 }
-_WORDS: Mapping[tuple[Edit, str], Fraction | None] = {}
+# What somebody has to do first is not made up for by a price.
+_DONE = (
+    *(
+        "cooked",
+        "baked",
+        "fried",
+        "boiled",
+        "grilled",
+        "roasted",
+        "steamed",
+        "sauteed",
+        "toasted",
+        "hardboiled",
+    ),
+    *(
+        "chopped",
+        "sliced",
+        "diced",
+        "cubed",
+        "minced",
+        "grated",
+        "shredded",
+        "halved",
+        "quartered",
+        "crushed",
+    ),
+    *("peeled", "mashed", "ground", "melted", "beaten", "whipped", "kneaded", "hot"),
+)
+_WORDS: Mapping[tuple[Edit, str], Fraction | None] = {
+    **{(Edit.FEWER_STATE, state): None for state in _DONE},
+    **{(Edit.MORE_STATE, state): None for state in ("dirty", "burnt", "rotten")},
+}

@@ -105,6 +105,7 @@ class MapFile(AboutGoals, frozen=True, kw_only=True, tag=schema_name(KIND)):
         actions: The actions.
         stock: Where items are used up: how many copies the kitchen has.
         stays: Where items are used up: the labels and nodes that the user declared to last or to be used up.
+        wanted: Where items are used up: how many copies of goals are wanted, where that is not one.
     """
 
     scales: tuple[Scale, ...]
@@ -112,6 +113,7 @@ class MapFile(AboutGoals, frozen=True, kw_only=True, tag=schema_name(KIND)):
     actions: tuple[NamedAction, ...]
     stock: tuple[Copies, ...] | UnsetType = UNSET
     stays: tuple[Staying, ...] | UnsetType = UNSET
+    wanted: tuple[Copies, ...] | UnsetType = UNSET
 
     @classmethod
     def of(cls, task: PlanningTask) -> Self:
@@ -147,6 +149,7 @@ class MapFile(AboutGoals, frozen=True, kw_only=True, tag=schema_name(KIND)):
             actions=tuple(actions),
             stock=UNSET if items is None else copies_of(network, items.stock),
             stays=UNSET if items is None else tuple(_staying(network, *pair) for pair in items.told.items()),
+            wanted=UNSET if items is None else copies_of(network, items.wanted),
         )
 
 
@@ -197,6 +200,9 @@ def _read(tree: Mapping[str, Any]) -> NameMap:
                 entry["label"] or read_node_json(entry["object"]): bool(entry["stays"])
                 for entry in tree["stays"]
             },
-            {read_node_json(entry["object"]): int(entry["copies"]) for entry in tree["stock"]},
+            *(
+                {read_node_json(entry["object"]): int(entry["copies"]) for entry in tree[key]}
+                for key in ("stock", "wanted")
+            ),
         )
     return NameMap(units, taking, goals, str(tree["containers"]), int(tree["level"]), items)

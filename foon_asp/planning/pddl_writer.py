@@ -1,6 +1,6 @@
 """A planning task as PDDL: STRIPS with action costs, and numeric fluents where copies are counted."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping
 
 from foon_asp.planning.action_costs import Scale
 from foon_asp.planning.planning_task import Action, PlanningTask
@@ -58,7 +58,7 @@ def _domain(task: PlanningTask) -> Iterator[str]:
     for action in task.actions:
         yield f"  (:action {action.name}"
         yield "    :parameters ()"
-        yield f"    :precondition {_at_hand(task, action.preconditions)}"
+        yield f"    :precondition {_at_hand(task, task.flow(action).asks)}"
         yield f"    :effect {_effect(task, action, costed)})"
     yield ")"
 
@@ -73,31 +73,31 @@ def _problem(task: PlanningTask) -> Iterator[str]:
     if not task.costs.unit_cost:
         yield "    (= (total-cost) 0)"
     yield "  )"
-    yield f"  (:goal {_at_hand(task, task.goals)})"
+    yield f"  (:goal {_at_hand(task, task.wanted)})"
     if not task.costs.unit_cost:
         yield "  (:metric minimize (total-cost))"
     yield ")"
 
 
-def _at_hand(task: PlanningTask, nodes: Iterable[int]) -> str:
-    """Return the condition that a copy of each node is available."""
+def _at_hand(task: PlanningTask, copies: Mapping[int, int]) -> str:
+    """Return the condition that copies of nodes are available."""
     atoms = [
-        f"(>= ({COPIES} {task.names[o]}) 1)" if o in task.counted else f"({AT_HAND} {task.names[o]})"
-        for o in nodes
+        f"(>= ({COPIES} {task.names[o]}) {n})" if o in task.counted else f"({AT_HAND} {task.names[o]})"
+        for o, n in copies.items()
     ]
     return " ".join(["(and", *atoms]) + ")"
 
 
 def _effect(task: PlanningTask, action: Action, costed: bool) -> str:
     """Return the effect of an action: what it adds, what it consumes, and its cost."""
-    counted = task.counted
+    counted, (_, uses, adds) = task.counted, task.flow(action)
     effects = [
-        f"(increase ({COPIES} {task.names[o]}) 1)" if o in counted else f"({AT_HAND} {task.names[o]})"
-        for o in action.add_effects
+        f"(increase ({COPIES} {task.names[o]}) {n})" if o in counted else f"({AT_HAND} {task.names[o]})"
+        for o, n in adds.items()
     ]
     effects += [
-        f"(decrease ({COPIES} {task.names[o]}) 1)" if o in counted else f"(not ({AT_HAND} {task.names[o]}))"
-        for o in action.consumption
+        f"(decrease ({COPIES} {task.names[o]}) {n})" if o in counted else f"(not ({AT_HAND} {task.names[o]}))"
+        for o, n in uses.items()
     ]
     if costed:
         effects.append(f"(increase (total-cost) {action.cost})")

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.planning.action_costs import ActionCosts, action_costs
 from foon_asp.planning.pddl_name import pddl_name
-from foon_asp.problem import Objective, Problem, first_tree, reach, relevant, relevant_to_plans
+from foon_asp.problem import Flow, Objective, Problem, first_tree, reach, relevant, relevant_to_plans
 
 _MAX_COST_RATIO = 50  # of a plan in which items are used up to a tree: larger ratios round costs more
 
@@ -55,6 +55,23 @@ class PlanningTask:
         stock = {o: problem.stock_of(o) or 0 for o in problem.kitchen}
         return {o: stock.get(o, 0) for o in self.names if o not in problem.endless}
 
+    def flow(self, action: Action) -> Flow:
+        """Return the copies that an action asks for, consumes and adds; of what is not counted, one."""
+        if action.unit is None or not self.counted:
+            sides = (action.preconditions, action.consumption, action.add_effects)
+            return Flow(*(dict.fromkeys(side, 1) for side in sides))
+        asks, uses, adds = self.problem.flows[action.unit]
+        return Flow(
+            {o: asks[o] for o in action.preconditions},
+            {o: uses[o] for o in action.consumption},
+            {o: adds[o] for o in action.add_effects},
+        )
+
+    @property
+    def wanted(self) -> dict[int, int]:
+        """The copies of each goal that are wanted."""
+        return {goal: self.problem.wanted(goal) for goal in self.goals}
+
 
 def taking(name: str) -> str:
     """Return the name of the action that takes the kitchen item ``name``."""
@@ -78,6 +95,10 @@ def planning_task(
     by_items = any(objective.row.item for objective in objectives)
     if problem.items is not None and len(objectives) > 1:
         raise UserError("where items are used up, actions cost something by one objective: name one")
+    if merged and problem.counts_amounts:
+        raise UserError(
+            "amounts are counted, and copies merged into one are not: --items used-up exports numbers"
+        )
     if by_items and problem.kitchen != endless:
         raise UserError("copies of a stock have no costs in planning tasks: name another objective")
     bought = endless if by_items else frozenset[int]()  # no unit adds a bought item, or it would be free

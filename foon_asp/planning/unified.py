@@ -45,29 +45,32 @@ def unified_problem(
     unified.add_objects(objects.values())
     costs: dict[Any, Any] = {}
 
-    def available(o: int) -> Any:
-        return up.GE(copies(objects[o]), 1) if o in counted else at_hand(objects[o])
+    def available(o: int, number: int) -> Any:
+        return up.GE(copies(objects[o]), number) if o in counted else at_hand(objects[o])
 
     for action in task.actions:
         up_action = up.InstantaneousAction(action.name)
-        for o in action.preconditions:
-            up_action.add_precondition(available(o))
-        effects = (*((o, True) for o in action.add_effects), *((o, False) for o in action.consumption))
-        for o, added in effects:
-            if o not in counted:
-                up_action.add_effect(at_hand(objects[o]), added)
-            elif added:
-                up_action.add_increase_effect(copies(objects[o]), 1)
+        asks, uses, adds = task.flow(action)
+        for o, number in asks.items():
+            up_action.add_precondition(available(o, number))
+        for o, number in adds.items():
+            if o in counted:
+                up_action.add_increase_effect(copies(objects[o]), number)
             else:
-                up_action.add_decrease_effect(copies(objects[o]), 1)
+                up_action.add_effect(at_hand(objects[o]), True)
+        for o, number in uses.items():
+            if o in counted:
+                up_action.add_decrease_effect(copies(objects[o]), number)
+            else:
+                up_action.add_effect(at_hand(objects[o]), False)
         unified.add_action(up_action)
         costs[up_action] = up.Int(action.cost)
     for o in {*task.start}.difference(counted):
         unified.set_initial_value(at_hand(objects[o]), True)
     for o, count in counted.items():
         unified.set_initial_value(copies(objects[o]), count)
-    for o in task.goals:
-        unified.add_goal(available(o))
+    for o, number in task.wanted.items():
+        unified.add_goal(available(o, number))
     unified.add_quality_metric(up.MinimizeActionCosts(costs))
     return unified
 

@@ -41,6 +41,16 @@ class Balance(NamedTuple):
     object: int
 
 
+class Supply(NamedTuple):
+    """The condition that an action that is executed has the copies of an object that it asks for.
+
+    They are initial, or added by other actions, as none are added before its first execution by itself.
+    """
+
+    object: int
+    action: int
+
+
 class Sum(NamedTuple):
     """The condition that a sum keeps to a limit, by the index of the limit."""
 
@@ -64,5 +74,5 @@ class Level(NamedTuple):
     strict: bool = False
 
 
-Condition = Landmark | Balance | Sum | Level
+Condition = Landmark | Balance | Supply | Sum | Level
 """The condition on the counts of every plan that a row of the program states."""

@@ -76,7 +76,8 @@ class CountBound:
         optimality is not proved.
         """
         counts = None
-        for assumed_cap in (_FEWER, _FAR):
+        wanted = max(self._flows.targets.values(), default=1)
+        for assumed_cap in (_FEWER * wanted, _FAR * wanted):
             counts = self._counts(measures, rounds, assumed_cap)
             if counts is not None and max(counts.values(), default=0) < assumed_cap:
                 break
@@ -94,6 +95,8 @@ class CountBound:
                 if whole is None:
                     return None
                 x = whole
+                for a in range(self._size):  # the larger a count, the less of an indicator satisfies floats
+                    x[self._size + a] = float(x[a] > 0.5)
                 model.keep(measure, x)
                 self._check()
             counts = {a: round(x[a]) for a in range(self._size) if x[a] > 0.5}
@@ -113,8 +116,6 @@ class CountBound:
             columns.difference_update(range(self._size, 2 * self._size))
         if x is None or any(abs(x[column] - round(x[column])) > INTEGRALITY for column in columns):
             return None
-        for a in range(self._size):
-            x[self._size + a] = float(x[a] > 0.5)
         return x
 
     def none(self) -> bool:
@@ -326,22 +327,21 @@ class CountBound:
         executed action that is not reached, the landmark are the achievers on the border.
         """
         flows = self._flows
+        asks, targets = flows.lacking(bool(model.stock))
         used = {a for a in range(self._size) if x[self._size + a] > INTEGRALITY}
         reached = {o for o, column in model.stock.items() if x[column] > INTEGRALITY}
-        if not model.stock:
-            reached = {o for o, n in flows.start.items() if n}
         waiting = set(used)
         grown = True
         while grown:
-            ready = [a for a in waiting if reached.issuperset(flows.asks[a])]
+            ready = [a for a in waiting if reached.issuperset(asks[a])]
             grown = bool(ready)
             waiting.difference_update(ready)
             reached.update(o for a in ready for o in flows.adds[a])
         missed: list[tuple[int, int | None]]
-        missed = [(target, None) for target in flows.targets if target not in reached]
-        missed += [(next(o for o in flows.asks[a] if o not in reached), a) for a in sorted(waiting)]
+        missed = [(target, None) for target in targets if target not in reached]
+        missed += [(next(o for o in asks[a] if o not in reached), a) for a in sorted(waiting)]
         for o, action in missed[:1]:
-            landmark = self._landmark(o, reached, used, model)._replace(action=action)
+            landmark = self._landmark(o, asks, reached, used, model)._replace(action=action)
             self._landmarks.append(landmark)
             model.add_landmark(landmark)
         return bool(missed)
@@ -349,9 +349,21 @@ class CountBound:
     @cached_property
     def _cutter(self) -> Cutter:
         flows = self._flows
-        objects = {o for numbers in (*flows.asks, *flows.adds, flows.targets, flows.start) for o in numbers}
+        asks, targets = flows.lacking(priced=False)
+        objects = {o for numbers in (*asks, *flows.adds, targets) for o in numbers}
+        return Cutter(
+            Hypergraph(max(objects, default=0) + 1, asks, list(map(tuple, flows.adds)), ()), targets
+        )
+
+    @cached_property
+    def _cutter_of_stock(self) -> Cutter:
+        """The cutter where copies of the stock have a price: its cuts hold no initial object."""
+        flows = self._flows
+        asks, targets = flows.lacking(priced=True)
         start = [o for o, count in flows.start.items() if count]
-        return Cutter(Hypergraph(max(objects, default=0) + 1, flows.asks, flows.adds, start), flows.targets)
+        objects = {o for numbers in (*asks, *flows.adds, targets, start) for o in numbers}
+        adds = list(map(tuple, flows.adds))
+        return Cutter(Hypergraph(max(objects, default=0) + 1, asks, adds, start), targets)
 
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
@@ -360,9 +372,12 @@ class CountBound:
         action. Without a derivation no landmarks are looked for.
         """
         derivation, size = self.derivation, self._size
-        if not derivation or self._cutter.hopeless or not self._cutter.targets:
+        if not derivation:
             return False
-        cutter, cuts = self._cutter, dict[tuple[int, ...], tuple[int, ...]]()
+        cutter = self._cutter_of_stock if model.stock else self._cutter
+        if cutter.hopeless or not cutter.targets:
+            return False
+        cuts: dict[tuple[int, ...], tuple[int, ...]] = {}
         keeps = [[a for a in derivation if a != gone] for gone in derivation]
         for number in range(_ORDERS):
             order = sorted(cutter.actions, key=lambda a: (-x[size + a], self._random.random()))
@@ -377,9 +392,10 @@ class CountBound:
             model.add_landmark(self._landmarks[-1])
         return bool(cuts)
 
-    def _landmark(self, o: int, reached: set[int], used: set[int], model: CountModel) -> Landmark:
+    def _landmark(
+        self, o: int, asks: Sequence[Sequence[int]], reached: set[int], used: set[int], model: CountModel
+    ) -> Landmark:
         """Return a landmark by a small cut grown backwards from an object that is not reached."""
-        asks = self._flows.asks
         zone, stack, edge = {o}, [o], dict[int, None]()
         while stack:
             for achiever in self._achievers.get(stack.pop(), ()):

@@ -2,7 +2,17 @@
 
 from collections.abc import Callable, Sequence
 
-from foon_asp.plans.conditions import Balance, Condition, Counts, Landmark, Level, Measure, Sum, SumLimit
+from foon_asp.plans.conditions import (
+    Balance,
+    Condition,
+    Counts,
+    Landmark,
+    Level,
+    Measure,
+    Sum,
+    SumLimit,
+    Supply,
+)
 from foon_asp.plans.flows import Flows
 from foon_asp.plans.whole_program import WholeProgram
 
@@ -42,14 +52,20 @@ class CountModel:
         change: dict[int, dict[int, int]] = {o: {} for o in (*achievers_of, *flows.targets)}
         for action in range(size):
             for o in flows.adds[action]:
-                change[o][action] = change[o].get(action, 0) + 1
+                change[o][action] = flows.adds[action][o]
             for o in flows.uses[action]:
                 row = change.setdefault(o, {})
-                row[action] = row.get(action, 0) - 1
-        wanted = set(flows.targets)
+                row[action] = row.get(action, 0) - flows.uses[action][o]
         for o, row in change.items():
-            if any(effect < 0 for effect in row.values()) or o in wanted:
-                self.conditions[program.row(*self._with_stock(o, row, int(o in wanted)))] = Balance(o)
+            if any(effect < 0 for effect in row.values()) or o in flows.targets:
+                least = flows.targets.get(o, 0)
+                self.conditions[program.row(*self._with_stock(o, row, least))] = Balance(o)
+        for action, asked in enumerate(flows.asks):
+            for o in (o for o, n in asked.items() if n > 1):
+                others = (a for a in achievers_of.get(o, ()) if a != action)
+                row = {achiever: flows.adds[achiever][o] for achiever in others}
+                supply = program.row(*self._with_stock(o, {**row, size + action: -asked[o]}, 0))
+                self.conditions[supply] = Supply(o, action)
         items = self.items = dict[int, int]()
         for action in range(size):
             y = size + action

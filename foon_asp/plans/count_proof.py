@@ -186,8 +186,9 @@ class PlanProver(CountBound):
         floats = relaxed.weights
         if relaxed.x is None:
             largest = max(floats, default=0.0)
-            if largest == 0.0:
-                return []
+            if largest == 0.0:  # a row without columns that asks for something
+                rows = ((row, *model.program.row_of(row)) for row in model.conditions)
+                return [{row: one} for row, coefficients, least in rows if least > 0 and not coefficients]
             for parts in PARTS:
                 ray = self._rounded_weights(model, [weight / largest for weight in floats], parts, one)
                 nothing = self._bound(model, ray, free=True)

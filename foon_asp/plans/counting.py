@@ -5,13 +5,15 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
+from heapq import heappop, heappush
 
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
 from foon_asp.encoding.exact_success import RateScale, rate_scale
-from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.encoding.own_encodings import ENCODING_FILES, question_encoding
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
+from foon_asp.plans.bulk_order import bulk_order, least_copies, plan_of
 from foon_asp.plans.conditions import Counts, Level, Measure
 from foon_asp.plans.count_bound import BetterError, CountBound
 from foon_asp.plans.execution_order import sequence
@@ -26,6 +28,7 @@ _MAX_EXACT_COST = 10**12  # largest cost that is counted unrounded
 _COST_STEPS = 10**6  # steps of the greatest cost, where costs are rounded
 _MAX_UNORDERED = 10  # counts without an order, after which clingo searches all remaining ones at once
 _MAX_EXECUTIONS = 500  # executions in one such search
+_MAX_STOCKS = 200  # numbers of copies of the stock that an order is looked for with
 _MAX_EXTRA_COPIES = 4  # executions of a unit beyond its count in the search for a first plan
 
 
@@ -43,8 +46,9 @@ class Counting:
         self._orders_sought = -math.inf  # searches for an order since the proof began
         problem = question.problem
         positions = {unit: a for a, unit in enumerate(units)}
+        self._flows = flows_of(problem, units)
         self.bound = CountBound(
-            flows_of(problem, units),
+            self._flows,
             [
                 [a for a, unit in enumerate(units) if unit in required_set]
                 for required_set in question.required
@@ -218,17 +222,24 @@ class Counting:
     def _is_better(self, counts: Counts) -> bool:
         """Return whether some order of the counts is a plan; it becomes the incumbent then."""
         self._orders_sought += 1
-        if self._orders_sought > _MAX_UNORDERED:
+        if self._orders_sought > _MAX_UNORDERED and not self._problem.counts_amounts:
             raise _ManyError
         plan = self.order(counts)
         return plan is not None and self._question.take(plan)
 
     def order(self, counts: Counts) -> Plan | None:
-        """Return an executable order of counts, found by clingo; ``None`` if no order runs."""
+        """Return an executable order of counts; ``None`` if no order runs."""
+        if self._problem.counts_amounts:
+            return self._bulk_plan(counts)
         return self._plan({a: (n, n) for a, n in counts.items()})
 
     def any_order(self, counts: Counts) -> Plan | None:
-        """Return a good plan with few executions beyond counts, found by clingo; ``None`` without one."""
+        """Return a good plan with few executions beyond counts, found by clingo; ``None`` without one.
+
+        Copies are not counted there one by one, so with amounts there is none.
+        """
+        if self._problem.counts_amounts:
+            return None
         extra = 1
         while extra <= _MAX_EXTRA_COPIES:
             plan = self._plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self.units))}, True)
@@ -236,6 +247,55 @@ class Counting:
                 return plan
             extra *= 2
         return None
+
+    def _bulk_plan(self, counts: Counts) -> Plan | None:
+        """Return an order of counts in runs, with as few copies of the stock as an objective asks for."""
+        flows, question = self._flows, self._question
+        if not self._keeps_to_rules(counts):
+            return None
+        if Objective.KITCHEN not in question.levels:
+            runs = bulk_order(flows, counts, flows.start, lambda: question.deadline.passed)
+            return None if runs is None else plan_of(self.units, runs)
+        first = tuple(sorted(least_copies(flows, counts).items()))
+        waiting, seen = [(sum(n for _, n in first), first)], {first}
+        for _ in range(_MAX_STOCKS):
+            if not waiting:
+                return None
+            total, stock = heappop(waiting)
+            if any(n > flows.start[o] for o, n in stock):
+                continue
+            runs = bulk_order(flows, counts, dict(stock), lambda: question.deadline.passed)
+            if runs is not None:
+                return plan_of(self.units, runs)
+            for place, (o, n) in enumerate(stock):
+                more = (*stock[:place], (o, n + 1), *stock[place + 1 :])
+                if more not in seen:
+                    seen.add(more)
+                    heappush(waiting, (total + 1, more))
+        raise Stopped
+
+    def _keeps_to_rules(self, counts: Counts) -> bool:
+        """Whether executions keep to the user's rules, which read how often units are executed."""
+        program, problem = self._question.program, self._problem
+        if program.own:
+            return True
+        from foon_asp.encoding import facts, search  # noqa: PLC0415 (clingo, which not every question needs)
+        from foon_asp.encoding.scales import Scales  # noqa: PLC0415
+
+        units = [self.units[a] for a in counts]
+        text = facts.write_facts(problem, units, Scales(problem, units), program.looked_at)
+        text += "".join(
+            f"use({number}). times({number},{n}).\n"
+            for a, n in counts.items()
+            if (number := problem.network.unit_number(self.units[a])) is not None
+        )
+        added = program.files[len(ENCODING_FILES) :]
+        ended = search.run(
+            added, text, program.arguments, self._question.deadline, "ignore", endless=program.endless
+        )
+        if not ended.exhausted and ended.units is None:
+            raise Stopped
+        return ended.units is not None
 
     def _plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
         ended = self._ended(times, best)

@@ -9,18 +9,30 @@ from foon_asp.problem import Problem
 class Flows(NamedTuple):
     """Actions with preconditions and effects on copies of objects, all by number.
 
-    An action can be executed while there is a copy of each of its preconditions ``asks``. It consumes one
-    copy of each object of ``uses``, and adds one of each object of ``adds``. ``start`` maps initial objects
-    to their numbers of copies. Objects that are not consumable appear nowhere here; ``items`` are the
-    preconditions of each action among them. One copy of each of the ``targets`` has to remain.
+    Each action maps objects to numbers of copies. It can be executed while there are those that it ``asks``
+    for. It consumes those that it ``uses``, and adds those that it ``adds``. ``start`` maps initial objects
+    to their numbers of copies, and ``targets`` those that have to remain. Objects that are not consumable are
+    in none of these; ``items`` are the preconditions of each action among them.
     """
 
-    asks: Sequence[Sequence[int]]
-    uses: Sequence[Sequence[int]]
-    adds: Sequence[Sequence[int]]
+    asks: Sequence[Mapping[int, int]]
+    uses: Sequence[Mapping[int, int]]
+    adds: Sequence[Mapping[int, int]]
     items: Sequence[Sequence[int]]
     start: Mapping[int, int]
-    targets: Sequence[int]
+    targets: Mapping[int, int]
+
+    def lacking(self, priced: bool) -> tuple[list[list[int]], list[int]]:
+        """Return the preconditions of each action, and the targets, that initial copies do not satisfy.
+
+        An action that is executed can be executed again in the delete relaxation, so an object that is added
+        is there as often as wanted. If ``priced``, initial copies are taken one by one, and satisfy nothing.
+        """
+
+        def lacks(copies: Mapping[int, int]) -> list[int]:
+            return [o for o, n in copies.items() if priced or n > self.start.get(o, 0)]
+
+        return list(map(lacks, self.asks)), lacks(self.targets)
 
     @property
     def achievers(self) -> dict[int, list[int]]:
@@ -39,8 +51,8 @@ def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
     """
     needed = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
 
-    def finite(ids: Sequence[int]) -> list[int]:
-        return [o for o in ids if o not in problem.endless and o in needed]
+    def finite(copies: Mapping[int, int]) -> dict[int, int]:
+        return {o: n for o, n in copies.items() if o not in problem.endless and o in needed}
 
     flows = [problem.flows[unit] for unit in units]
     return Flows(
@@ -49,5 +61,5 @@ def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
         [finite(flow.adds) for flow in flows],
         [[o for o in flow.asks if o in problem.endless] for flow in flows],
         {o: problem.stock_of(o) or 0 for o in needed & problem.kitchen - problem.endless},
-        [goal for goal in problem.goals if goal not in problem.endless],
+        {goal: problem.wanted(goal) for goal in problem.goals if goal not in problem.endless},
     )

@@ -24,7 +24,7 @@ from foon_asp.problem import (
     reach,
     relevant_to_plans,
 )
-from foon_asp.proof.replay import replay_for
+from foon_asp.proof.counted_run import counted_run
 from foon_asp.rules.dependence import TIMES
 from foon_asp.rules.limit import Limit
 
@@ -164,9 +164,9 @@ class PlanQuestion:
 
     def _require_runs(self, plan: Plan, costs: Costs) -> None:
         """Require that a plan executes and has the stated costs, by an independent replay."""
-        replay = replay_for(self.problem, self.problem.tree(plan))
-        if replay.shortage is not None:
-            raise BugError(f"the plan {list(plan)} lacks {replay.shortage.node}")
+        replay = counted_run(self.problem, plan)
+        if replay.lacking is not None:
+            raise BugError(f"the plan {list(plan)} lacks {replay.lacking}")
         if self.problem.costs(plan) != costs:
             raise BugError(f"the plan {list(plan)} does not cost {costs}")
         objects = self.problem.network.objects

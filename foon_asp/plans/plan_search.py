@@ -56,7 +56,8 @@ def _solve(question: PlanQuestion) -> Outcome:
 def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
-        if not question.program.own and counting.order({}) is None:
+        asked = not question.program.own or question.problem.counts_amounts
+        if asked and counting.order({}) is None:
             return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
         return question.outcome(Status.OPTIMAL if question.take(()) else Status.INFEASIBLE, Proof.CUTS)
     began = time.perf_counter()

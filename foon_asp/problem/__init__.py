@@ -22,6 +22,7 @@ from foon_asp.problem.objective import Row as Row
 from foon_asp.problem.objective import levels as levels
 from foon_asp.problem.objective import multiplies as multiplies
 from foon_asp.problem.objective import parse_objectives as parse_objectives
+from foon_asp.problem.objective import with_dissimilarity as with_dissimilarity
 from foon_asp.problem.order import executable_order as executable_order
 from foon_asp.problem.problem import Changes as Changes
 from foon_asp.problem.problem import Measure as Measure

@@ -95,12 +95,12 @@ class Costs:
 
 
 def tree_costs(
-    units: Collection[Measured],
+    units: Mapping[Measured, int],
     items: int,
     available: Collection[Known],
     user_objectives: Iterable[Objective] = (),
 ) -> Costs:
-    """Return the costs of units that need a number of distinct kitchen ``items``.
+    """Return the costs of units, each with its number of executions, that need distinct kitchen ``items``.
 
     Objectives that need data which are not ``available`` for all units are left out, and ``attempts`` where a
     rate is 0. ``user_objectives`` are measured besides the built-in ones.
@@ -111,13 +111,14 @@ def tree_costs(
         if row.needs is not None and row.needs not in available:
             continue
         try:
-            figures = list(map(row.unit, units))
+            figures = [(row.unit(unit), times) for unit, times in units.items()]
         except ZeroDivisionError:  # with a rate of 0, the expected number of attempts is infinite
             continue
         if row.multiplies:
-            measures[objective] = _product(figures)
+            measures[objective] = _product([figure**times for figure, times in figures])
         else:
-            total = sum(figures) if row.whole else _sum(figures)
+            totals = [figure * times for figure, times in figures]
+            total = sum(totals) if row.whole else _sum(totals)
             measures[objective] = total + items * row.item
     return Costs(measures)
 

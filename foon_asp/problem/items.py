@@ -6,7 +6,7 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import NamedTuple
 
-from foon_asp.network import FunctionalUnit, Network, ObjectNode
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitAmounts
 
 ITEMS = ("lasting", "used-up")
 """The two models of items: they last, and can be used any number of times, or they are used up."""
@@ -74,13 +74,13 @@ def fate(
 class Flow(NamedTuple):
     """The preconditions and effects of a unit on copies of items, as ids of object nodes.
 
-    A unit is applicable when a copy of each node that it ``asks`` for is available. It consumes one copy of
-    each node that it ``uses``, and makes one copy of each node that it ``adds``.
+    Each maps object nodes to numbers of copies. A unit is applicable when there are as many copies of each
+    node as it ``asks`` for. It consumes those that it ``uses``, and makes those that it ``adds``.
     """
 
-    asks: tuple[int, ...]
-    uses: tuple[int, ...]
-    adds: tuple[int, ...]
+    asks: Mapping[int, int]
+    uses: Mapping[int, int]
+    adds: Mapping[int, int]
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,8 @@ class UsedUp:
     """The model in which items are used up: declarations of the user, and the stock.
 
     ``told`` maps labels and object nodes to whether they stay, in place of the rule (:func:`fate`). ``stock``
-    has the number of copies of kitchen nodes; nodes that are not in it never run out.
+    has the number of copies of kitchen nodes; nodes that are not in it never run out. ``wanted`` has the
+    number of copies of goals, where that is not one.
 
     Example:
         >>> foon_asp.UsedUp(stock={foon_asp.parse_node("egg"): 2}).told
@@ -101,6 +102,7 @@ class UsedUp:
 
     told: Mapping[Named, bool] = field(default_factory=dict)
     stock: Mapping[ObjectNode, int] = field(default_factory=dict)
+    wanted: Mapping[ObjectNode, int] = field(default_factory=dict)
 
     def fate(self, unit: FunctionalUnit, node: ObjectNode, utensils: frozenset[str]) -> Fate:
         """Return whether an input of a unit stays or is used up, and why.
@@ -119,8 +121,12 @@ class UsedUp:
         needs: Iterable[int],
         gives: Iterable[int],
         utensils: frozenset[str],
+        amounts: UnitAmounts,
     ) -> Flow:
         """Return the preconditions and effects of a unit on copies of items.
+
+        Of an input that is also an output, only the difference is used up or made, unless it is said to be
+        used up.
 
         Parameters:
             network: The network of the unit.
@@ -128,8 +134,19 @@ class UsedUp:
             needs: The inputs that the unit needs under the container rule, by id.
             gives: The outputs that the unit makes under it, by id.
             utensils: The labels of utensils.
+            amounts: How many of each node the unit takes and makes.
         """
-        functional_unit, needs = network.unit(unit), tuple(needs)
-        inputs = set(network.inputs[unit])
-        consumed = [o for o in needs if not self.fate(functional_unit, network.objects[o], utensils).stays]
-        return Flow(needs, tuple(consumed), tuple(o for o in gives if o not in inputs))
+        functional_unit, objects, inputs = network.unit(unit), network.objects, set(network.inputs[unit])
+        taken, made = amounts
+        asks = {o: taken.get(objects[o], 1) for o in needs}
+        uses, adds = dict[int, int](), dict[int, int]()
+        for o, amount in asks.items():
+            reason = self.fate(functional_unit, objects[o], utensils)
+            if reason is Fate.OUTPUT:
+                uses[o] = amount - made.get(objects[o], 1)
+            elif not reason.stays:
+                uses[o] = amount
+        for o in gives:
+            amount = made.get(objects[o], 1)
+            adds[o] = amount - taken.get(objects[o], 1) if o in inputs else amount
+        return Flow(asks, *({o: n for o, n in effect.items() if n > 0} for effect in (uses, adds)))

@@ -240,6 +240,11 @@ def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tu
     return tuple(objectives)
 
 
+def with_dissimilarity(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:
+    """Return the list for a problem with stand-ins: dissimilarity is added as the first, unless listed."""
+    return objectives if Objective.DISSIMILARITY in objectives else (Objective.DISSIMILARITY, *objectives)
+
+
 def levels(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:
     """Return the list that is optimized: ``units`` is added as the last, so that trees are irredundant."""
     return objectives if Objective.UNITS in objectives else (*objectives, Objective.UNITS)

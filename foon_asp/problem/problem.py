@@ -1,9 +1,11 @@
 """Problem: a network, a kitchen, goals, rates, prices and the container rule."""
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import groupby
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, Protocol
@@ -12,12 +14,14 @@ from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import (
     STAND_IN,
+    Amounts,
     FunctionalUnit,
     Network,
     ObjectNode,
     Source,
     StandInTable,
     TaskTree,
+    UnitAmounts,
     UnitPrices,
 )
 from foon_asp.problem.containers import (
@@ -71,7 +75,7 @@ class Measure(Protocol):
 
     @property
     def text(self) -> str:
-        """The rules."""
+        """The rules; empty for costs that are known without any."""
 
     @property
     def place(self) -> str:
@@ -136,6 +140,7 @@ class Problem:
     ``starting`` says that no kitchen is named, so that all nodes are available that no unit makes out of
     others. Rates that lack a motion of the network are ignored, and ``unrated`` is the error that lists the
     missing ones. ``stand_ins`` is what the stand-ins of the network are made by, ``None`` where it has none.
+    ``amounts`` are how many of a node units take and make; they count where items are used up.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -172,6 +177,7 @@ class Problem:
     items: UsedUp | None = field(default=None, kw_only=True)
     starting: bool = field(default=False, kw_only=True)
     unrated: str = field(default="", kw_only=True)
+    amounts: Amounts = field(default_factory=dict, kw_only=True)
     stand_ins: StandIns | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -297,10 +303,40 @@ class Problem:
         """The effects of each unit on copies of items; where items last, no unit uses up any."""
         items, network = self.items, self.network
         if items is None:
-            return tuple(Flow(needs, (), gives) for needs, gives in zip(self.needs, self.gives, strict=True))
+            return tuple(
+                Flow(dict.fromkeys(needs, 1), {}, dict.fromkeys(gives, 1))
+                for needs, gives in zip(self.needs, self.gives, strict=True)
+            )
+        counted = {unit.motion for unit in self.amounts}
+        none = UnitAmounts()
         return tuple(
-            items.flow(network, unit, self.needs[unit], self.gives[unit], self.utensils)
+            items.flow(
+                network,
+                unit,
+                self.needs[unit],
+                self.gives[unit],
+                self.utensils,
+                self.amounts.get(network.unit(unit), none) if network.motions[unit] in counted else none,
+            )
             for unit in range(len(network))
+        )
+
+    def wanted(self, goal: int) -> int:
+        """Return how many copies of a goal have to be there in the end.
+
+        Parameters:
+            goal: The id of the goal.
+        """
+        return 1 if self.items is None else self.items.wanted.get(self.network.objects[goal], 1)
+
+    @cached_property
+    def counts_amounts(self) -> bool:
+        """Whether some unit takes or makes several copies of a node, or a goal is wanted several times."""
+        if self.items is None:
+            return False
+        effects = (side for flow in self.flows for side in flow)
+        return any(self.wanted(goal) > 1 for goal in self.goals) or any(
+            n > 1 for side in effects for n in side.values()
         )
 
     def stock_of(self, o: int) -> int | None:
@@ -329,16 +365,16 @@ class Problem:
         """
         required = dict.fromkeys(self.kitchen - self.endless, 0)
         net_effects = dict.fromkeys(required, 0)
-        for unit in plan:
+        for unit, run in groupby(plan):
+            times = sum(1 for _ in run)
             asks, uses, adds = self.flows[unit]
-            for o in required.keys() & asks:
-                required[o] = max(required[o], 1 - net_effects[o])
-            for o in net_effects.keys() & uses:
-                net_effects[o] -= 1
-            for o in net_effects.keys() & adds:
-                net_effects[o] += 1
+            for o in required.keys() & {*asks, *adds}:
+                change = adds.get(o, 0) - uses.get(o, 0)
+                least = net_effects[o] + min(0, (times - 1) * change)  # before one of the executions
+                required[o] = max(required[o], asks.get(o, 0) - least)
+                net_effects[o] += times * change
         for o in required.keys() & self.goals:
-            required[o] = max(required[o], 1 - net_effects[o])
+            required[o] = max(required[o], self.wanted(o) - net_effects[o])
         return required
 
     @property
@@ -364,7 +400,7 @@ class Problem:
     def _question(self) -> tuple[object, ...]:
         """All properties that are compared for equality, except the network."""
         measures = {name: measure.text for name, measure in self.measures.items()}
-        rules = self.containers, self.utensils, self.items, self.starting
+        rules = self.containers, self.utensils, self.items, self.starting, self.amounts
         values = self.rates, self.own_rates, self.unit_prices, measures, self.as_seen, self.stand_ins
         return self.kitchen, self.goals, *rules, *values
 
@@ -407,6 +443,15 @@ class Problem:
             )
         if by_prices and self.unpriced:
             raise UserError(_unpriced_text(self.unpriced))
+
+    def has_stand_ins_for(self, objectives: Sequence[Objective]) -> bool:
+        """Return whether the stand-ins that a best tree by objectives can have are in the network.
+
+        Parameters:
+            objectives: The objectives, the most important first.
+        """
+        nearest = self.stand_ins is not None and self.stand_ins.nearest
+        return not nearest or tuple(objectives[:1]) == (Objective.DISSIMILARITY,)
 
     def rate(self, unit: int) -> Fraction:
         """Return the success rate of a unit: its own, or that of its motion.
@@ -541,17 +586,18 @@ class Problem:
         Parameters:
             units: The ids of the units; of a plan in the order of execution, with repeats.
         """
-        executed = sorted(set(units)) if self.items is None else list(units)
-        items = len({o for unit in executed for o in self.needs[unit] if o in self.endless})
+        plan = list(units)
+        counts = dict.fromkeys(sorted(plan), 1) if self.items is None else Counter(plan)
+        items = len({o for unit in counts for o in self.needs[unit] if o in self.endless})
         if self.items is not None:
-            items += sum(self.copies_taken(executed).values())
+            items += sum(self.copies_taken(plan).values())
         available = {Known.MEASURES} | ({Known.RATES} if self.rates is not None else set())
-        if self.unit_prices is not None and all(self.prices[unit] is not None for unit in executed):
+        if self.unit_prices is not None and all(self.prices[unit] is not None for unit in counts):
             available.add(Known.PRICES)
         if self.stand_ins is not None:
             available.add(Known.STAND_INS)
         user_objectives = map(Objective.of_measure, self.measures)
-        return tree_costs(list(map(self.measured, executed)), items, available, user_objectives)
+        return tree_costs({self.measured(u): n for u, n in counts.items()}, items, available, user_objectives)
 
     def measured(self, unit: int) -> Measured:
         """Return a unit with the properties by which objectives measure it.

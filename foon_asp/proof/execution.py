@@ -1,36 +1,44 @@
 """What happens to copies of object nodes when a unit runs and items are used up, by docs/plans.md."""
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache, lru_cache, partial
 from typing import NamedTuple
 
-from foon_asp.network import FunctionalUnit, Network, ObjectNode
-from foon_asp.problem import ContainerRule, Problem, UsedUp, given_outputs, needed_inputs
+from foon_asp.network import Amounts, FunctionalUnit, Network, ObjectNode, UnitAmounts
+from foon_asp.problem import ContainerRule, Fate, Problem, UsedUp, given_outputs, needed_inputs
+
+_NO_AMOUNTS = UnitAmounts()
 
 
 class Execution(NamedTuple):
-    """What running a unit once does with copies of object nodes, one copy of each.
+    """What running a unit once does with copies of object nodes, each with a number of copies.
 
-    It needs ``preconditions``, uses up those of them that it ``consumes``, and ``adds`` outputs, none of
-    which is an input.
+    It needs ``preconditions``, uses up those of them that it ``consumes``, and ``adds`` outputs; of an output
+    that is an input as well, what is more than the input.
     """
 
-    preconditions: tuple[ObjectNode, ...]
-    consumes: tuple[ObjectNode, ...]
-    adds: tuple[ObjectNode, ...]
+    preconditions: Mapping[ObjectNode, int]
+    consumes: Mapping[ObjectNode, int]
+    adds: Mapping[ObjectNode, int]
 
 
 class Executions:
     """How units run from the kitchen of a problem.
 
-    Items are used up as the problem says, or, where they last in it, by the rule of docs/plans.md.
+    Items are used up as the problem says, or, where they last in it, by the rule of docs/plans.md, and then
+    every amount is 1.
     """
 
     def __init__(self, problem: Problem) -> None:
         self._problem, self._items = problem, problem.items or UsedUp()
         network = None if problem.network.level == 3 else problem.network
-        self.of = _execution_of(problem.items, problem.containers, problem.utensils, network)
+        amounts = {} if problem.items is None else problem.amounts
+        self.of = _execution_of(problem.items, problem.containers, problem.utensils, network, amounts)
+
+    def wanted(self) -> dict[ObjectNode, int]:
+        """Return how many copies of each goal have to be there in the end."""
+        return {node: self._items.wanted.get(node, 1) for node in self._problem.goal_nodes}
 
     def is_endless(self, node: ObjectNode) -> bool:
         """Return whether a node is not consumable: it is in the kitchen, and the stock does not count it."""
@@ -42,7 +50,11 @@ class Executions:
 
 
 def _execution_of(
-    items: UsedUp | None, rule: ContainerRule, utensils: frozenset[str], network: Network | None
+    items: UsedUp | None,
+    rule: ContainerRule,
+    utensils: frozenset[str],
+    network: Network | None,
+    amounts: Amounts,
 ) -> Callable[[FunctionalUnit], Execution]:
     """Return a cached function from a unit to its execution.
 
@@ -50,13 +62,13 @@ def _execution_of(
     """
     if items is None and network is None:
         return _by_the_rule(rule, utensils)
-    return cache(partial(_execution, items or UsedUp(), rule, utensils, network))
+    return cache(partial(_execution, items or UsedUp(), rule, utensils, network, amounts))
 
 
 @lru_cache(maxsize=4)
 def _by_the_rule(rule: ContainerRule, utensils: frozenset[str]) -> Callable[[FunctionalUnit], Execution]:
     """Return the execution function under the plain rule of docs/plans.md, one for all checked trees."""
-    return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None))
+    return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None, {}))
 
 
 def _execution(
@@ -64,13 +76,22 @@ def _execution(
     rule: ContainerRule,
     utensils: frozenset[str],
     network: Network | None,
+    amounts: Amounts,
     unit: FunctionalUnit,
 ) -> Execution:
     """Return preconditions, consumption and add effects of one execution of a unit."""
-    preconditions = tuple(dict.fromkeys(needed_inputs(unit, rule, utensils, network)))
-    made = dict.fromkeys(given_outputs(unit, rule, utensils, network))
-    return Execution(
-        preconditions,
-        tuple(node for node in preconditions if not items.fate(unit, node, utensils).stays),
-        tuple(node for node in made if node not in unit.inputs),
-    )
+    taken, made = amounts.get(unit, _NO_AMOUNTS)
+    preconditions = {node: taken.get(node, 1) for node in needed_inputs(unit, rule, utensils, network)}
+    consumed: dict[ObjectNode, int] = {}
+    for node, amount in preconditions.items():
+        fate = items.fate(unit, node, utensils)
+        if not fate.stays:
+            consumed[node] = amount
+        elif fate is Fate.OUTPUT and amount > made.get(node, 1):
+            consumed[node] = amount - made.get(node, 1)
+    added: dict[ObjectNode, int] = {}
+    for node in given_outputs(unit, rule, utensils, network):
+        more = made.get(node, 1) - (taken.get(node, 1) if node in unit.inputs else 0)
+        if more > 0:
+            added[node] = more
+    return Execution(preconditions, consumed, added)

@@ -27,8 +27,26 @@ def program() -> Path | None:
     return None if found is None else Path(found)
 
 
+def judge(checker: Path, data: str, certificate: str) -> tuple[str, str]:
+    """Return the verdict of the proved checker: ``accepted``, ``refused`` or ``not checked``, and the reason.
+
+    Parameters:
+        checker: The program.
+        data: The data as :meth:`Subject.described` writes them.
+        certificate: The text of the certificate.
+    """
+    ended = subprocess.run(
+        [checker], input=f"{data}\n{certificate}".encode(errors="replace"), capture_output=True, check=False
+    )
+    verdict, _, reason = ended.stdout.decode(errors="replace").strip().partition(": ")
+    expected = {0: ACCEPTED, 1: "refused", 3: "not checked"}
+    if expected.get(ended.returncode) == verdict:
+        return verdict, reason
+    return "not checked", f"it ended with the exit code {ended.returncode}"
+
+
 def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
-    """Run the proved checker on a certificate whose form and digests :func:`verify` has checked.
+    """Ask the proved checker about a certificate that :func:`verify` accepts.
 
     Returns:
         ``accepted``, or else why it is not checked, in words.
@@ -40,16 +58,7 @@ def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
     if checker is None:
         return NOT_BUILT
     data = subject.described(read_rules(certificate["rules"], len(subject.network)))
-    ended = subprocess.run(
-        [checker],
-        input=f"{data}\n{canonical(certificate)}",
-        capture_output=True,
-        encoding="utf-8",
-        check=False,
-    )
-    answer, _, reason = ended.stdout.strip().partition(": ")
-    if ended.returncode == 1:
+    verdict, reason = judge(checker, data, canonical(certificate))
+    if verdict == "refused":
         raise RefusedError(f"by the proved checker: {reason}")
-    if ended.returncode == 0 and answer == ACCEPTED:
-        return ACCEPTED
-    return f"not checked: {reason or f'it ended with the exit code {ended.returncode}'}"
+    return verdict if verdict == ACCEPTED else f"{verdict}: {reason}"

@@ -1,8 +1,9 @@
 """Replay of a plan with consumable items, copy by copy, in plain Python and independent of the solver."""
 
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode
@@ -21,15 +22,16 @@ class Copy(NamedTuple):
 
 
 class Shortage(NamedTuple):
-    """The copy that is missing: of ``node``, at the position ``step`` (from 0), or at the end if ``None``.
+    """The copies that are missing: of ``node``, at the position ``step`` (from 0), or at the end if ``None``.
 
-    ``consumers`` are the positions of the steps that used up the copies, in order; where it is empty, there
-    never was a copy.
+    ``consumers`` are the positions of the steps that used up the copies, in order; where it is empty, none
+    did. ``amount`` is how many are needed.
     """
 
     step: int | None
     node: ObjectNode
     consumers: tuple[int, ...]
+    amount: int = 1
 
 
 class Step(NamedTuple):
@@ -81,8 +83,8 @@ def waits(replay: Replay) -> Iterator[set[int]]:
     spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
     for number, step in enumerate(replay.steps):
         after = {copy.made for copy in (*step.gone, *step.stayed) if copy.made is not None}
-        for copy in step.stayed:
-            readers.setdefault((copy, spent[copy]), set()).add(number)
+        for read in _read(step, spent):
+            readers.setdefault(read, set()).add(number)
         for copy in step.gone:
             if copy.made is not None or copy.node in replay.stock:
                 after |= readers.get((copy, spent[copy]), set())
@@ -99,11 +101,19 @@ def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, .
     reading: dict[tuple[Copy, int], list[int]] = {}
     spent: Counter[Copy] = Counter()  # as in waits
     for number, step in enumerate(replay.steps):
-        for copy in step.stayed:
+        for copy, earlier in _read(step, spent):
             if (copy.made is not None or copy.node in replay.stock) and not is_free(copy.node.label):
-                reading.setdefault((copy, spent[copy]), []).append(number)
+                reading.setdefault((copy, earlier), []).append(number)
         spent.update(step.gone)
     return [tuple(steps) for steps in reading.values() if len(steps) > 1]
+
+
+def _read(step: Step, spent: Counter[Copy]) -> Iterator[tuple[Copy, int]]:
+    """Yield the copies that a step reads, each with how many like it were used up before."""
+    before = spent + Counter(step.gone)
+    for copy in step.stayed:
+        yield copy, before[copy]
+        before[copy] += 1
 
 
 class _Kitchen:
@@ -111,8 +121,8 @@ class _Kitchen:
 
     def __init__(self, problem: Problem) -> None:
         assert problem.items is not None
-        self._goals, self._executions = problem.goal_nodes, Executions(problem)
-        self._copies = {node: [Copy(node, None)] * n for node, n in self._executions.stock().items()}
+        self._executions = Executions(problem)
+        self._copies = {node: deque([Copy(node, None)] * n) for node, n in self._executions.stock().items()}
         self._consumers_of: dict[ObjectNode, list[int]] = {}
         self._made: Counter[ObjectNode] = Counter()  # copies made less copies used up
         self._least: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
@@ -122,52 +132,54 @@ class _Kitchen:
         shortage: Shortage | None = None
         for position, unit in enumerate(plan):
             preconditions = self._executions.of(unit).preconditions
-            lacking = next((node for node in preconditions if not self._has(node)), None)
-            if lacking is not None:
-                shortage = self._shortage(position, lacking)
+            lacking = [(node, n) for node, n in preconditions.items() if not self._has(node, n)]
+            if lacking:
+                shortage = self._shortage(position, *lacking[0])
                 break
             steps.append(self._step(position, unit))
         if shortage is None:
-            missing = [node for node in self._goals if not self._has(node)]
+            missing = [(node, n) for node, n in self._executions.wanted().items() if not self._has(node, n)]
             if missing:
-                shortage = self._shortage(None, missing[0])
+                shortage = self._shortage(None, *missing[0])
         remaining = tuple(copy for copies in self._copies.values() for copy in copies)
         return Replay(tuple(steps), shortage, remaining, self._least)
 
     def _step(self, position: int, unit: FunctionalUnit) -> Step:
         preconditions, consumes, adds = self._executions.of(unit)
-        gone, stayed, came = [], [], []
-        consumed = frozenset(consumes)  # a unit may need very many
-        for node in preconditions:
-            if node in consumed:
-                gone.append(self._take(node, position))
-            else:
-                stayed.append(self._endless(node) or self._copies[node][0])
-        for node in adds:
-            came.append(Copy(node, position))
+        gone, stayed, came = list[Copy](), list[Copy](), list[Copy]()
+        for node, amount in preconditions.items():
+            used = consumes.get(node, 0)
+            gone += self._take(node, used, position)
+            endless = self._endless(node)
+            kept = amount - used
+            stayed += [endless] * kept if endless else islice(self._copies[node], kept)
+        for node, amount in adds.items():
+            copies = [Copy(node, position)] * amount
+            came += copies
             if not self._endless(node):
-                self._copies.setdefault(node, []).append(came[-1])
-                self._made[node] += 1
+                self._copies.setdefault(node, deque()).extend(copies)
+                self._made[node] += amount
         return Step(unit, tuple(gone), tuple(stayed), tuple(came))
 
     def _endless(self, node: ObjectNode) -> Copy | None:
         return Copy(node, None) if self._executions.is_endless(node) else None
 
-    def _has(self, node: ObjectNode) -> bool:
-        """Return whether there is a copy of a node, and note that the plan needs it."""
+    def _has(self, node: ObjectNode, amount: int) -> bool:
+        """Return whether there are copies of a node, and note that the plan needs them."""
         if self._endless(node):
             return True
         if node in self._least:
-            self._least[node] = max(self._least[node], 1 - self._made[node])
-        return bool(self._copies.get(node))
+            self._least[node] = max(self._least[node], amount - self._made[node])
+        return len(self._copies.get(node, ())) >= amount
 
-    def _take(self, node: ObjectNode, position: int) -> Copy:
+    def _take(self, node: ObjectNode, amount: int, position: int) -> list[Copy]:
         endless = self._endless(node)
         if endless:
-            return endless
-        self._consumers_of.setdefault(node, []).append(position)
-        self._made[node] -= 1
-        return self._copies[node].pop(0)
+            return [endless] * amount
+        if amount:
+            self._consumers_of.setdefault(node, []).append(position)
+        self._made[node] -= amount
+        return [self._copies[node].popleft() for _ in range(amount)]
 
-    def _shortage(self, step: int | None, node: ObjectNode) -> Shortage:
-        return Shortage(step, node, tuple(self._consumers_of.get(node, ())))
+    def _shortage(self, step: int | None, node: ObjectNode, amount: int) -> Shortage:
+        return Shortage(step, node, tuple(self._consumers_of.get(node, ())), amount)

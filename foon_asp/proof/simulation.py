@@ -29,13 +29,14 @@ class Obstacle(NamedTuple):
     ``cycle`` lists positions of units each of which waits for what the next makes, and the last for what the
     first makes, where ``unit`` waits for such a cycle; otherwise it is empty, and ``unit`` needs, perhaps
     through other units, an input that no unit of the tree makes. ``used_up_by`` are the positions of the
-    steps of a plan that use up the copies there are.
+    steps of a plan that use up the copies there are, and ``amount`` is how many copies are needed.
     """
 
     unit: int | None
     missing: ObjectNode
     cycle: tuple[int, ...] = ()
     used_up_by: tuple[int, ...] = ()
+    amount: int = 1
 
 
 class Simulation(NamedTuple):

@@ -50,8 +50,10 @@ def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fr
     if (serving, served) in table.pairs:
         return table.pairs[serving, served]
     prices: list[Fraction | None] = []
+    labels = serving.label, served.label
     if serving.label != served.label:
-        prices.append(table.pairs.get((serving.label, served.label)))
+        same_word = labels not in table.pairs and _bare(serving.label) == _bare(served.label)
+        prices.append(table.edits[Edit.SPELLING] if same_word else table.pairs.get(labels))
     items, other_items = Counter(serving.ingredients), Counter(served.ingredients)
     if items != other_items and max(items.total(), other_items.total()) >= 2 * (items & other_items).total():
         prices.append(table.edits[Edit.CONTENTS])
@@ -111,6 +113,15 @@ def stand_in_fault(
     return None
 
 
+def _bare(label: str) -> str:
+    """Return a label as a single word in the singular."""
+    word = "".join(letter for letter in label.casefold() if letter not in " -_")
+    if len(word) > 5 and word[-3:] in {"ies", "oes"}:
+        return word[:-3] + {"i": "y", "o": "o"}[word[-3]]
+    plural = word[-1:] == "s" and word[-2:] != "ss"
+    return word[:-1] if plural and len(word) > 3 else word
+
+
 class _Servers:
     """The nodes that stand in for others; with ``nearest``, only those no more expensive than a free node."""
 
@@ -120,6 +131,9 @@ class _Servers:
         self._by_label: dict[str, list[int]] = {}
         for o, node in enumerate(network.objects):
             self._by_label.setdefault(node.label, []).append(o)
+        self._spelled: dict[str, list[int]] = {}
+        for label, nodes in self._by_label.items():
+            self._spelled.setdefault(_bare(label), []).extend(nodes)
         self._of: dict[int, dict[int, Fraction]] = {}
 
     def of(self, served: int) -> dict[int, Fraction]:
@@ -139,7 +153,7 @@ class _Servers:
         return self._of[served]
 
     def _candidates(self, node: ObjectNode) -> Iterator[int]:
-        yield from self._by_label[node.label]
+        yield from self._spelled[_bare(node.label)]
         for serving, served in self._table.pairs:
             if served == node.label and isinstance(serving, str):
                 yield from self._by_label.get(serving, ())

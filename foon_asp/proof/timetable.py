@@ -181,23 +181,22 @@ class _Run:
                 yield f"waits for {hand}, which is at step {self._working[hand] + 1}"
         yield from self._wrong_tools(unit, step.tools)
         needed, consumes, _ = self._executions.of(unit)
-        for node in needed:
+        for node, amount in needed.items():
             if self._executions.is_endless(node):
                 continue
-            goes = node in consumes
+            goes = consumes.get(node, 0)
             in_use = 0 if self._means.is_free(node.label) and not goes else self._read[node]
-            if self._copies[node] <= in_use:
+            if self._copies[node] < in_use + amount:
                 yield f"lacks a copy of {node}"
             self._copies[node] -= goes
-            self._read[node] += not goes
+            self._read[node] += amount - goes
         self._working.update(dict.fromkeys(hands, number))
 
     def _end(self, number: int) -> None:
         unit, step = self._plan[number], self._steps[number]
         needed, consumes, made = self._executions.of(unit)
-        for node in needed:
-            if node not in consumes:
-                self._read[node] -= 1  # of what is endless, nobody asks for this
+        for node, amount in needed.items():
+            self._read[node] -= amount - consumes.get(node, 0)  # of what is endless, nobody asks for this
         self._copies.update(made)
         for tool in step.tools:
             # what of it is at other tools, nobody asks this one for

@@ -5,7 +5,6 @@ Where some node is used up more often than it is made, there is no such sequence
 for, depth first.
 """
 
-import itertools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
@@ -53,11 +52,11 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     executions = Executions(problem)
     endless = cache(executions.is_endless)
 
-    def finite(nodes: Iterable[ObjectNode]) -> tuple[ObjectNode, ...]:
-        return tuple(itertools.filterfalse(endless, nodes))
+    def finite(copies: Mapping[ObjectNode, int]) -> dict[ObjectNode, int]:
+        return {node: n for node, n in copies.items() if not endless(node)}
 
     steps = [Execution(*map(finite, executions.of(unit))) for unit in tree]
-    stock, goals = executions.stock(), frozenset(finite(problem.goal_nodes))
+    stock, goals = executions.stock(), finite(executions.wanted())
     listed = _shortage_as_listed(steps, stock, goals)
     if listed is None:
         return UsedUpRun(tuple(range(len(steps))))
@@ -71,26 +70,26 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
 
 
 def _shortage_as_listed(
-    steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Iterable[ObjectNode]
+    steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
     """Return the copy that is missing when the steps are done as listed; ``None`` where they run."""
     copies, consumers = dict(stock), dict[ObjectNode, list[int]]()
 
-    def missing(step: int | None, nodes: Iterable[ObjectNode]) -> Shortage | None:
-        for node in nodes:
-            if not copies.get(node):
-                return Shortage(step, node, tuple(consumers.get(node, ())))
+    def missing(step: int | None, asked: Mapping[ObjectNode, int]) -> Shortage | None:
+        for node, amount in asked.items():
+            if copies.get(node, 0) < amount:
+                return Shortage(step, node, tuple(consumers.get(node, ())), amount)
         return None
 
     for step, (preconditions, consumes, adds) in enumerate(steps):
         shortage = missing(step, preconditions)
         if shortage is not None:
             return shortage
-        for node in consumes:
-            copies[node] -= 1
+        for node, amount in consumes.items():
+            copies[node] -= amount
             consumers.setdefault(node, []).append(step)
-        for node in adds:
-            copies[node] = copies.get(node, 0) + 1
+        for node, amount in adds.items():
+            copies[node] = copies.get(node, 0) + amount
     return missing(None, goals)
 
 
@@ -102,7 +101,7 @@ class _OrderSearch:
     """
 
     def __init__(
-        self, steps: Sequence[Execution], copies: Counter[ObjectNode], goals: frozenset[ObjectNode]
+        self, steps: Sequence[Execution], copies: Counter[ObjectNode], goals: Mapping[ObjectNode, int]
     ) -> None:
         self._steps, self._copies, self._goals = steps, copies, goals
         self.looks_left = _MAX_LOOKS
@@ -111,28 +110,30 @@ class _OrderSearch:
         self._next = [*range(1, len(steps) + 1), 0]
         self._previous = [len(steps), *range(len(steps))]
         self._done = 0  # a bit for each step that was done
-        self._consumers = Counter(node for step in steps for node in step.consumes)  # of the steps that wait
-        self._readers = Counter(
-            node for step in steps for node in set(step.preconditions).difference(step.consumes)
-        )
+        self._consumers: Counter[ObjectNode] = Counter()  # copies that the steps that wait use up
+        self._readers: Counter[ObjectNode] = Counter()  # of the steps that wait
+        self._most_read: Counter[ObjectNode] = Counter()  # copies that one of its readers leaves there
+        for waiting in steps:
+            self._consumers.update(waiting.consumes)
+            for node, read in _reads(waiting):
+                self._readers[node] += 1
+                self._most_read[node] = max(self._most_read[node], read)
 
     def overdrawn(self) -> Shortage | None:
-        """Return the first copy that is missing in every order: more are used up than can ever exist."""
-        copies = self._copies + Counter(node for execution in self._steps for node in execution.adds)
+        """Return the first copy that is missing in every order, as more are used up than there ever are."""
+        copies = self._copies.copy()
+        for execution in self._steps:
+            copies.update(execution.adds)
         consumers: dict[ObjectNode, list[int]] = {}
         for position, execution in enumerate(self._steps):
-            for node in execution.consumes:
+            for node, amount in execution.consumes.items():
+                if copies[node] < amount:
+                    return Shortage(position, node, tuple(consumers.get(node, ())), amount)
+                copies[node] -= amount
                 consumers.setdefault(node, []).append(position)
-        ends = len(self._steps)
-        lacking: list[tuple[int, Shortage]] = []
-        for node, steps in consumers.items():
-            served = steps[: copies[node]]
-            if len(served) < len(steps):
-                step = steps[len(served)]
-                lacking.append((step, Shortage(step, node, tuple(served))))
-            elif len(served) == copies[node] and node in self._goals:
-                lacking.append((ends, Shortage(None, node, tuple(served))))
-        return min(lacking, key=lambda shortage: shortage[0])[1] if lacking else None
+        lacking = (node for node, n in self._goals.items() if copies[node] < n and node in consumers)
+        goal = next(lacking, None)
+        return None if goal is None else Shortage(None, goal, tuple(consumers[goal]), self._goals[goal])
 
     def order(self) -> tuple[int, ...] | None:
         """Return an order that runs, where no node is overdrawn; ``None`` where none is found."""
@@ -165,7 +166,7 @@ class _OrderSearch:
         while step != end and self.looks_left > 0:
             self.looks_left -= 1
             execution = self._steps[step]
-            if all(self._copies[node] for node in execution.preconditions):
+            if all(self._copies[node] >= n for node, n in execution.preconditions.items()):
                 yield step
                 if all(
                     map(self._plentiful, execution.consumes)
@@ -177,18 +178,18 @@ class _OrderSearch:
         """Return the copy that a waiting step is missing because earlier steps used it up."""
         step = self._next[-1]
         while step != len(self._steps):
-            for node in self._steps[step].preconditions:
+            for node, amount in self._steps[step].preconditions.items():
                 consumers = tuple(
                     earlier for earlier in sorted(done) if node in self._steps[earlier].consumes
                 )
-                if consumers and not self._copies[node]:
-                    return Shortage(step, node, consumers)
+                if consumers and self._copies[node] < amount:
+                    return Shortage(step, node, consumers, amount)
             step = self._next[step]
         return None
 
     def _plentiful(self, node: ObjectNode) -> bool:
         """Return whether there are copies of a node for all waiting steps, and for the goals."""
-        reserved = node in self._goals or self._readers[node] > 0
+        reserved = max(self._goals.get(node, 0), self._most_read[node] if self._readers[node] else 0)
         return self._copies[node] >= self._consumers[node] + reserved
 
     def _do(self, step: int) -> None:
@@ -202,11 +203,18 @@ class _OrderSearch:
 
     def _shift(self, step: int, sign: int) -> None:
         self._done ^= 1 << step
-        preconditions, consumes, adds = self._steps[step]
-        for node in preconditions:
-            counted = self._consumers if node in consumes else self._readers
-            counted[node] -= sign
-        for node in consumes:
-            self._copies[node] -= sign
-        for node in adds:
-            self._copies[node] += sign
+        _, consumes, adds = self._steps[step]
+        for node, _ in _reads(self._steps[step]):
+            self._readers[node] -= sign
+        for node, amount in consumes.items():
+            self._consumers[node] -= sign * amount
+            self._copies[node] -= sign * amount
+        for node, amount in adds.items():
+            self._copies[node] += sign * amount
+
+
+def _reads(step: Execution) -> Iterator[tuple[ObjectNode, int]]:
+    """Yield the nodes of which a step leaves copies that it needs, with their number."""
+    for node, amount in step.preconditions.items():
+        if amount > step.consumes.get(node, 0):
+            yield node, amount - step.consumes.get(node, 0)

@@ -27,7 +27,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
-from foon_asp.network import STAND_IN, Network, StandInTable, UnitPrices, node_at_level
+from foon_asp.network import STAND_IN, Amounts, Network, StandInTable, UnitPrices, node_at_level
 from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
 from foon_asp.proof.ruled import Limit, Ruled
 from foon_asp.proof.stand_ins import Claim as StandInClaim
@@ -89,6 +89,7 @@ class Subject(NamedTuple):
 
     ``stated`` are digests by name that are not computed from the other fields; those named in ``trusted``
     were never computed. ``stand_ins`` is the table of the stand-ins that the network has, ``None`` without.
+    ``amounts`` count in plans, whose certificates state them.
     """
 
     network: Network
@@ -98,6 +99,7 @@ class Subject(NamedTuple):
     prices: UnitPrices | None = None
     stated: Mapping[str, str] = MappingProxyType({})
     trusted: tuple[str, ...] = ()
+    amounts: Amounts = MappingProxyType({})
     stand_ins: StandInTable | None = None
 
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
@@ -111,7 +113,7 @@ class Subject(NamedTuple):
         }
 
     def described(self, rules: Iterable[Rule] = ()) -> str:
-        """Return all data that a certificate can depend on, as canonical JSON by the name of the digest."""
+        """Return the values of the digests by name, as canonical JSON: all that a certificate depends on."""
         return canonical({name: value() for name, value in self._described(rules).items()})
 
     def _described(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
@@ -163,11 +165,13 @@ class UsedUp(NamedTuple):
     """The statements about consumable items in a claim about plans.
 
     ``stock`` maps consumable kitchen items, by id, to their copies. ``stays`` maps labels, and object nodes
-    by id, to whether they stay when used, which overrides the rule.
+    by id, to whether they stay when used, which overrides the rule. ``wanted`` maps goals to the copies that
+    are wanted, where that is not one.
     """
 
     stock: Mapping[int, int]
     stays: Mapping[str | int, bool]
+    wanted: Mapping[int, int] = MappingProxyType({})
 
 
 class Verified(NamedTuple):

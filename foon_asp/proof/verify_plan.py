@@ -11,12 +11,13 @@ What becomes of the inputs of a unit, and whether a plan runs, is worked out her
 
 import math
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, cached_property, partial
 from itertools import chain
 from typing import Any, NamedTuple
 
+from foon_asp.network import ObjectNode
 from foon_asp.proof.constraint import LIBRARY, Rule
 from foon_asp.proof.verify import (
     KEYS,
@@ -38,7 +39,7 @@ from foon_asp.proof.verify import (
     verify,
 )
 
-PLAN = Form("foon-asp certificate of a plan", 1, KEYS | {"items", "unreached"})
+PLAN = Form("foon-asp certificate of a plan", 2, KEYS | {"items", "unreached"})
 
 # The rules that plans can be checked against: those that remove units, at-least-one constraints, and those
 # whose limit counts each execution.
@@ -48,15 +49,15 @@ RULES = frozenset({*COUNTING, *WANTING, *(name for name, rule in LIBRARY.items()
 
 FINE = 10**9  # scale of logarithms, where plans have to be as good by success as the incumbent
 _MAX_COUNT = 10**9  # of copies in stock, and of executions in a branch
-_LEAF = {"weights", "before", "balance", "limits", "levels"}
+_LEAF = {"weights", "before", "supply", "balance", "limits", "levels"}
 
 
 class Flow(NamedTuple):
-    """The preconditions of a unit, the nodes that it consumes and those that it adds, one copy of each."""
+    """The preconditions of a unit, the nodes that it consumes and those that it adds, with their copies."""
 
-    asks: frozenset[int]
-    uses: frozenset[int]
-    adds: frozenset[int]
+    asks: Mapping[int, int]
+    uses: Mapping[int, int]
+    adds: Mapping[int, int]
 
 
 class Node(NamedTuple):
@@ -88,7 +89,7 @@ def verify_plan(certificate: Any, subject: Subject) -> Verified:
     require(subject.network.level == 3, "below level 3 nothing says what is used up: contents decide")
     require(RULES.issuperset(rule["rule"] for rule in rules), "a rule that plans are not held against")
     check = PlanCheck(certificate, rules, subject)
-    return check.claim()._replace(used_up=UsedUp(check.stock, check.stays_stated))
+    return check.claim()._replace(used_up=UsedUp(check.stock, check.stays_stated, check.wanted_stated))
 
 
 class PlanCheck(Check):
@@ -99,34 +100,69 @@ class PlanCheck(Check):
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
-        items = read_object(certificate["items"], ("stock", "stays"))
+        items = read_object(certificate["items"], ("stock", "stays", "wanted", "amounts"))
         self.stock = _stock(items["stock"], subject.kitchen)
         self.stays_stated = _stays_stated(items["stays"], len(subject.network.objects))
+        self.wanted_stated = _copies(items["wanted"], "goals and how many of each are wanted")
+        require(all(n > 1 for n in self.wanted_stated.values()), "an amount of a goal is not above 1")
+        self.amounts = _amounts(items["amounts"], subject)
         self.endless = frozenset(subject.kitchen) - self.stock.keys()
         self.flow, self.cap, self.whole = cache(self._flow), cache(self._cap), cache(self._whole)
+        self.lacks = cache(self._lacks)
         super().__init__(certificate, rules, subject)
+        require(set(self.goals).issuperset(self.wanted_stated), "an amount is wanted of what is no goal")
 
     # --- what units do
 
     def _flow(self, unit: int) -> Flow:
         """Return preconditions, consumption and add effects of a unit; inputs are never add effects."""
-        network = self.network
-        asks = frozenset(o for o in self.needs(unit) if o is not None)
-        gives = frozenset(o for o in self.gives(unit) if o is not None)
-        gone = frozenset(o for o in asks if not self._stays(unit, o))
-        self._spend(len(network.inputs[unit]) * (1 + len(network.outputs[unit])))
-        return Flow(asks, gone, gives.difference(network.inputs[unit]))
+        network, inputs = self.network, self.network.inputs[unit]
+        taken, made = self.amounts.get(unit, ({}, {}))
+        asks = {o: taken.get(o, 1) for o in self.needs(unit) if o is not None}
+        gives = {o: made.get(o, 1) for o in self.gives(unit) if o is not None}
+        self._spend(len(inputs) * (1 + len(network.outputs[unit])))
+        kept = {o: self._kept(unit, o, amount, made.get(o, 1)) for o, amount in asks.items()}
+        adds = {o: n - (taken.get(o, 1) if o in inputs else 0) for o, n in gives.items()}
+        return Flow(
+            asks,
+            {o: amount - kept[o] for o, amount in asks.items() if amount > kept[o]},
+            {o: more for o, more in adds.items() if more > 0},
+        )
 
-    def _stays(self, unit: int, o: int) -> bool:
-        """Return whether an input stays when a unit has run: as the certificate states, or by the rule."""
+    def _lacks(self, unit: int) -> frozenset[int]:
+        """Return the preconditions of a unit that initial copies do not satisfy.
+
+        With the objective ``kitchen``, initial copies are members of cuts, and satisfy none.
+        """
+        return frozenset(o for o, n in self.flow(unit).asks.items() if self._is_lacking(o, n))
+
+    def _is_lacking(self, o: int, copies: int) -> bool:
+        if "kitchen" in self.objectives:
+            return True
+        return o not in self.endless and copies > self.stock.get(o, 0)
+
+    def wanted(self, goal: int) -> int:
+        """Return how many copies of a goal are wanted."""
+        return self.wanted_stated.get(goal, 1)
+
+    def _kept(self, unit: int, o: int, amount: int, made: int) -> int:
+        """Return how many of the copies of an input stay when a unit has run.
+
+        As the certificate states; of what is also an output, as many as that has; or by the rule.
+        """
         objects, network = self.network.objects, self.network
         node = objects[o]
         for name in (o, node.label):
             if name in self.stays_stated:
-                return self.stays_stated[name]
-        outputs = [objects[made] for made in network.outputs[unit]]
+                return amount if self.stays_stated[name] else 0
+        outputs = [objects[output] for output in network.outputs[unit]]
         if any(output.label == node.label for output in outputs):
-            return o in network.outputs[unit]
+            return min(amount, made) if o in network.outputs[unit] else 0
+        return amount if self._stays(unit, node, outputs) else 0
+
+    def _stays(self, unit: int, node: ObjectNode, outputs: Sequence[ObjectNode]) -> bool:
+        """Return whether an input of which no output has the label stays by the rule."""
+        objects, network = self.network.objects, self.network
         if node.label in self.utensils:
             holds = any(contents.ingredients for contents in node.contents)
             if not holds or any(output.is_in(node.label) for output in outputs):
@@ -149,7 +185,7 @@ class PlanCheck(Check):
             self._spend(1 + len(network.producers[o]))
             require(not self._is_initial(o), "what is there at first is called unreached")
             for unit in network.producers[o]:
-                reaches = o in self.flow(unit).adds and self.flow(unit).asks.isdisjoint(unreached)
+                reaches = o in self.flow(unit).adds and unreached.isdisjoint(self.flow(unit).asks)
                 require(unit in removed or not reaches, "what a unit can add is called unreached")
         asking = {unit for o in unreached for unit in network.consumers[o] if o in self.flow(unit).asks}
         return removed | asking
@@ -167,11 +203,12 @@ class PlanCheck(Check):
                 units += own[o]
                 continue
             if self._is_initial(o):
-                require("kitchen" in self.objectives, "a cut holds a kitchen item")
-                yield len(network) + o
+                counted = "kitchen" in self.objectives
+                require(counted or o not in self.endless, "a cut holds a kitchen item")
+                yield from [len(network) + o] * counted
             if o not in self.endless:
                 units += (unit for unit in network.producers[o] if o in self.flow(unit).adds)
-        yield from (u for u in units if u not in self.idle and cut.isdisjoint(self.flow(u).asks))
+        yield from (u for u in units if u not in self.idle and cut.isdisjoint(self.lacks(u)))
 
     # --- the plan
 
@@ -185,18 +222,19 @@ class PlanCheck(Check):
             asks, uses, adds = self.flow(unit)
             self._spend(1 + len(asks) + len(adds))
             require(
-                all(o in self.endless or copies[o] > 0 for o in asks),
+                all(o in self.endless or copies[o] >= n for o, n in asks.items()),
                 f"unit {unit} of the plan lacks a copy of an input at step {step + 1}",
             )
-            items_taken |= asks & self.endless
-            for o in asks & self.stock.keys():
-                least[o] = max(least[o], 1 + self.stock[o] - copies[o])
-            copies.subtract(uses - self.endless)
-            copies.update(adds - self.endless)
+            items_taken |= self.endless & asks.keys()
+            for o in asks.keys() & self.stock.keys():
+                least[o] = max(least[o], asks[o] + self.stock[o] - copies[o])
+            copies.subtract({o: n for o, n in uses.items() if o not in self.endless})
+            copies.update({o: n for o, n in adds.items() if o not in self.endless})
         for goal in set(self.goals) - self.endless:
-            require(copies[goal] > 0, "a copy of a goal is not there in the end")
+            wanted = self.wanted(goal)
+            require(copies[goal] >= wanted, "a copy of a goal is not there in the end")
             if goal in self.stock:
-                least[goal] = max(least[goal], 1 + self.stock[goal] - copies[goal])
+                least[goal] = max(least[goal], wanted + self.stock[goal] - copies[goal])
         self._keep_counts(Counter(units))
         first = len(network)
         members = [
@@ -351,7 +389,10 @@ class PlanCheck(Check):
 
     def holds_goal(self, nodes: frozenset[int]) -> bool:
         """Return whether a cut holds a goal that is consumable or made, or a goal of a rule."""
-        wanted = any(goal in nodes and goal not in self.endless for goal in self.goals)
+        wanted = any(
+            goal in nodes and goal not in self.endless and self._is_lacking(goal, self.wanted(goal))
+            for goal in self.goals
+        )
         return wanted or not nodes.isdisjoint(self.ruled.goals)
 
     def weight(self, stated: Any, level: int) -> Amount:
@@ -404,9 +445,11 @@ class _Conditions:
             self._cross(cut, weight, check.holds_goal(check.cut(cut)))
         for (cut, stated), weight in self._read("before", 2):
             unit = read_number(stated, range(units), "the id of a unit that a cut is before")
-            self._cross(cut, weight, not check.cut(cut).isdisjoint(check.flow(unit).asks))
+            self._cross(cut, weight, not check.cut(cut).isdisjoint(check.lacks(unit)))
             self._bring(self.used, unit, weight, 1)
             self._demand(weight, -1)
+        for (o, stated), weight in self._read("supply", 2):
+            self._supply(o, read_number(stated, range(units), "the id of a unit that is supplied"), weight)
         for (o,), weight in self._read("balance"):
             self._balance(o, weight)
         for (number,), weight in self._read("limits"):
@@ -438,15 +481,35 @@ class _Conditions:
         check, network = self.check, self.check.network
         read_number(o, range(len(network.objects)), "the id of a node in a balance")
         require(o not in check.endless, "what never runs out has no balance")
-        initial = check.stock.get(o, 0)
-        if "kitchen" in check.objectives and initial:
-            self._bring(self.executed, len(network) + o, weight, -1)
-            initial = 0
-        self._demand(weight, (o in check.goals) - initial)
+        wanted = check.wanted(o) if o in check.goals else 0
+        self._demand(weight, wanted - self._initial(o, weight))
         for unit in {*network.producers[o], *network.consumers[o]}:
             flow = check.flow(unit)
-            if change := (o in flow.adds) - (o in flow.uses):
+            if change := flow.adds.get(o, 0) - flow.uses.get(o, 0):
                 self._bring(self.executed, unit, weight, -change)
+
+    def _supply(self, o: int, supplied: int, weight: Amount) -> None:
+        """Add the supply of a unit: before it is executed, there are the copies of a node that it asks for.
+
+        They are initial, or others add them, since none are added before its first execution by itself.
+        """
+        check, network = self.check, self.check.network
+        read_number(o, range(len(network.objects)), "the id of a node in a supply")
+        require(o not in check.endless, "what never runs out needs no supply")
+        self._demand(weight, -self._initial(o, weight))
+        self._bring(self.used, supplied, weight, check.flow(supplied).asks.get(o, 0))
+        for unit in network.producers[o]:
+            if unit != supplied and (added := check.flow(unit).adds.get(o, 0)):
+                self._bring(self.executed, unit, weight, -added)
+
+    def _initial(self, o: int, weight: Amount) -> int:
+        """Return the initial copies of a node; if they have a price, they are brought as a member instead."""
+        check = self.check
+        initial = check.stock.get(o, 0)
+        if "kitchen" in check.objectives and initial:
+            self._bring(self.executed, len(check.network) + o, weight, -1)
+            return 0
+        return initial
 
     def _demand(self, weight: Amount, factor: int | Fraction) -> None:
         """Add an amount to the right-hand side."""
@@ -459,16 +522,43 @@ class _Conditions:
         return self.check.sum([amount, self.check.times(weight, Fraction(factor))])
 
 
-def _stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
-    """Read the copies in stock of kitchen items, by id."""
-    what = "items and their copies in stock"
+def _copies(value: Any, what: str) -> dict[int, int]:
+    """Read numbers of copies by id."""
     pairs = [read_pair(pair, what) for pair in read_list(value)]
     for number in chain.from_iterable(pairs):
         read_number(number, range(_MAX_COUNT), what)
     ids = [o for o, _ in pairs]
-    require(ids == sorted(set(ids)), "expected items of the stock in order, each of them once")
-    require(all(o in kitchen for o in ids), "expected kitchen items in stock")
+    require(ids == sorted(set(ids)), f"expected {what} in order, each of them once")
     return dict(pairs)
+
+
+def _stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
+    """Read the copies in stock of kitchen items, by id."""
+    stock = _copies(value, "items and their copies in stock")
+    require(all(o in kitchen for o in stock), "expected kitchen items in stock")
+    return stock
+
+
+def _amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], dict[int, int]]]:
+    """Read the amounts of units by id, and of their inputs and outputs; they have to be those of the data."""
+    what = "units and the amounts of their inputs and outputs"
+    stated: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
+    for row in read_list(value):
+        columns = read_list(row)
+        require(len(columns) == 3 and type(columns[0]) is int, f"expected {what}")
+        stated[columns[0]] = _copies(columns[1], what), _copies(columns[2], what)
+    network = subject.network
+    known: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
+    for unit, sides in subject.amounts.items():
+        number = network.unit_id(unit)
+        if number is not None and any(sides):
+            inputs, outputs = (
+                {o: n for node, n in side.items() if (o := network.object_id(node)) is not None}
+                for side in sides
+            )
+            known[number] = inputs, outputs
+    require(stated == known, "the amounts of units are not those of the data")
+    return stated
 
 
 def _stays_stated(value: Any, nodes: int) -> dict[str | int, bool]:

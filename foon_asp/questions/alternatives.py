@@ -21,7 +21,7 @@ from foon_asp.questions.arguments import Objectives, asked_with, at_least, chose
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.options import ITEMS, TREE
+from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
@@ -226,6 +226,7 @@ def alternatives_or_union(
 @question(
     *TREE,
     *ITEMS,
+    AMOUNT,
     Option(
         "union",
         "List the units of every optimal tree, and of some, proved without a list of the trees.",

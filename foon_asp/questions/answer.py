@@ -1,6 +1,7 @@
 """The best tree for a problem, and its proof."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -17,12 +18,13 @@ from foon_asp.problem.dead_ends import Cause
 from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.questions.why_infeasible import why_infeasible
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import bound_text, costs_text, figure_text
 from foon_asp.results.table import Block
-from foon_asp.results.values import Figure, ListedConstraint, Node, Step, UsedUpRun, Value
+from foon_asp.results.values import CostedTree, Figure, ListedConstraint, Node, Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.tables import Duration
@@ -128,6 +130,55 @@ class EngineCheck(Value, frozen=True):
     seconds: float
 
 
+class PolicyTree(Value, frozen=True):
+    """A tree that a policy follows, and how long.
+
+    Attributes:
+        failures: After how many failed executions the policy goes on with the next tree, or ends.
+    """
+
+    failures: int
+    tree: CostedTree
+
+
+class RetryPolicy(Value, frozen=True):
+    """Trees to follow one after the other, with what is there by then, and the chance that one is completed.
+
+    An execution succeeds with the rate of its unit, whatever happened before; a failed one changes nothing.
+
+    Attributes:
+        retries: How many executions may fail in a run that succeeds.
+        chance: The chance that the goals are made, by this policy.
+        bound: No policy over the units of the trees considered has a greater chance.
+        is_exact: Whether the bound is the chance of the best of these policies. If not, it is the chance that
+            the units which all of them need fail no more often than is allowed.
+        considered: The number of trees considered: the best one, and the best by success.
+    """
+
+    retries: int
+    chance: Fraction
+    bound: Fraction
+    is_exact: bool
+    considered: int
+    branches: tuple[PolicyTree, ...]
+
+    def lines(self) -> Iterator[str]:
+        """Return lines with the chance and what is proved of it, and with each tree."""
+        success = figure_text(Objective.SUCCESS, self.chance)
+        trees = counted(self.considered, "tree")
+        if self.chance == self.bound:
+            claim = f"proved that no policy over the units of {trees} has more"
+        else:
+            bound = figure_text(Objective.SUCCESS, self.bound)
+            claim = f"a policy over the units of {trees} has at most {bound}"
+            claim += ", which one has that chooses anew at every step" * self.is_exact
+        retries = f"{self.retries} retr{'y' if self.retries == 1 else 'ies'}"
+        yield f"with {retries}: success {success}; {claim}"
+        for number, branch in enumerate(self.branches, 1):
+            then = "until" if number == 1 else "then until"
+            yield f"  {then} {counted(branch.failures, 'failure')}: {costs_text(branch.tree.costs)}"
+
+
 class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("answer")):
     """The best task tree, and its proof.
 
@@ -153,6 +204,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             if one has no tree.
         serves: Of several goals, those that each unit is needed for.
         cross_check: The checks by other engines, where they are requested.
+        policy: With ``--retries``, the trees to follow, and their chance; null without a tree.
+        stand_ins: Of a problem with stand-ins, what is used in place of what; empty without a tree.
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
@@ -189,6 +242,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     sum_of_goals_alone: Figure | UnsetType | None = UNSET
     serves: tuple[Serving, ...] | UnsetType = UNSET
     cross_check: tuple[EngineCheck, ...] | UnsetType = UNSET
+    policy: RetryPolicy | UnsetType | None = UNSET
+    stand_ins: tuple[StandIn, ...] | UnsetType = UNSET
 
     @classmethod
     def of(cls, outcome: Outcome, bought: Collection[int] = (), **fields: Any) -> Self:
@@ -216,6 +271,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             used_up=used_up_of(problem, None if units is None else problem.tree(units)),
             units=None if units is None else steps_of(problem, units, bought),
             seconds={phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
+            stand_ins=UNSET if problem.stand_ins is None else stand_ins_in(problem, units or ()),
             **fields,
         )
         return answer.knowing(outcome=outcome)
@@ -308,13 +364,17 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             yield from why_infeasible(self.problem, caller().deadline)
 
     def remarks(self) -> Iterator[str]:
-        """Return lines on goals left out, on units shared between goals, and on soft constraints."""
+        """Return lines on goals left out, on shared units, soft constraints, retries and stand-ins."""
         if isinstance(self.skipped, tuple) and self.skipped:
             be = "is" if len(self.skipped) == 1 else "are"
             yield f"{counted(len(self.skipped), 'goal')} cannot be made and {be} left out:"
             yield from (f"  {skipped}" for skipped in self.skipped)
         yield from self._sharing()
         yield from self._penalty()
+        if isinstance(self.policy, RetryPolicy):
+            yield from self.policy.lines()
+        if isinstance(self.stand_ins, tuple) and self.units is not None:
+            yield from stand_in_lines(self.stand_ins)
 
     def _sharing(self) -> Iterator[str]:
         """Return lines with the costs of each goal by itself, and the units that serve several goals."""
@@ -364,7 +424,11 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             return None
         from foon_asp.questions.robot_plan import RobotPlan  # noqa: PLC0415
 
-        return RobotPlan.of(self.problem, self.objectives, self.ids, self.durations)
+        policy = None
+        if isinstance(self.policy, RetryPolicy):
+            ids = self.problem.network.units_of_numbers
+            policy = [(ids(branch.tree.ids), branch.failures) for branch in self.policy.branches]
+        return RobotPlan.of(self.problem, self.objectives, self.ids, self.durations, policy)
 
     def remark(self, format_: str) -> str:
         """Return the claim where that is not the best tree, and the notes, which JSON needs not."""

@@ -9,7 +9,7 @@ from foon_asp.asp.settings import Settings
 from foon_asp.dataset.items import require_contents
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
-from foon_asp.problem import ITEMS, Objective, Problem, UsedUp, parse_objectives
+from foon_asp.problem import ITEMS, Objective, Problem, UsedUp, parse_objectives, with_dissimilarity
 from foon_asp.questions.caller import caller
 from foon_asp.rules.constraint import Constraint, find_constraint, given_constraint
 
@@ -23,8 +23,8 @@ def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, .
     With stand-ins, dissimilarity comes first, unless it is named.
     """
     objectives = parse_objectives([names] if isinstance(names, str) else names, problem.measures)
-    if problem.stand_ins is not None and Objective.DISSIMILARITY not in objectives:
-        objectives = Objective.DISSIMILARITY, *objectives
+    if problem.stand_ins is not None:
+        objectives = with_dissimilarity(objectives)
     with reading():
         problem.require_known_for(objectives)
     return objectives
@@ -58,7 +58,7 @@ def asked_with(problem: Problem, settings: Settings, objectives: Sequence[Object
     The result also has all stand-ins, unless only the best tree by ``objectives`` is wanted and
     dissimilarity is the first of them.
     """
-    if problem.stand_ins is not None and tuple(objectives[:1]) != (Objective.DISSIMILARITY,):
+    if not problem.has_stand_ins_for(objectives):
         return whole(problem)
     from foon_asp.asp.assembly import need_whole_network  # noqa: PLC0415 (where there may be rules)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Self, Unpack
 
 from msgspec import UNSET, UnsetType, structs
@@ -16,10 +17,11 @@ from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_fo
 from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import Kind, Option, Role, question
-from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
+from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
+from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.tree import Tree, posed_tree
+from foon_asp.questions.tree import Tree, posed_tree, read_answer
 from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
@@ -31,6 +33,7 @@ if TYPE_CHECKING:  # clingo and linear programs, which only rules and certificat
     from foon_asp.asp import Settings
     from foon_asp.asp.breaking import Breaking
     from foon_asp.certificate import Certificate  # noqa: F401 (named in a text)
+    from foon_asp.questions.repair import Repaired
 
 
 class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
@@ -140,6 +143,10 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
     simulation = Unserialized[Simulation]()
     """What the simulation of the tree found."""
 
+    def foon(self) -> str:
+        """Return the tree as FOON text, in an order that executes if there is one."""
+        return str(self.in_order or self.tree)
+
     def remark(self, format_: str) -> str:
         """Return the notes on the certificate."""
         return "\n".join(self.notes)
@@ -160,8 +167,28 @@ def _simulated(tree: Tree) -> Simulation:
     shortage = replay_for(tree.problem, tree).shortage
     if shortage is None:
         return Simulation(Verdict.AS_LISTED, tuple(range(len(tree))), None, None)
-    stop = Obstacle(shortage.step, shortage.node, used_up_by=shortage.consumers)
+    stop = Obstacle(shortage.step, shortage.node, used_up_by=shortage.consumers, amount=shortage.amount)
     return Simulation(Verdict.NEVER, (), stop, None)
+
+
+def _posed(command: Command, tree: Path, **named: Any) -> tuple[Problem, Tree]:
+    """Pose what a tree is for; to be repaired, it is a part of the network, whatever names it uses."""
+    if command.given("repair") and not read_answer(tree).goals:
+        command.add_sources([tree])
+    return a_plan(command, tree=tree, **named)
+
+
+def check_or_repair(
+    problem: Problem, tree: Tree, *, repair: bool = False, certificate: File | None = None, **options: Any
+) -> "Checked | Repaired":
+    """Check a tree as ``foon-asp check`` does, or repair it."""
+    if not repair:
+        return check(problem, tree, certificate=certificate, **options)
+    if certificate is not None or options.pop("objectives"):
+        raise UserError("a repair has no certificate, and objectives of its own: leave them out")
+    from foon_asp.questions.repair import repair as repaired  # noqa: PLC0415 (the solver)
+
+    return repaired(problem, tree, **options)
 
 
 @question(
@@ -176,13 +203,23 @@ def _simulated(tree: Tree) -> Simulation:
     GOAL_OF_PLAN,
     CONTAINERS,
     *ITEMS,
-    pose=a_plan,
+    AMOUNT,
+    Option(
+        "repair",
+        "Find the cheapest stand-ins and steps to add, with which every step of the tree executes.",
+        Kind.FLAG,
+        default=False,
+    ),
+    formats=("text", "json", "csv", "markdown", "foon"),
+    pose=_posed,
+    command=check_or_repair,
     help_="""
     \b
     foon-asp check tree.txt --goal macaroni
     foon-asp check tree.txt --goal macaroni --rule ':- use(U), motion(U,"fry").'
     foon-asp check tree.txt --goal macaroni --certificate proof.json --objective success
     foon-asp check answer.json                              an answer knows its goal
+    foon-asp check tree.json --network FOON.txt --kitchen kitchen.json --repair
 
     The tree is FOON text, units in the order of execution, or an answer in JSON. Where no data are named and
     the bundled kitchen has less than half of its units, it is the network itself.
@@ -191,6 +228,9 @@ def _simulated(tree: Tree) -> Simulation:
 
     Under rules, it says of a tree that executes which of them it breaks. With --certificate, it proves the
     tree the best without a search, and writes the proof, which `foon-asp verify` checks.
+
+    With --repair, available nodes stand in for others (docs/stand-ins.md), units of the network are added,
+    and the order may change: the least dissimilarity, then the fewest units, with a proof.
 
     Exits with 0 when the tree executes, as listed or in the order that is then given; with 1 when no
     order executes, a unit is not in the network, or a rule is broken. With --certificate, it exits with 0

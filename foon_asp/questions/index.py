@@ -102,6 +102,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Count what is in a network, or list its functional units.",
         ("stats", "Stats"),
     ),
+    "align": Entry(
+        "Data",
+        "Compare the nodes of a recipe with those of a network: known, one edit away, or new.",
+        ("align", "Aligned"),
+    ),
     "diff": Entry(
         "Compare",
         "Show what two task trees or two networks have in common, and in what they differ.",

@@ -160,10 +160,15 @@ def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Mer
     builder = NetworkBuilder()
     copies = 0
     for file in network_files:
-        for motion, inputs, outputs, sources in reader.file_units(file):
+        for motion, inputs, outputs, sources, _ in reader.file_units(file):
             builder.add(motion, inputs, outputs, *sources)
             copies += 1
     warnings = tuple(summarize(reader.diagnostics))
+    if reader.amounts:
+        warnings += (
+            f"warning: FOON text has no amounts: those of {counted(len(reader.amounts), 'unit')} are left "
+            "out; --store keeps them",
+        )
     reader.raise_errors()
     reader.prices.settled(read_unit_prices(data_files.unit_prices).units if data_files.unit_prices else {})
     network = builder.build()

@@ -47,6 +47,16 @@ ITEMS = (
         metavar="FILE",
     ),
 )
+AMOUNT = Option(
+    "amounts",
+    "How many copies of the goal are wanted, one number for each --goal; items are used up then.",
+    Kind.WHOLE,
+    Role.PROBLEM,
+    flags=("--amount",),
+    many=True,
+    metavar="N",
+    least=1,
+)
 PLAN_ITEMS = (
     ITEMS[0]._replace(
         help="Whether the plan uses up what is there (used-up), or all of it can be used again and again "

@@ -19,7 +19,7 @@ from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectiv
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Option, question
-from foon_asp.questions.options import CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
+from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
@@ -222,6 +222,7 @@ class _Point(NamedTuple):
     ),
     CONTAINERS,
     *ITEMS,
+    AMOUNT,
     CHART._replace(help="A file for a chart of the front (.svg or .png)."),
     formats=TABLES,
     help_="""

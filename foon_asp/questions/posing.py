@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.items import items_of, wanted_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
@@ -44,7 +44,17 @@ class Command(Protocol):
         """Return a context in which reading stops at the limits of the command."""
 
 
-DATA = ("sources", "folder", "network", "kitchen", "rates", "utensils", "goals", "unit_prices")
+DATA = (
+    "sources",
+    "folder",
+    "network",
+    "kitchen",
+    "rates",
+    "utensils",
+    "goals",
+    "unit_prices",
+    "unit_amounts",
+)
 """The options of a command that name data."""
 
 Pose = Callable[..., tuple[object, ...]]
@@ -60,8 +70,9 @@ def one_problem(
     stock: File | None = None,
     stays: File | None = None,
     all_goals: bool = False,
+    amounts: Sequence[int] = (),
 ) -> tuple[Problem]:
-    """Pose one problem, whose tree makes all goals that are named.
+    """Pose one problem, whose tree makes all goals that are named; with amounts of goals, items are used up.
 
     With ``all_goals``, each goal is a question of its own: the named goals, or all of the goals
     file. Of a large store, the units that the goals can need are read on first access.
@@ -71,7 +82,10 @@ def one_problem(
         named = dataset.each_goal(goals_named) if all_goals else dataset.goals(goals_named)
         if not named:
             raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
-        used_up = items_of(dataset, items, stock, stays)
+        wanted = wanted_of(dataset, named, amounts)
+        if wanted and not command.given("items"):
+            items = "used-up"
+        used_up = items_of(dataset, items, stock, stays, wanted)
         return (dataset.nearby(tuple(dict.fromkeys(named)), containers, used_up),)
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.items import items_of, wanted_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, counted, unit_at_level
@@ -23,6 +23,7 @@ def a_plan(
     items: str,
     stock: File | None,
     stays: File | None,
+    amounts: Sequence[int] = (),
     **named: Path,
 ) -> tuple[Problem, Tree]:
     """Read a plan, and pose the problem that it is for; the command precedes what an answer says.
@@ -36,7 +37,8 @@ def a_plan(
         containers = answer.containers or containers
     dataset = command.dataset
     with command.reading():
-        used_up = items_of(dataset, items, stock, stays)
+        wanted = wanted_of(dataset, dataset.goals(goals_named), amounts) if amounts else {}
+        used_up = items_of(dataset, items, stock, stays, wanted)
         tree = listed_tree(dataset, plan, answer, goals_named, containers, used_up)
     return tree.problem, tree
 

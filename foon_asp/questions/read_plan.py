@@ -77,7 +77,9 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
             f"{dataset.names.level}: add --level {name_map.level}"
         )
     with command.reading():
-        used_up = name_map.items and items_of(dataset, ITEMS[1], name_map.items.stock, name_map.items.told)
+        used_up = name_map.items and items_of(
+            dataset, ITEMS[1], name_map.items.stock, name_map.items.told, name_map.items.wanted
+        )
         return (dataset.problem(dataset.named_goals(name_map.goals), name_map.containers, items=used_up),)
 
 

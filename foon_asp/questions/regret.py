@@ -22,7 +22,7 @@ from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectiv
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.options import ITEMS, TREE
+from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Block
@@ -144,6 +144,7 @@ class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
 @question(
     *TREE,
     *ITEMS,
+    AMOUNT,
     formats=TABLES,
     help_="""
     \b

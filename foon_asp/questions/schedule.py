@@ -28,7 +28,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
 from foon_asp.questions.durations import Durations, duration_of, stated_durations
-from foon_asp.questions.options import CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
+from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
@@ -217,6 +217,7 @@ def _schedule_or_template(
     GOAL_OF_PLAN,
     CONTAINERS,
     *PLAN_ITEMS,
+    AMOUNT,
     CHART._replace(help="A file for a Gantt chart (.svg or .png)."),
     pose=a_plan,
     command=_schedule_or_template,

@@ -1,16 +1,18 @@
 """Shopping lists: the cheapest items to add to the kitchen so that a tree exists."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from heapq import heappop, heappush
 from os import PathLike
 from pathlib import Path
 from typing import Annotated, NamedTuple, Unpack
 
 from foon_asp.asp import Outcome, Reporter, Status, solve
 from foon_asp.asp.assembly import assemble
+from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
 from foon_asp.dataset.paths import File
@@ -20,6 +22,7 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.network import ObjectNode, Source, counted
 from foon_asp.problem import Costs, Number, Objective, Problem, exact, levels
 from foon_asp.problem.dead_ends import dead_ends
+from foon_asp.problem.purchases import Purchases
 from foon_asp.problem.shop import Offer, Shop
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.arguments import Objectives, at_least, chosen_objectives, whole
@@ -224,8 +227,7 @@ def shopping_list(
     deadline, reporter = settings.begun, caller().reporter
     priced = None if prices is None else _priced(problem, _listed(prices))
     program = assemble(settings, reporter.warning, problem=problem)
-    priced_lists: list[_PricedList] = []
-    complete = True
+    found = _Found([], complete=True)
     made_of = (Offer.FOR_SALE, dict[int, Fraction]()) if priced is None else (Offer.PRICED, priced)
     try:
         with deadline.watched("looking for what is for sale"):
@@ -233,19 +235,19 @@ def shopping_list(
             offers = _for_sale(problem, shop) if priced is None else [made_of]
         for made_of in offers:
             prepared = prepare(problem, chosen, settings, program, for_sale=made_of[1])
-            priced_lists, complete = _lists(
-                prepared, shop, made_of[1], max_lists, chosen != (Objective.UNITS,)
-            )
-            if priced_lists or not complete:
+            found = _lists(prepared, chosen, shop, made_of[1], max_lists)
+            if found.lists or not found.complete:
                 break
     except KeyboardInterrupt:
         deadline.interrupt()
-        complete = False
+        found = _Found([], complete=False)
     offer, wares = made_of
     outcomes: list[tuple[_PricedList, Outcome]] = []
-    for candidate in priced_lists:
-        stocked = replace(problem, kitchen=problem.kitchen.union(candidate.items))
-        outcome = solve(stocked, chosen, settings, Reporter() if outcomes else reporter)
+    for candidate in found.lists:
+        outcome = candidate.outcome
+        if outcome is None:
+            stocked = _stocked(problem, candidate.items)
+            outcome = solve(stocked, chosen, settings, Reporter() if outcomes else reporter)
         if outcome.status is Status.INFEASIBLE:
             _refuse_far_rules(program)
             raise BugError("the shopping list does not make a tree possible")
@@ -264,17 +266,30 @@ def shopping_list(
             )
             for candidate, outcome in outcomes[:max_lists]
         ),
-        complete=complete and len(outcomes) <= max_lists,
+        complete=found.complete and len(outcomes) <= max_lists,
         answer=Answer.of(outcomes[0][1], outcomes[0][0].items) if outcomes else None,
     )
 
 
 class _PricedList(NamedTuple):
-    """A list by ids, its price, and whether it is proved that none is cheaper."""
+    """A list by ids, its price, whether it is proved the cheapest, and the best tree if it is known."""
 
     items: tuple[int, ...]
     price: Fraction
     proved: bool
+    outcome: Outcome | None = None
+
+
+class _Found(NamedTuple):
+    """Lists, the cheapest first, and whether there are no others."""
+
+    lists: list[_PricedList]
+    complete: bool
+
+
+def _stocked(problem: Problem, items: Iterable[int]) -> Problem:
+    """Return a problem with bought items in its kitchen."""
+    return replace(problem, kitchen=problem.kitchen.union(items))
 
 
 def _sort_key(
@@ -349,22 +364,111 @@ def _for_sale(problem: Problem, shop: Shop) -> list[tuple[Offer, dict[int, Fract
 
 
 def _lists(
-    prepared: Prepared, shop: Shop, wares: Mapping[int, Fraction], max_lists: int, compared: bool
-) -> tuple[list[_PricedList], bool]:
-    """Return the cheapest lists from ``wares``, one run of clingo each, and whether all lists are found.
+    prepared: Prepared,
+    objectives: tuple[Objective, ...],
+    shop: Shop,
+    wares: Mapping[int, Fraction],
+    max_lists: int,
+) -> _Found:
+    """Return the cheapest lists from ``wares``."""
+    if prepared.tree is None:
+        return _Found([], complete=not prepared.stopped)
+    problem = prepared.problem
+    met = {*problem.goals, *(o for unit in prepared.units for o in problem.needs[unit])}
+    sold = {o: price for o, price in wares.items() if o in met}
+    second_choices = frozenset(filter(shop.is_second_choice, sold))
+    if prepared.program.own:
+        purchases = Purchases(problem, sold, second_choices, objectives)
+        return _Shopper(prepared, purchases, objectives, wares).lists(max_lists)
+    return _lists_under_rules(prepared, sold, second_choices, max_lists, objectives != (Objective.UNITS,))
+
+
+class _Shopper:
+    """A search for lists as trees that buy: a search tree of wares that are left out (Reiter 1987).
+
+    The next list is the best one that lacks an item of every earlier list.
+    """
+
+    def __init__(
+        self,
+        prepared: Prepared,
+        purchases: Purchases,
+        objectives: tuple[Objective, ...],
+        wares: Mapping[int, Fraction],
+    ) -> None:
+        self._prepared, self._purchases, self._wares = prepared, purchases, wares
+        self._objectives = objectives
+        self._waiting: list[tuple[tuple[int | Fraction, ...], int, frozenset[int], Outcome]] = []
+        self._seen: set[frozenset[int]] = set()
+        self._found: list[_PricedList] = []
+
+    def lists(self, max_lists: int) -> _Found:
+        """Return the cheapest lists."""
+        if not self._look(frozenset(), caller().reporter):
+            return _Found(self._found, complete=False)
+        while self._waiting:
+            _, _, left_out, outcome = heappop(self._waiting)
+            listed = self._list(outcome)
+            if all(listed.items != earlier.items for earlier in self._found):
+                self._found.append(listed)
+                if not listed.items or len(self._found) == max_lists:
+                    return _Found(self._found, complete=not listed.items)
+            if not all(self._look(left_out | {item}, Reporter()) for item in listed.items):
+                return _Found(self._found, complete=False)
+        return _Found(self._found, complete=True)
+
+    def _look(self, left_out: frozenset[int], reporter: Reporter) -> bool:
+        """Find the best list without some wares; return false at a limit."""
+        if left_out in self._seen:
+            return True
+        self._seen.add(left_out)
+        for earlier in self._found:
+            if left_out.isdisjoint(earlier.items):  # which the best list might be
+                return all(self._look(left_out | {item}, reporter) for item in earlier.items)
+        settings, by = self._prepared.settings, self._purchases.objectives
+        outcome = solve(self._purchases.without(left_out), by, settings, reporter)
+        if outcome.status is Status.OPTIMAL and outcome.costs is not None:
+            heappush(self._waiting, (outcome.costs.key(levels(by)), len(self._seen), left_out, outcome))
+        if outcome.status is Status.FEASIBLE and not self._found:
+            self._found.append(self._list(outcome))
+        return outcome.status in {Status.OPTIMAL, Status.INFEASIBLE}
+
+    def _list(self, outcome: Outcome) -> _PricedList:
+        """Return the list that a tree buys, and the tree."""
+        assert outcome.units is not None
+        items, units = self._purchases.split(outcome.units)
+        problem = _stocked(self._prepared.problem, items)
+        order = Postconditions(problem, levels(self._objectives), self._prepared.settings).tree(units)
+        costs, proved = problem.costs(order), outcome.status is Status.OPTIMAL
+        bounds = {by: costs.measure(by) for by in levels(self._objectives)} if proved else {}
+        tree = outcome._replace(
+            problem=problem,
+            objectives=self._objectives,
+            units=order,
+            costs=costs,
+            bounds=bounds,
+            cuts=(),
+            cases=None,
+        )
+        return _PricedList(items, sum((self._wares[o] for o in items), Fraction(0)), proved, tree)
+
+
+def _lists_under_rules(
+    prepared: Prepared,
+    sold: Mapping[int, Fraction],
+    second_choices: Collection[int],
+    max_lists: int,
+    compared: bool,
+) -> _Found:
+    """Return the cheapest lists under rules, which may look at all units: one run of clingo each.
 
     If trees are ``compared`` by more than their size, all lists of the last price are found, too.
     """
-    if prepared.tree is None:
-        return [], not prepared.stopped
-    problem = prepared.problem
-    met = {*problem.goals, *(o for unit in prepared.units for o in problem.needs[unit])}
-    scale = math.lcm(*(price.denominator for price in wares.values()))
-    sold = {o: price for o, price in wares.items() if o in met}
+    scale = math.lcm(*(price.denominator for price in sold.values()))
     if any(price * scale >= 2**31 for price in sold.values()):
         raise UserError("prices this far apart do not fit clingo, whose numbers have 32 bits")
     prices = {o: int(price * scale) for o, price in sold.items()}
-    facts = write_for_sale(prices, filter(shop.is_second_choice, sold))
+    facts = write_for_sale(prices, second_choices)
     encoding = question_encoding("shopping_list.lp")
     lists: list[_PricedList] = []
     while len(lists) < max_lists or (
@@ -373,14 +477,14 @@ def _lists(
         ended = prepared.run(facts, encodings=(encoding,), predicates=[("_buy", 1)])
         if ended.units is not None:
             items = tuple(sorted(ended.atoms["_buy"]))
-            price = sum((wares[o] for o in items), Fraction(0))
+            price = sum((sold[o] for o in items), Fraction(0))
             lists.append(_PricedList(items, price, ended.exhausted))
             facts += write_list(len(lists), items)
         if ended.units is None or not ended.exhausted:
-            return lists, ended.exhausted
+            return _Found(lists, ended.exhausted)
         if not items:
-            return lists, True
-    return lists, False
+            return _Found(lists, complete=True)
+    return _Found(lists, complete=False)
 
 
 def _decimal(number: Fraction) -> str:

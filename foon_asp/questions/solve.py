@@ -13,6 +13,7 @@ from foon_asp.questions.answer import Answer, SkippedGoal, answered_under
 from foon_asp.questions.arguments import (
     Objectives,
     asked_with,
+    at_least,
     chosen_objectives,
     constraint_weights,
     read,
@@ -21,7 +22,7 @@ from foon_asp.questions.arguments import (
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, not_built, question
 from foon_asp.questions.durations import Durations, stated_durations
-from foon_asp.questions.options import ITEMS, SOFT, TREE
+from foon_asp.questions.options import AMOUNT, ITEMS, SOFT, TREE
 from foon_asp.questions.result import Result
 
 
@@ -36,6 +37,7 @@ def solve_or_each(
     skip_unreachable: bool = False,
     clingo_options: Sequence[str] = (),
     durations: Durations | None = None,
+    retries: int | None = None,
     all_goals: bool = False,
     **options: Unpack[CommonOptions],
 ) -> Result:
@@ -51,16 +53,17 @@ def solve_or_each(
             skip_unreachable=skip_unreachable,
             clingo_options=clingo_options,
             durations=durations,
+            retries=retries,
             **options,
         )
     from foon_asp.questions.all_goals import solve_all_goals  # noqa: PLC0415
 
     if skip_unreachable:
         raise UserError("--all-goals says of each goal whether it can be made: leave out --skip-unreachable")
-    if soft or certificate is not None or cross_check:
+    if soft or certificate is not None or cross_check or retries is not None:
         raise UserError(
-            "--all-goals lists what each goal costs: ask for soft constraints, a certificate or a "
-            "cross-check of one goal (--goal)"
+            "--all-goals lists what each goal costs: ask for soft constraints, a certificate, a "
+            "cross-check or retries of one goal (--goal)"
         )
     return solve_all_goals(problem, objectives, **options)
 
@@ -68,6 +71,7 @@ def solve_or_each(
 @question(
     *TREE,
     *ITEMS,
+    AMOUNT,
     Option(
         "all_goals",
         "Solve every goal that --goal or the goals file names by itself, under each --objective by itself.",
@@ -127,6 +131,7 @@ def solve(
         Durations | None,
         Option(help="How long motions take, for the formats for robots.", kind=Kind.FILE, metavar="FILE"),
     ] = None,
+    retries: Annotated[int | None, Option(metavar="N", least=0)] = None,
     reporter: Reporter | None = None,
     **options: Unpack[CommonOptions],
 ) -> Answer:
@@ -150,6 +155,8 @@ def solve(
         clingo_options: Options to pass to clingo, for example ``["--opt-strategy=bb"]``.
         durations: How long motions take, for the formats for robots: a file as for :func:`schedule`, or
             seconds by motion.
+        retries: Find which trees to follow if this many executions may fail, by their chance of success. The
+            answer has the ``policy``; a behaviour tree has a branch for each tree.
         reporter: Receives trees, bounds and warnings during the search. Without it, a warning about a
             constraint is a :class:`FoonWarning`.
 
@@ -178,6 +185,10 @@ def solve(
     seconds = stated_durations(durations)
     if soft is not None and problem.items is not None:
         raise not_built("solve --soft")
+    if retries is not None and problem.items is not None:
+        raise not_built("solve --retries")
+    if retries is not None and soft is not None:
+        raise UserError("retries are about the best trees; leave the soft constraints out")
     if soft is not None and certificate is not None:
         raise UserError("soft constraints have no certificates; leave one of them out")
     if cross_check:  # what only some answers need is imported for these
@@ -209,4 +220,8 @@ def solve(
     if skip_unreachable:
         answer = answer.having(skipped=skipped)
     answer = cross_checked(answer, settings, weights, engines) if cross_check else answer
+    if retries is not None:
+        from foon_asp.questions.retry_policy import with_policy  # noqa: PLC0415
+
+        answer = with_policy(answer, at_least(retries, 0, "retries"), settings, **options)
     return answer.knowing(durations=seconds)

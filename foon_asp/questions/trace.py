@@ -18,7 +18,7 @@ from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Objectives, chosen_objectives, read_as
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
-from foon_asp.questions.options import CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
+from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan_or_state
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
@@ -244,6 +244,7 @@ def _trace_and_write(
     OBJECTIVES,
     CONTAINERS,
     *PLAN_ITEMS,
+    AMOUNT,
     pose=a_plan_or_state,
     formats=TABLES,
     command=_trace_and_write,

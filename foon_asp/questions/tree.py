@@ -6,6 +6,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
+from msgspec import UNSET
+
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, TaskTree, counted, unit_at_level
 from foon_asp.problem import Problem
 from foon_asp.questions.caller import caller
@@ -110,11 +112,13 @@ class Tree(TaskTree):
             lack: The copy that is missing.
         """
         if lack.position is None:
-            text = f"every step runs, but in the end no copy is left of the goal: {lack.missing}"
+            left = "no copy is" if lack.amount is UNSET else f"fewer than {lack.amount} copies are"
+            text = f"every step runs, but in the end {left} left of the goal: {lack.missing}"
         else:
-            text = f"step {lack.position}, {self.step_text(lack.position)}, lacks a copy of {lack.missing}"
+            copies = "a copy" if lack.amount is UNSET else f"{lack.amount} copies"
+            text = f"step {lack.position}, {self.step_text(lack.position)}, lacks {copies} of {lack.missing}"
         if not lack.used_up_by:
-            return f"{text}; there never was one"
+            return f"{text}; there never {'was one' if lack.amount is UNSET else 'were as many'}"
         takers = (f"step {number} ({self.units[number - 1].motion})" for number in lack.used_up_by)
         return f"{text}; used up by {', '.join(takers)}"
 

@@ -57,8 +57,8 @@ class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-uni
 
     Example:
         >>> found = foon_asp.unit_union(foon_asp.load().problem("ice"), within=50)
-        >>> [(unit.motion, str(unit.trees)) for unit in found.units], found.complete
-        ([('crush', 'every'), ('twist', 'some'), ('pour', 'some'), ('close', 'some')], True)
+        >>> [unit.motion for unit in found.units if unit.trees == "some"], found.complete
+        (['twist', 'crush', 'twist', 'pound', 'pour'], True)
     """
 
     ROWS = "units"
@@ -101,6 +101,7 @@ def unit_union(
     A tree that is worse than the best one counts only if it needs each of its units.
 
     Parameters:
+        objectives: What is best: one objective, or several in a list, the most important first.
         within: How much worse by the first objective a tree may be, in percent. 10 allows 11 units if 10 are
             best, or 0.9 times the best success.
 

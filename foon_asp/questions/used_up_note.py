@@ -9,13 +9,21 @@ from foon_asp.proof.used_up_run import used_up_run
 
 
 def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
-    """Return a note that the tree would not run with each item used once; empty if it would.
+    """Return one line where items last, and the tree would not run if each were used once, or none.
 
-    It is empty too where items are used up already, and where the missing node never existed.
+    Nor is there one where what is missing never was there. Where a unit of the tree has amounts, the line
+    says that they are not counted.
     """
     units = tuple(tree)
     if problem.items is not None:
         return []
+    counted_unit = (
+        next((unit for unit in units if problem.amounts.get(unit)), None) if problem.amounts else None
+    )
+    if counted_unit is not None:
+        return [
+            f"note: amounts, as in {counted_unit.motion}, are not counted where items last: --items used-up"
+        ]
     run = used_up_run(problem, units)
     if run.shortage is None or not run.shortage.consumers:
         return []

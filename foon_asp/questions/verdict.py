@@ -92,12 +92,12 @@ def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
 
 
 def _obstacle_text(tree: Tree, obstacle: Obstacle) -> str:
-    """Return the obstacle of a tree in words."""
+    missing = f"{obstacle.amount} x {obstacle.missing}" if obstacle.amount > 1 else str(obstacle.missing)
     if obstacle.unit is None:
-        text = f"every unit runs, but the goal is not made: {obstacle.missing}"
+        text = f"every unit runs, but the goal is not made: {missing}"
     else:
         position = obstacle.unit + 1
-        text = f"unit {position}, {tree.step_text(position)}, lacks {obstacle.missing}"
+        text = f"unit {position}, {tree.step_text(position)}, lacks {missing}"
     skipping = [n for n, unit in enumerate(tree, 1) if _skips(tree.problem, unit, obstacle.missing)]
     if skipping:
         first = f"unit {skipping[0]}, {tree.step_text(skipping[0])}"

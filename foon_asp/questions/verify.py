@@ -207,6 +207,8 @@ def _items_lines(used_up: proof.UsedUp, network: Network) -> Iterator[str]:
     nodes = network.objects
     if used_up.stock:
         yield "in stock: " + ", ".join(f"{copies} x {nodes[o]}" for o, copies in used_up.stock.items())
+    if used_up.wanted:
+        yield "wanted: " + ", ".join(f"{copies} x {nodes[o]}" for o, copies in used_up.wanted.items())
     for stays, verb in ((True, "stay"), (False, "be used up")):
         named = [name for name, name_stays in used_up.stays.items() if name_stays is stays]
         if named:

@@ -46,6 +46,11 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
         units: The units that some irredundant tree from the state has, once what lacks is there; those that
             can run now come first, and of these those of the best tree.
         answer: The best tree from the state, once what lacks is there; null without one.
+
+    Example:
+        >>> ways = foon_asp.ways_on(foon_asp.load().problem("ice"), ["ice; crushed; in [drinking glass]"])
+        >>> ways.reached, ways.units
+        (True, ())
     """
 
     ROWS = "units"
@@ -74,11 +79,13 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
             yield f"no tree exists from this state ({self.conditions}); it lacks"
             yield from (f"  {node}" for node in self.lacks)
         now = [unit for unit in self.units if not unit.lacks]
-        yield f"{counted(len(now), 'unit')} that can run now lead{'s' if len(now) == 1 else ''} to the goals"
+        number = counted(len(now), "unit") if now else "no unit"
+        yield f"{number} that can run now lead{'' if len(now) > 1 else 's'} to the goals"
         yield from (f"  {unit.id}  {unit.motion}    [{unit.source[0]}]" for unit in now[:_MAX_SHOWN])
-        if len(self.units) > len(now[:_MAX_SHOWN]):
-            more = counted(len(self.units) - len(now[:_MAX_SHOWN]), "more unit")
-            yield f"  ... and {more}, {len(self.units) - len(now)} of them later; --format json lists all"
+        if len(now) > _MAX_SHOWN:
+            yield f"  ... and {len(now) - _MAX_SHOWN} more"
+        if later := len(self.units) - len(now):
+            yield f"{counted(later, 'unit')} that cannot run yet; --format json says what each lacks"
         if self.answer is not None:
             yield "from here:" if not self.lacks else "once that is there:"
             yield from self.answer.findings()
@@ -99,6 +106,7 @@ def ways_on(
     Parameters:
         problem: The problem: the data, and the goals. Its kitchen is not used.
         state: What is there: a file, as of a kitchen, or object nodes.
+        objectives: What the best tree is best by, the most important first.
 
     Returns:
         The ``units`` that lead to the goals, each with the inputs that it lacks; what the state ``lacks``,

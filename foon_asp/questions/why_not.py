@@ -4,13 +4,14 @@ import contextlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Unpack
 
+from msgspec import UNSET, UnsetType
 from msgspec.structs import replace
 
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.paths import File
-from foon_asp.network import NodePattern, ObjectNode, counted, pattern_at_level
+from foon_asp.network import STAND_IN, NodePattern, ObjectNode, StandInTable, counted, pattern_at_level
 from foon_asp.network.near_nodes import nearest, slip_between
-from foon_asp.problem import Problem
+from foon_asp.problem import Objective, Problem
 from foon_asp.problem.dead_ends import Cause, DeadEnds, dead_ends
 from foon_asp.problem.dead_ends import Root as FoundRoot
 from foon_asp.problem.shop import Shop
@@ -19,13 +20,16 @@ from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.stand_in import StandIn, stand_ins_in
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Block
 from foon_asp.results.values import Mention, Node, Unit, Value
 from foon_asp.results.values_of import head_of, mention_of, node_as, node_of, nodes_of, unit_as
+from foon_asp.standins import with_stand_ins
 from foon_asp.text.json_value import schema_name
 
 if TYPE_CHECKING:  # takes clingo along, which only rules need
+    from foon_asp.asp import Settings
     from foon_asp.questions.clash import Clash
 
 _MAX_ALIKE = 2  # nodes with the same label that are named beside a missing one
@@ -35,6 +39,7 @@ _MAX_ROOTS = 8  # causes explained in the text
 _MAX_STEPS = 6  # of a cycle in the text
 _MAX_STOPS = 3  # units named in one line
 _MAX_FIX_ITEMS = 4  # named in one line
+_LEVEL_OF_STAND_INS = 3
 
 
 class NearName(Value, frozen=True):
@@ -190,6 +195,8 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
         clash: Where all goals can be made and there are rules: whether these leave a tree, and which clash.
         fix: A few things to add to the kitchen so that the goals can be made, rules left aside; null where
             all can be made, and where a limit came first. A shorter list may exist.
+        stand_ins: The cheapest stand-ins, by the usual table, with which the goals can be made, rules left
+            aside; not there where none are enough or they are allowed already.
 
     Example:
         >>> explanation = foon_asp.why_not(foon_asp.load().problem("apple pie"))
@@ -205,6 +212,7 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
     dead_ends: tuple[DeadEnd, ...]
     clash: "Clash | None" = None
     fix: tuple[Node, ...] | None = None
+    stand_ins: tuple[StandIn, ...] | UnsetType = UNSET
 
     @property
     def ending(self) -> Ending:
@@ -235,6 +243,11 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
             others = len(self.roots) - min(len(shown), _MAX_ROOTS)
             yield f"{others} more behind other units; --format json lists all"
         yield self._fix_line()
+        if isinstance(self.stand_ins, tuple):
+            yield "or let others stand in (foon-asp solve --stand-ins proves the least different ones):"
+            for stand_in in self.stand_ins:
+                yield f"  {stand_in.used}"
+                yield f"    for {stand_in.stands_in_for}"
 
     def _fix_line(self) -> str:
         if self.fix is None:
@@ -317,6 +330,7 @@ def why_not(
         )
         roots = tuple(Root.of(problem, root) for root in analysis.roots)
     clash, fix = None, None
+    stand_ins: tuple[StandIn, ...] | UnsetType = UNSET
     if not analysis.goals and (settings.constraints or settings.replaced is not None):
         from foon_asp.questions.clash import find_clash  # noqa: PLC0415
 
@@ -325,6 +339,7 @@ def why_not(
         if analysis.goals:
             roots = tuple(_with_near_names(problem, analysis, roots))
             fix = nodes_of(network, Shop(problem).short_list(analysis))
+            stand_ins = _stand_ins(problem, settings)
     return Explanation(
         **head_of(problem),
         tree_exists=not analysis.goals,
@@ -333,7 +348,21 @@ def why_not(
         dead_ends=ends,
         clash=clash,
         fix=fix,
+        stand_ins=stand_ins,
     )
+
+
+def _stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn, ...] | UnsetType:
+    """Return the cheapest stand-ins with which there is a tree, if any are enough."""
+    level, has_motion = problem.network.level, STAND_IN in problem.network.different_motions
+    if level < _LEVEL_OF_STAND_INS or problem.items is not None or has_motion:
+        return UNSET
+    from foon_asp.asp.optimum import solve  # noqa: PLC0415 (only where there is no tree)
+
+    posed = with_stand_ins(problem, StandInTable.usual())
+    plain = settings._replace(constraints=(), constants=(), encodings=None)
+    outcome = solve(posed, (Objective.DISSIMILARITY,), plain)
+    return UNSET if outcome.units is None else stand_ins_in(posed, outcome.units)
 
 
 def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]) -> Iterator[Root]:

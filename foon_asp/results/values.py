@@ -117,9 +117,11 @@ class Input(Copy, frozen=True, kw_only=True):
 
     Attributes:
         stays: Where items are used up: whether it is still there after the step.
+        amount: Where items are used up, and amounts are known: how many copies one execution takes.
     """
 
     stays: bool | UnsetType = UNSET
+    amount: int | UnsetType = UNSET
 
 
 class Output(Node, frozen=True, kw_only=True):
@@ -127,9 +129,11 @@ class Output(Node, frozen=True, kw_only=True):
 
     Attributes:
         made: False for what the unit takes as given, so that it does not make it.
+        amount: Where items are used up, and amounts are known: how many copies one execution makes.
     """
 
     made: bool
+    amount: int | UnsetType = UNSET
 
 
 class Mention(Value, frozen=True):
@@ -219,6 +223,7 @@ class Step(Value, frozen=True):
         source: A place for every copy.
         stands_for: Below level 3: the level-3 units that it stands for.
         by: Who does it, where a person helps: ``robot`` or ``person``.
+        times: Where amounts are counted: how often it is done, one execution after the other.
     """
 
     step: int
@@ -229,6 +234,7 @@ class Step(Value, frozen=True):
     source: tuple[Place, ...]
     stands_for: tuple[Unit, ...] | UnsetType = UNSET
     by: str | UnsetType = UNSET
+    times: int | UnsetType = UNSET
 
     def lines(self, details: int = 5) -> Iterator[str]:
         """Return the lines of the step for people: motion and place, inputs with their origin, outputs.
@@ -236,12 +242,14 @@ class Step(Value, frozen=True):
         ``details`` is how many of the units that it stands for are listed.
         """
         who = "    by the person" if self.by == "person" else ""
-        yield f"{self.step:>3}  {self.motion}    [{self.source[0]}]{who}"
+        times = "" if self.times is UNSET or self.times == 1 else f"{self.times} times "
+        yield f"{self.step:>3}  {times}{self.motion}    [{self.source[0]}]{who}"
         for step_input in self.inputs:
             used = ", used up" if step_input.stays is False else ""
-            yield f"       {step_input}  ({step_input.origin}{used})"
+            yield f"       {amount_text(step_input.amount)}{step_input}  ({step_input.origin}{used})"
         for made in self.outputs:
-            yield f"     → {made}{'' if made.made else '  (implied, not made here)'}"
+            implied = "" if made.made else "  (implied, not made here)"
+            yield f"     → {amount_text(made.amount)}{made}{implied}"
         if self.stands_for is not UNSET:
             number = len(self.stands_for)
             yield f"     stands for {number} unit{'s' if number != 1 else ''} at level 3:"
@@ -251,12 +259,18 @@ class Step(Value, frozen=True):
                 yield f"       ... and {number - details} more; --format json lists all"
 
 
+def amount_text(amount: int | UnsetType) -> str:
+    """Return an amount before its node: ``2 x ``, and nothing for one."""
+    return "" if amount is UNSET or amount == 1 else f"{amount} x "
+
+
 class Lack(Value, frozen=True):
     """A missing copy of an object node.
 
     Attributes:
         position: The step that lacks it, from 1; null for a goal, in the end.
-        used_up_by: The steps that use up all copies, from 1.
+        used_up_by: The steps that use up the copies there are, from 1.
+        amount: How many copies are needed, where that is not one.
         unit: The unit of the step, of a plan that is replayed.
     """
 
@@ -264,6 +278,7 @@ class Lack(Value, frozen=True):
     missing: Node
     used_up_by: tuple[int, ...]
     unit: Unit | UnsetType | None = UNSET
+    amount: int | UnsetType = UNSET
 
 
 class ListedConstraint(Value, frozen=True):

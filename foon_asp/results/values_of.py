@@ -1,12 +1,14 @@
 """Values made of the ids of a network, once, where an answer leaves the solver."""
 
 import functools
+from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
 from typing import Any, Literal, TypedDict, TypeVar
 
 from msgspec import UNSET, UnsetType
 
-from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, UnitAmounts
 from foon_asp.network.near_units import NearUnits
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, kitchen_needed
 from foon_asp.proof.replay import Copy as Replayed
@@ -159,20 +161,37 @@ def steps_of(
     later step only, or by none.
     """
     network, steps = problem.network, []
-    for number, (unit, origins) in enumerate(_origins(problem, units, bought), 1):
+    for number, (unit, times, origins) in enumerate(_origins(problem, units, bought), 1):
         uses = None if problem.items is None else problem.flows[unit].uses
+        taken, made = (
+            problem.amounts.get(network.unit(unit), UnitAmounts()) if problem.counts_amounts else (None, None)
+        )
         inputs = tuple(
-            node_as(Input, network, o, origin=origin, stays=UNSET if uses is None else o not in uses)
+            node_as(
+                Input,
+                network,
+                o,
+                origin=origin,
+                stays=UNSET if uses is None else o not in uses,
+                amount=_amount(taken, network, o),
+            )
             for o, origin in zip(network.inputs[unit], origins, strict=True)
         )
         gives = frozenset(problem.gives[unit])
-        outputs = tuple(node_as(Output, network, o, made=o in gives) for o in network.outputs[unit])
+        outputs = tuple(
+            node_as(Output, network, o, made=o in gives, amount=_amount(made, network, o))
+            for o in network.outputs[unit]
+        )
         by = UNSET if helped is None else "person" if unit in helped else "robot"
         named = network.unit_number(unit), network.motions[unit]
         steps.append(
-            Step(number, *named, inputs, outputs, _places(network, unit), _details(network, unit), by)
+            Step(number, *named, inputs, outputs, _places(network, unit), _details(network, unit), by, times)
         )
     return tuple(steps)
+
+
+def _amount(amounts: Mapping[ObjectNode, int] | None, network: Network, o: int) -> int | UnsetType:
+    return UNSET if amounts is None else amounts.get(network.objects[o], 1)
 
 
 def costed_tree(problem: Problem, units: Collection[int], costs: Costs) -> CostedTree:
@@ -195,7 +214,9 @@ def used_up_of(problem: Problem, tree: Iterable[FunctionalUnit] | None) -> UsedU
 def lack_of(network: Network, shortage: Shortage) -> Lack:
     """Return the copy that is missing."""
     position = None if shortage.step is None else shortage.step + 1
-    return Lack(position, named_node(network, shortage.node), tuple(step + 1 for step in shortage.consumers))
+    consumers = tuple(step + 1 for step in shortage.consumers)
+    amount = UNSET if shortage.amount == 1 else shortage.amount
+    return Lack(position, named_node(network, shortage.node), consumers, amount=amount)
 
 
 def copy_of(network: Network, copy: Replayed) -> Copy:
@@ -233,8 +254,8 @@ def _details(network: Network, unit: int) -> tuple[Unit, ...] | UnsetType:
 
 def _origins(
     problem: Problem, units: Collection[int], bought: Collection[int]
-) -> Iterator[tuple[int, Sequence[Origin]]]:
-    """Yield each unit, in the order listed, with the origin of each of its inputs."""
+) -> Iterator[tuple[int, int | UnsetType, Sequence[Origin]]]:
+    """Yield each unit, in the order listed, with its executions and the origin of each of its inputs."""
     if problem.items is not None:
         yield from _origins_of_copies(problem, units)
         return
@@ -246,6 +267,7 @@ def _origins(
         needs = frozenset(problem.needs[unit])  # a unit may need very many
         yield (
             unit,
+            UNSET,
             [_origin(problem, o, step, makers, o in needs, bought) for o in problem.network.inputs[unit]],
         )
 
@@ -270,10 +292,17 @@ def _origin(
     return _MISSING if later is None else Origin(later_step=later)
 
 
-def _origins_of_copies(problem: Problem, plan: Collection[int]) -> Iterator[tuple[int, Sequence[Origin]]]:
-    """Yield the origins of the inputs of a plan in which items are used up: each input is the oldest copy."""
-    copies = {o: [_KITCHEN] * (problem.stock_of(o) or 0) for o in problem.kitchen}
-    for step, unit in enumerate(plan, 1):
+def _origins_of_copies(
+    problem: Problem, plan: Collection[int]
+) -> Iterator[tuple[int, int | UnsetType, Sequence[Origin]]]:
+    """Yield the origins of the inputs of a plan in which items are used up: each input is the oldest copy.
+
+    Where amounts are counted, equal units that follow each other are one step.
+    """
+    copies = {o: deque([(_KITCHEN, problem.stock_of(o) or 0)]) for o in problem.kitchen}
+    runs = ((unit, sum(1 for _ in run)) for unit, run in groupby(plan))
+    executed = runs if problem.counts_amounts else ((unit, 1) for unit in plan)
+    for step, (unit, times) in enumerate(executed, 1):
         asks, uses, adds = problem.flows[unit]
         origins = []
         for o in problem.network.inputs[unit]:
@@ -281,10 +310,21 @@ def _origins_of_copies(problem: Problem, plan: Collection[int]) -> Iterator[tupl
                 origins.append(_KITCHEN)
             elif o not in asks:
                 origins.append(_IMPLIED)
-            elif not copies.get(o):
-                origins.append(_MISSING)
             else:
-                origins.append(copies[o].pop(0) if o in uses else copies[o][0])
-        for o in adds:
-            copies.setdefault(o, []).append(Origin(step=step))
-        yield unit, origins
+                origins.append(_taken(copies.get(o, deque()), uses.get(o, 0) * times))
+        for o, amount in adds.items():
+            copies.setdefault(o, deque()).append((Origin(step=step), amount * times))
+        yield unit, times if problem.counts_amounts else UNSET, origins
+
+
+def _taken(copies: deque[tuple[Origin, int]], amount: int) -> Origin:
+    """Take the oldest copies; return the origin of the first."""
+    while copies and not copies[0][1]:
+        copies.popleft()
+    first = copies[0][0] if copies else _MISSING
+    while amount and copies:
+        origin, there = copies.popleft()
+        if there > amount:
+            copies.appendleft((origin, there - amount))
+        amount -= min(there, amount)
+    return first

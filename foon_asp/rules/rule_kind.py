@@ -76,9 +76,9 @@ class Rule(NamedTuple):
     ``reason`` says why its kind is ``OTHER``, or why it has no effect, at ``reason_source``; else empty.
     ``nonlocality`` says what it reads beyond the tree, at ``nonlocality_source``. If it is empty, the rule is
     local: its truth for a tree stays the same without the facts of units outside the tree and of object
-
     nodes that only those have. A ``HELPER`` is always local: its facts count for the rules that use it.
-    ``one_of`` says that a requiring rule is an at-least-one constraint over one or several sets, known without clingo.
+    ``one_of`` says that a requiring rule is an at-least-one constraint over one or several sets, known
+    without clingo.
     """
 
     source: Source

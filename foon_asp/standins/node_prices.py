@@ -2,10 +2,9 @@
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Iterator
 from fractions import Fraction
 
-from foon_asp.network import Edit, Network, ObjectNode, Relation, StandInTable
+from foon_asp.network import Edit, Network, ObjectNode, Relation, StandInTable, spelled_alike, spelling_key
 
 
 class NodePrices:
@@ -30,6 +29,9 @@ class NodePrices:
                 number = network.object_id(serving)
                 if number is not None:
                     self._nodes[served].append(number)
+        self._spelled: defaultdict[str, list[str]] = defaultdict(list)  # labels that are spelled alike
+        for label in network.by_label:
+            self._spelled[spelling_key(label)].append(label)
         self._of: dict[int, dict[int, int]] = {}
 
     def _scaled(self, price: Fraction | None) -> int | None:
@@ -39,21 +41,17 @@ class NodePrices:
         """Return the nodes that may stand in for a served node, by id, with their prices."""
         servers = self._of.get(served)
         if servers is None:
-            servers = self._of[served] = dict(self._priced(served))
+            servers = self._of[served] = self.of_node(self._objects[served])
         return servers
 
-    def _priced(self, served: int) -> Iterator[tuple[int, int]]:
-        """Yield the nodes that may stand in for one node, with their prices."""
+    def of_node(self, node: ObjectNode) -> dict[int, int]:
+        """Return the nodes that may serve in place of one that the network may lack, by id, with prices."""
         objects, by_label = self._objects, self._by_label
-        node = objects[served]
-        labels = (node.label, *self._labels.get(node.label, ()))
+        labels = (*self._spelled.get(spelling_key(node.label), ()), *self._labels.get(node.label, ()))
         nodes = dict.fromkeys(o for label in labels for o in by_label.get(label, ()))
         nodes |= dict.fromkeys(self._nodes.get(node, ()))
-        for serving in nodes:
-            if serving != served:
-                price = self.between(objects[serving], node)
-                if price is not None:
-                    yield serving, price
+        prices = ((o, self.between(objects[o], node)) for o in nodes if objects[o] != node)
+        return {o: price for o, price in prices if price is not None}
 
     def between(self, serving: ObjectNode, served: ObjectNode) -> int | None:
         """Return the price of using one node in place of another, ``None`` where it never stands in."""
@@ -63,7 +61,8 @@ class NodePrices:
         label, states, relations, contents = serving
         served_label, served_states, served_relations, served_contents = served
         if label != served_label:
-            price = self._pairs.get((label, served_label))
+            listed = (label, served_label) in self._pairs or not spelled_alike(label, served_label)
+            price = self._pairs.get((label, served_label)) if listed else self._edits[Edit.SPELLING]
             if price is None:
                 return None
             total += price

@@ -13,7 +13,7 @@ from foon_asp.text.tables import stated_name
 _NEVER = "never"
 _NUMBER = re.compile(r"\d{1,6}(\.\d{1,3})?", re.ASCII)
 _NAMED = (Edit.MORE_STATE, Edit.FEWER_STATE, Edit.MORE_INGREDIENT, Edit.FEWER_INGREDIENT)
-_KINDS = (Edit.WORD, Edit.CONTAINER, *_NAMED, Edit.CONTENTS)
+_KINDS = (Edit.SPELLING, Edit.WORD, Edit.CONTAINER, *_NAMED, Edit.CONTENTS)
 
 # a pair that serves and is served, an edit, or an edit of one state or ingredient
 Entry = tuple[str | ObjectNode, str | ObjectNode] | Edit | tuple[Edit, str]

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from foon_asp.network import FunctionalUnit, ObjectNode, Source
+from foon_asp.network import DataAmounts, FunctionalUnit, ObjectNode, Source
 from foon_asp.network.node_pattern import LookupKey, lookup_keys
 from foon_asp.network.starting import recipe_kitchen
 from foon_asp.store.columns import (
@@ -134,15 +134,20 @@ class StoreBuilder:
         utensils: Iterable[str] | None,
         left_out: int,
         repeated: Sequence[RepeatedNode],
+        amounts: DataAmounts,
         stated: Mapping[FunctionalUnit, Fraction],
         prices: UnitPriceList | None,
     ) -> None:
         """Write the remaining rows, and the indexes; ``left_out`` counts lines that were not understood.
 
         ``goals_from`` says what the goals were assumed from, and is empty where a file lists them.
-        ``repeated`` are nodes that a unit lists twice.
+        ``repeated`` are nodes that a unit lists twice, and ``amounts`` those of units.
         ``stated`` are prices that networks have for their units, ``prices`` those of a file, if there is one.
         """
+        amounts_by_id = [
+            (self.unit_id(unit), *(self._amounts(side) for side in sides))
+            for unit, sides in amounts.units.items()
+        ]
         prices_by_id = [
             self._by_id(prices_of_kind) for prices_of_kind in (stated, prices.units if prices else {})
         ]
@@ -177,7 +182,9 @@ class StoreBuilder:
             "rates": None if rates is None else {motion: str(rate) for motion, rate in rates.items()},
             "utensils": sorted(utensils or ()),
             "motion_prices": prices and {motion: str(price) for motion, price in prices.motions.items()},
-            "repeated": [[node, *source[:3], int(meant)] for node, source, meant in repeated],
+            "repeated": [[node, *source[:3]] for node, source in repeated],
+            "amounts": amounts_by_id,
+            "amounts_conflict": amounts.conflict,
             "digests": content_digests(
                 self._database,
                 prices.motions if prices else None,
@@ -201,6 +208,10 @@ class StoreBuilder:
         if None in ins or None in outs:
             return None
         return self._units.get(_unit_key(unit.motion, ins, outs))  # type: ignore[arg-type]
+
+    def _amounts(self, side: Mapping[ObjectNode, int]) -> list[tuple[int, int]]:
+        """Return the amounts of nodes by id."""
+        return [(self._nodes["".join(node_columns(node))], amount) for node, amount in side.items()]
 
     def _by_id(self, prices: Mapping[FunctionalUnit, Fraction]) -> dict[int, Fraction]:
         """Return prices by the ids of units, for all units that were added."""

@@ -57,6 +57,11 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     goals = read_object_list(files.goals, warnings) if files.goals else []
     rates = RATES.read(files.rates) if files.rates else None
     utensils = read_utensils(files.utensils) if files.utensils else None
+    if files.unit_amounts:
+        raise UserError(
+            f"{files.unit_amounts}: a table of amounts is not built for stores; give the units their amounts "
+            "in neutral lines or JSON"
+        )
     prices = read_unit_prices(files.unit_prices) if files.unit_prices else None
     earlier_warnings = len(warnings)
     last_units: dict[int, Source] = {}
@@ -67,7 +72,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
                 if is_store(file):
                     raise UserError(f"{file}: is a store already; merge the files that it was made from")
                 last: tuple[int, Source] | None = None
-                for motion, inputs, outputs, sources in reader.file_units(file):
+                for motion, inputs, outputs, sources, _ in reader.file_units(file):
                     added = builder.add(motion, inputs, outputs, sources)
                     last = (added, sources[0]) if outputs else last
                 if last:
@@ -83,9 +88,10 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
             for unit, source in prices.sources.items() if prices else ():
                 if builder.unit_id(unit) is None:
                     warnings.append(unit_price_warning(unit, source))
+            amounts = reader.amounts.settled()
             counts = builder.copies, builder.units, builder.objects
             builder.finish(
-                goals, goals_from, rates, utensils, reader.left_out, reader.repeated, stated, prices
+                goals, goals_from, rates, utensils, reader.left_out, reader.repeated, amounts, stated, prices
             )
     except sqlite3.Error as error:
         raise UserError(f"{store}: cannot be written: {error}") from None

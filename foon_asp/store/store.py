@@ -9,7 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from foon_asp.garbage import uncollected
-from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
+from foon_asp.network import (
+    DataAmounts,
+    FunctionalUnit,
+    Network,
+    NodePattern,
+    ObjectNode,
+    Source,
+    UnitAmounts,
+)
 from foon_asp.network.network import UnitKey
 from foon_asp.problem import ContainerRule, Unpriced, needed_inputs
 from foon_asp.store.columns import (
@@ -76,8 +84,7 @@ class Store:
         self.has_unit_prices = bool(about("unit_prices"))
         self.goals_from = str(about("goals_from"))  # empty where the goals are from a file
         self.repeated = tuple(
-            RepeatedNode(node, Source(file, line, column), bool(meant))
-            for node, file, line, column, meant in about("repeated")
+            RepeatedNode(node, Source(file, line, column)) for node, file, line, column in about("repeated")
         )
 
     def close(self) -> None:
@@ -108,6 +115,18 @@ class Store:
         """The prices of units by motion, or ``None`` when no file of prices was imported."""
         prices = self.file.about("motion_prices")
         return None if prices is None else {motion: number_of(price) for motion, price in prices.items()}
+
+    @cached_property
+    @reporting_damage
+    def amounts(self) -> DataAmounts:
+        """The amounts of units."""
+        amounts: dict[FunctionalUnit, UnitAmounts] = {}
+        for number, inputs, outputs in self.file.about("amounts"):
+            motion, *sides, _ = self.unit_parts(number)
+            unit = FunctionalUnit(motion, *(tuple(self.nodes(side)) for side in sides))
+            counted = ({self.node(o): amount for o, amount in side} for side in (inputs, outputs))
+            amounts[unit] = UnitAmounts(*counted)
+        return DataAmounts(amounts, str(self.file.about("amounts_conflict")))
 
     @cached_property
     @reporting_damage

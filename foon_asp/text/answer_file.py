@@ -1,7 +1,8 @@
 """Task trees in files: FOON text, FOON units in JSON, an answer of foon-asp in JSON, or atoms of clingo."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import chain, repeat
 from pathlib import Path
 from typing import NamedTuple
 
@@ -73,7 +74,8 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
         return ListedTree(tuple(reader.tree_units(text, str(file))), is_tree=is_tree)
     try:
         answer = _with_tree(document)
-        units = None if answer["units"] is None else tuple(map(_unit, answer["units"]))
+        steps = answer["units"]
+        units = None if steps is None else tuple(chain.from_iterable(map(_executions, steps)))
         goals = tuple(map(read_node_json, answer["goals"]))
         status, containers, items = (str(answer.get(key, "")) for key in ("status", "containers", "items"))
         return ListedTree(units, goals, status, containers, items)
@@ -110,6 +112,11 @@ def _with_tree(document: Json) -> Json:
     if kind not in _KINDS_WITH_TREE:
         raise ValueError(f"{schema_name(kind)!r} has no tree, or more than one")
     return answer
+
+
+def _executions(value: Json) -> Iterator[tuple[FunctionalUnit, Source]]:
+    """Return the unit of a step, as often as it is executed."""
+    return repeat(_unit(value), int(value.get("times", 1)))
 
 
 def _unit(value: Json) -> tuple[FunctionalUnit, Source]:

@@ -68,12 +68,12 @@ def items(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
         return tuple(split)
     kept: list[str] = []
     seen: set[str] = set()
-    with_remarks: set[str] = set()
+    remarked: set[str] = set()
 
     def remark(code: str, message: str) -> None:
-        if code not in with_remarks:
+        if code not in remarked:
             remarks.append(Remark(column, code, message))
-            with_remarks.add(code)
+            remarked.add(code)
 
     for raw in split:
         item = raw.strip(" ")

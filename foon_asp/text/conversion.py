@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from foon_asp.network import Source
+from foon_asp.network import Source, UnitAmounts
 from foon_asp.text.conversion_ids import Numbering
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line
 from foon_asp.text.diagnostics import Diagnostic
@@ -116,10 +116,10 @@ class Converter:
     def _units(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
         listed = list(format_.listed_units(text, file, self._reading))
         videos = self._videos(text, format_, listed, lost)
-        written = [self._unit(unit, lost) for unit in listed]
+        written = [self._unit(unit, lost, format_.machine_written) for unit in listed]
         return self._writer.network([unit for unit in written if unit], videos)
 
-    def _unit(self, unit: ListedUnit, lost: "_Tally") -> str:
+    def _unit(self, unit: ListedUnit, lost: "_Tally", machine_written: bool) -> str:
         """Write a unit; the text is empty, and an error is recorded, if the target cannot hold it."""
         try:
             if not unit.inputs and not self._writer.holds_no_inputs:
@@ -129,17 +129,23 @@ class Converter:
                 [self._element(block, block.source, lost) for block in blocks]
                 for blocks in (unit.inputs, unit.outputs)
             )
+            amounts = unit.amounts if machine_written else UnitAmounts()
         except CannotHoldError as problem:
             self._cannot_hold(problem, unit.motion_source)
             return ""
+        lost.add([Loss.AMOUNTS] if amounts and not self._writer.holds_amounts else [], unit.motion_source)
         lost.add([Loss.PRICES] if unit.price and not self._writer.holds_prices else [], unit.motion_source)
         return self._writer.unit(inputs, motion, outputs, unit.price)
 
     def _element(
         self, element: ObjectBlock | MotionLine, source: Source, lost: "_Tally", in_list: bool = False
     ) -> str:
-        """Write an object or a motion, and count its losses; equal ones are written only once."""
-        key = element if isinstance(element, MotionLine) else (element.object, element.states, in_list)
+        """Write an object or a motion, and count what is lost of it; each distinct one is written once."""
+        key = (
+            element
+            if isinstance(element, MotionLine)
+            else (element.object, element.states, element.amount, in_list)
+        )
         written = self._written.get(key)
         if written is None:
             written = self._written[key] = (

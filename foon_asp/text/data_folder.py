@@ -9,6 +9,8 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.garbage import uncollected
 from foon_asp.network import (
+    NO_AMOUNTS,
+    DataAmounts,
     FunctionalUnit,
     Network,
     Source,
@@ -25,16 +27,19 @@ from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, beginning, read_content
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.repeated_node import RepeatedNode
+from foon_asp.text.stated_amounts import StatedAmounts, with_table
 from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.tables import RATES, read_utensils
+from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 from foon_asp.text.unit_price_list import UnitPriceList, read_unit_prices
 
 _RATES, _UTENSILS, _UNIT_PRICES = "motion.txt", "utensils.txt", "unit_prices.txt"
+_UNIT_AMOUNTS = "unit_amounts.txt"
 # In JSON or as FOON text, the first that exists.
 _KITCHENS, _GOALS = ("kitchen.json", "kitchen.txt"), ("goal_nodes.json", "goal_nodes.txt")
 _OBJECT_KEY = re.compile(rb'"(?:input_nodes|functional_units|object_label|label)"\s*:')
 _FOR_SCHEDULES = {"durations.txt", "tools.txt"}
-_SIDE_TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
+_SIDE_TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, _UNIT_AMOUNTS, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
 
 STARTING = Path("@starting")
 """In place of a kitchen file: the starting kitchen."""
@@ -49,6 +54,7 @@ class DataFiles(NamedTuple):
     utensils: Path | None = None
     goals: Path | None = None
     unit_prices: Path | None = None
+    unit_amounts: Path | None = None
 
 
 class Data(NamedTuple):
@@ -59,7 +65,8 @@ class Data(NamedTuple):
     ``warnings`` lists the assumptions made while reading; ``left_out`` counts the lines dropped.
     ``starting`` says that there is no kitchen file, so that the kitchen is the starting kitchen.
     ``goals_from`` says what ``goals`` were assumed from where no file lists them: those *marked*, or the
-    *last* unit of each file; it is empty where a file does. ``repeated`` are nodes that a unit lists twice.
+    *last* unit of each file; it is empty where a file does. ``repeated`` are nodes that a unit lists twice,
+    and ``amounts`` how many of a node units take or make, where that is not one.
     """
 
     network: Network
@@ -74,6 +81,7 @@ class Data(NamedTuple):
     starting: bool = False
     goals_from: str = ""
     repeated: tuple[RepeatedNode, ...] = ()
+    amounts: DataAmounts = NO_AMOUNTS
 
 
 def find_data(
@@ -84,6 +92,7 @@ def find_data(
     utensils: Path | None = None,
     goals: Path | None = None,
     unit_prices: Path | None = None,
+    unit_amounts: Path | None = None,
 ) -> DataFiles:
     """Find the files of a question: a file that is named precedes the folder's file of the same kind.
 
@@ -91,12 +100,12 @@ def find_data(
     kitchen and rates, which are made for another one.
     A folder has its network in ``FOON.txt`` or else in its other ``*.txt``, ``*.json`` and ``*.jsonl``
     files, and may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
-    ``unit_prices.txt``, and ``goal_nodes.json`` or ``goal_nodes.txt``. Raises :class:`UserError` for a
-    path that does not exist.
+    ``unit_prices.txt``, ``unit_amounts.txt``, and ``goal_nodes.json`` or ``goal_nodes.txt``. Raises
+    :class:`UserError` for a path that does not exist.
     """
     if folder is None and not network:
         folder = bundled_kitchen()
-    own_files = (kitchen, rates, utensils, goals, unit_prices)
+    own_files = (kitchen, rates, utensils, goals, unit_prices, unit_amounts)
     for path in (folder, *own_files, *network):
         if path is not None and path != STARTING and not path.exists():
             raise UserError(f"{path}: no such file or folder")
@@ -125,6 +134,7 @@ def find_data(
         own_or_in_folder(utensils, _UTENSILS),
         own_or_in_folder(goals, *_GOALS),
         own_or_in_folder(unit_prices, _UNIT_PRICES),
+        own_or_in_folder(unit_amounts, _UNIT_AMOUNTS),
     )
 
 
@@ -187,6 +197,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         warnings += (
             unit_price_warning(*entry) for entry in listed.sources.items() if whole.unit_id(entry[0]) is None
         )
+    amounts = unit_amounts(reader.amounts, files.unit_amounts, whole, warnings)
     return Data(
         network,
         frozenset(kitchen),
@@ -200,6 +211,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         starting,
         goals_from,
         tuple(reader.repeated),
+        amounts,
     )
 
 
@@ -223,6 +235,21 @@ def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrice
     chosen = listed.units if listed else {}
     settled = stated.settled(chosen)
     return UnitPrices(listed.motions if listed else {}, settled | chosen) if listed or settled else None
+
+
+def unit_amounts(
+    stated: StatedAmounts, file: Path | None, network: Network, warnings: list[Diagnostic]
+) -> DataAmounts:
+    """Return the amounts of a table and those that networks state of their units; the table takes precedence.
+
+    Appends warnings about rows that match no unit.
+    """
+    settled = stated.settled(network)
+    if file is None:
+        return settled
+    amounts, unmatched = with_table(settled, UNIT_AMOUNTS.rows(file), network)
+    warnings += unmatched
+    return amounts
 
 
 def unit_price_warning(unit: FunctionalUnit, source: Source) -> Diagnostic:

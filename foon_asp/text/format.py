@@ -5,7 +5,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from foon_asp.network import NodePattern
+from foon_asp.network import NodePattern, UnitAmounts
 from foon_asp.text.line import Line, Mention, MotionLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
 from foon_asp.text.plain_file import read_plain_text
@@ -64,7 +64,9 @@ class Format(Protocol):
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
         """Yield the units of a text in order; its diagnostics are added to ``reading``."""
-        return (unit.identity for unit in self.listed_units(text, file, reading))
+        for unit in self.listed_units(text, file, reading):
+            amounts = unit.amounts if self.machine_written else UnitAmounts()
+            yield unit.identity._replace(amounts=amounts) if amounts else unit.identity
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
         """Yield the units of a text in order, with their lines as written."""
@@ -98,10 +100,12 @@ WrittenPart = tuple[str, "list[Loss]"]
 class Writer(Protocol):
     """Writes files in a dialect, part by part.
 
-    ``holds_prices`` says whether they can hold prices of units, ``holds_no_inputs`` units without inputs.
+    ``holds_prices`` says whether they can hold prices of units, ``holds_amounts`` how many of a node a unit
+    takes or makes, ``holds_no_inputs`` units without inputs.
     """
 
     holds_prices: bool
+    holds_amounts: bool
     holds_no_inputs: bool
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:

@@ -6,7 +6,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
+from foon_asp.network import MAX_AMOUNT, Contents, NodePattern, ObjectNode, Relation, Source
 from foon_asp.text.exact_number import LONGEST, read_price
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_node import read_node_json
@@ -39,7 +39,7 @@ class JsonObject(NamedTuple):
     remarks: tuple[str, ...] = ()
 
 
-def read_object(value: object) -> JsonObject:
+def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
     """Read a node from ``{"label", "states", "ingredients", "container"}`` or the names of the other form.
 
     States are names, also ``in [bowl]``, or objects with ``state_label`` and ``relative_object``. The
@@ -48,7 +48,7 @@ def read_object(value: object) -> JsonObject:
     """
     if not isinstance(value, dict):
         raise ValueError(f'found {shown(value)}, expected an object {{"label": ..., "states": [...]}}')
-    check_keys(value, KEYS)
+    check_keys(value, keys)
     label_key, label_value = first_of(value, _LABEL)
     label = _name(label_value, label_key).strip(" ")
     if not label:
@@ -166,6 +166,16 @@ def number(value: dict[str, object], key: str) -> str:
     if isinstance(written, str) and is_number(written):
         return written
     raise ValueError(f'found {shown(field)} as "{key}", expected a number')
+
+
+def amount_of(value: object) -> int:
+    """Return how many of a node a unit takes or makes; raises :class:`ValueError`."""
+    written = value.text if isinstance(value, JsonNumber) else str(value)
+    if not is_number(written) or not 0 < len(written) <= len(str(MAX_AMOUNT)):
+        raise ValueError(f"found the amount {shown(value)}, expected a whole number from 1 to {MAX_AMOUNT}")
+    if not 1 <= int(written) <= MAX_AMOUNT:
+        raise ValueError(f"found the amount {written}, expected a whole number from 1 to {MAX_AMOUNT}")
+    return int(written)
 
 
 def price_of(value: object, exponents: bool = False) -> str:

@@ -10,7 +10,15 @@ from pathlib import Path
 
 from foon_asp.network import Relation, Source
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
-from foon_asp.text.json_object import check_keys, number, optional_name, price_of, read_object
+from foon_asp.text.json_object import (
+    KEYS,
+    amount_of,
+    check_keys,
+    number,
+    optional_name,
+    price_of,
+    read_object,
+)
 from foon_asp.text.line import MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import is_rate, is_time
@@ -19,6 +27,8 @@ from foon_asp.text.text_units import no_motion
 
 _NEEDED = {"input_nodes", "motion_node", "output_nodes"}
 _KEYS = {*_NEEDED, "price"}
+NODE_KEYS = {*KEYS, "amount"}
+"""The keys of an object of a unit."""
 _LABELS = {"label", "object_label"}
 _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_type", "weight_success"}
 
@@ -84,11 +94,11 @@ def _blocks(unit: dict[str, object], key: str, source: Source, remarks: list[str
         raise ValueError(f'found no list as "{key}", expected a list of objects')
     blocks = []
     for value in objects:
-        line, states, container, object_remarks = read_object(value)
+        line, states, container, object_remarks = read_object(value, NODE_KEYS)
         remarks += object_remarks
         if container is not None and not any(_names(state, container) for state in states):
             states = (*states, StateLine(Relation("in", container)))
-        blocks.append(ObjectBlock(line, states, source))
+        blocks.append(ObjectBlock(line, states, source, amount_of(value.get("amount", 1))))
     return tuple(blocks)
 
 

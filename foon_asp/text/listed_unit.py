@@ -3,16 +3,18 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from foon_asp.network import Contents, ObjectNode, Relation, Source
+from foon_asp.network import Contents, ObjectNode, Relation, Source, UnitAmounts
 from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine
+from foon_asp.text.stated_amounts import counted_amounts
 
 
 class ObjectBlock(NamedTuple):
-    """A mention of an object node: its object line, the state lines under it, and its source."""
+    """A mention of an object node: its object line, the state lines under it, its source and its amount."""
 
     object: ObjectLine
     states: tuple[StateLine, ...]
     source: Source
+    amount: int = 1
 
     @property
     def node(self) -> ObjectNode:
@@ -28,13 +30,15 @@ class ObjectBlock(NamedTuple):
 class ReadUnit(NamedTuple):
     """A copy of a unit: its motion, its nodes in the order listed, and its sources.
 
-    ``sources`` has one entry, unless a merged file says from which copies the unit came.
+    ``sources`` has one entry, unless a merged file says from which copies the unit came. ``amounts`` are
+    those of nodes that the copy takes or makes several times.
     """
 
     motion: str
     inputs: list[ObjectNode]
     outputs: list[ObjectNode]
     sources: tuple[Source, ...]
+    amounts: UnitAmounts = UnitAmounts()
 
     @property
     def source(self) -> Source:
@@ -61,6 +65,13 @@ class ListedUnit(NamedTuple):
     def sides(self) -> tuple[list[ObjectNode], list[ObjectNode]]:
         """The input and the output nodes, in the order listed."""
         return [block.node for block in self.inputs], [block.node for block in self.outputs]
+
+    @property
+    def amounts(self) -> UnitAmounts:
+        """The amounts of its nodes, where one that is listed twice is meant twice."""
+        return counted_amounts(
+            *([(block.node, block.amount) for block in blocks] for blocks in (self.inputs, self.outputs))
+        )
 
     @property
     def identity(self) -> ReadUnit:

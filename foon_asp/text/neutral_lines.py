@@ -1,7 +1,8 @@
 """Networks in the neutral form: a unit on each line, as JSON with plain names.
 
 ``{"id": "drive a b", "inputs": ["at a"], "outputs": ["at b"], "price": 3}``: the id is the motion, and a name
-is the label of an object node without states, and is never read as notation.
+is the label of an object node without states, and is never read as notation. A side may also be an object of
+amounts by name, ``{"plank": 2}``; a name that is listed twice is meant twice.
 """
 
 import json
@@ -10,14 +11,14 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from foon_asp.network import FunctionalUnit, ObjectNode, Source
+from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitAmounts
 from foon_asp.text.exact_number import read_price
 from foon_asp.text.foon_json import FoonJson
 from foon_asp.text.format import Dialect, Writer
 from foon_asp.text.json_layout import on_one_line
 from foon_asp.text.json_list import DECODER, JsonFaultError, JsonNumber, json_fault
 from foon_asp.text.json_names import json_mentions
-from foon_asp.text.json_object import check_keys, price_of, shown
+from foon_asp.text.json_object import amount_of, check_keys, price_of, shown
 from foon_asp.text.line import Mention, MotionLine, ObjectLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
 from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, not_utf_8, opened, split_lines, usual_line_end
@@ -71,8 +72,11 @@ class NeutralLines(FoonJson):
         """Yield the units of a text in order, with the lines that they would have."""
         for unit, price in _units(split_lines(text), file, reading):
             inputs, outputs = (
-                tuple(ObjectBlock(ObjectLine(node.label), (), unit.source) for node in nodes)
-                for nodes in (unit.inputs, unit.outputs)
+                tuple(
+                    ObjectBlock(ObjectLine(node.label), (), unit.source, amounts.get(node, 1))
+                    for node in nodes
+                )
+                for nodes, amounts in zip((unit.inputs, unit.outputs), unit.amounts, strict=True)
             )
             yield ListedUnit(MotionLine(unit.motion), inputs, outputs, unit.sources, unit.source, price)
 
@@ -170,13 +174,13 @@ def _unit(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[Read
         name = value[key]
         name = _name(name.text if isinstance(name, JsonNumber) else name, key)
         key = "inputs"
-        inputs = _nodes(value[key], key, nodes)
+        inputs, taken = _nodes(value[key], key, nodes)
         key = "outputs"
-        outputs = _nodes(value[key], key, nodes)
+        outputs, made = _nodes(value[key], key, nodes)
         key = "price"
         price = value.get(key)
         written = _number_price(price.text) if isinstance(price, JsonNumber) else price_of(price)
-        return ReadUnit(name, inputs, outputs, (source,)), written
+        return ReadUnit(name, inputs, outputs, (source,), UnitAmounts(taken, made)), written
     except ValueError as problem:
         raise _LineError(str(problem), line.find(f'"{key}"') + 1 if key else 1) from None
 
@@ -186,15 +190,19 @@ def _number_price(written: str) -> str:
     return price_of(JsonNumber(written), exponents=True)
 
 
-def _nodes(value: object, key: str, nodes: dict[str, ObjectNode]) -> list[ObjectNode]:
-    if not isinstance(value, list):
-        raise ValueError(f'found {shown(value)} as "{key}", expected a list of names')
-    listed = []
+def _nodes(
+    value: object, key: str, nodes: dict[str, ObjectNode]
+) -> tuple[list[ObjectNode], dict[ObjectNode, int]]:
+    """Read the nodes of a side, each once, and the amounts above 1: a list of names, or amounts by name."""
+    if not isinstance(value, list | dict):
+        raise ValueError(f'found {shown(value)} as "{key}", expected a list of names, or amounts by name')
+    listed: dict[ObjectNode, int] = {}
     for name in value:
         if not isinstance(name, str) or name not in nodes:
             nodes[name] = ObjectNode(_name(name, key))
-        listed.append(nodes[name])
-    return listed
+        amount = amount_of(value[name]) if isinstance(value, dict) else 1
+        listed[nodes[name]] = listed.get(nodes[name], 0) + amount
+    return list(listed), {node: amount for node, amount in listed.items() if amount > 1}
 
 
 def _name(value: object, key: str) -> str:

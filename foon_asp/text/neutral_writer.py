@@ -1,5 +1,6 @@
 """Writing units and objects in the neutral form."""
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from decimal import Decimal
 
@@ -15,21 +16,37 @@ from foon_asp.text.text_writer import with_word
 
 def write_neutral_unit(id_: str, inputs: Iterable[str], outputs: Iterable[str], price: str) -> str:
     """Write a unit as one line of plain names."""
-    input_list, output_list = (", ".join(map(json_line, names)) for names in (inputs, outputs))
+    sides = ([(json_line(name), 1) for name in names] for names in (inputs, outputs))
+    return _line(id_, price, *sides)
+
+
+def _line(id_: str, price: str, inputs: Sequence[tuple[str, int]], outputs: Sequence[tuple[str, int]]) -> str:
+    """Write a unit from names as JSON, with their amounts."""
+    input_list, output_list = map(_side, (inputs, outputs))
     last = f', "price": {Decimal(price):f}' if price else ""
-    return f'{{"id": {json_line(id_)}, "inputs": [{input_list}], "outputs": [{output_list}]{last}}}\n'
+    return f'{{"id": {json_line(id_)}, "inputs": {input_list}, "outputs": {output_list}{last}}}\n'
+
+
+def _side(names: Sequence[tuple[str, int]]) -> str:
+    """Write a list of names; or an object, where some amount is not 1."""
+    if all(amount == 1 for _, amount in names):
+        return f"[{', '.join(name for name, _ in names)}]"
+    totals: Counter[str] = Counter()
+    for name, amount in names:
+        totals[name] += amount
+    return f"{{{', '.join(f'{name}: {total}' for name, total in totals.items())}}}"
 
 
 class NeutralWriter:
     """A writer of units with the motion as id, and object nodes as names in one-line notation."""
 
-    holds_prices = holds_no_inputs = True
+    holds_prices = holds_amounts = holds_no_inputs = True
 
     def __init__(self) -> None:
         self._names: dict[str, ObjectNode] = {}
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
-        """Return the plain name of an object node, which no other node has."""
+        """Return the plain name of an object node, which no other node has, as JSON, and its amount."""
         states = tuple(map(with_word, block.states))
         node = block._replace(states=states).node
         name = str(node) if states else node.label
@@ -40,7 +57,7 @@ class NeutralWriter:
         losses = lost_in_line(block.object, ObjectLine(block.object.label))
         losses += [Loss.IDS] * sum(bool(state.id) for state in states) + [Loss.PARTS] * bool(states)
         losses += [Loss.CONTAINERS] * (states != block.states)
-        return name, losses
+        return json_line(name) + (f": {block.amount}" if block.amount > 1 else ""), losses
 
     def motion(self, line: MotionLine) -> WrittenPart:
         """Return the id of a unit."""
@@ -48,7 +65,7 @@ class NeutralWriter:
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
         """Write a unit."""
-        return write_neutral_unit(motion, inputs, outputs, price)
+        return _line(motion, price, *(list(map(_amount, names)) for names in (inputs, outputs)))
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
         """Put a file together."""
@@ -56,8 +73,14 @@ class NeutralWriter:
 
     def objects(self, parts: Sequence[str]) -> str:
         """Put a JSON list of names together."""
-        return written_list([f'{{"label": {json_line(name)}}}' for name in parts], 0) + "\n"
+        return written_list([f'{{"label": {name}}}' for name in parts], 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
         """Return none."""
         return ()
+
+
+def _amount(part: str) -> tuple[str, int]:
+    """Return a name as JSON, and the amount that stands behind it."""
+    name, _, amount = (part, "", "1") if part.endswith('"') else part.rpartition(": ")
+    return name, int(amount)

@@ -23,7 +23,7 @@ class FoonReader(Reading):
     unit because they were not understood or make none; ``prices`` are those that copies of units state.
     ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``last_units`` are the last
     unit of each file that makes anything, by id and with its place, for a network read in one go.
-    ``repeated`` are the nodes that a copy of a unit lists twice.
+    ``repeated`` are the nodes that a copy of a unit lists twice, and ``amounts`` those that copies state.
 
     Example:
         >>> from pathlib import Path
@@ -60,7 +60,7 @@ class FoonReader(Reading):
         earlier = len(self.diagnostics)
         for file in files:
             last: tuple[int, Source] | None = None
-            for motion, inputs, outputs, sources in self.file_units(file):
+            for motion, inputs, outputs, sources, _ in self.file_units(file):
                 unit = builder.add(motion, inputs, outputs, *sources)
                 last = (unit, sources[0]) if outputs else last
             if last:
@@ -97,9 +97,12 @@ class FoonReader(Reading):
         format_ = format_of(begins, file.name)
         try:
             for unit in format_.units(begins, str(file), self) if is_pipe else format_.file_units(file, self):
-                node = repeated_node(unit.inputs, unit.outputs)
+                node = None if format_.machine_written else repeated_node(unit.inputs, unit.outputs)
                 if node:
-                    self.repeated.append(RepeatedNode(str(node), unit.source, format_.machine_written))
+                    self.repeated.append(RepeatedNode(str(node), unit.source))
+                if unit.amounts:
+                    copy = FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs)
+                    self.amounts.add(copy, unit.amounts, unit.source)
                 yield unit
         except InputError as error:
             self.diagnostics += error.diagnostics

@@ -8,6 +8,7 @@ from pathlib import Path
 from foon_asp.network import ObjectNode, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.repeated_node import RepeatedNode
+from foon_asp.text.stated_amounts import StatedAmounts
 from foon_asp.text.stated_prices import StatedPrices
 
 Report = Callable[[int], None]
@@ -23,7 +24,7 @@ class Reading:
     ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that are in no
     unit because they were not understood or make none; ``prices`` are those that copies of units state.
     ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``repeated`` are the nodes
-    that a copy of a unit lists twice.
+    that a copy of a unit lists twice, and counts once; ``amounts`` are those that copies of units state.
     """
 
     def __init__(self, lenient: bool = False) -> None:
@@ -33,6 +34,7 @@ class Reading:
         self.prices = StatedPrices()
         self.marked: dict[ObjectNode, Source] = {}
         self.repeated: list[RepeatedNode] = []
+        self.amounts = StatedAmounts()
 
     def reject(self, code: str, message: str, source: Source, excerpt: str = "") -> None:
         """Record a fault as an error, or with ``lenient`` as a warning that its line was left out."""

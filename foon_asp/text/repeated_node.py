@@ -1,21 +1,16 @@
-"""Object nodes that a unit lists twice, which count once even if two were meant."""
+"""Object nodes that a unit of FOON text lists twice, which is mostly a slip and counts once."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode, Source, counted
 
 
 class RepeatedNode(NamedTuple):
-    """The first node that a copy of a unit lists twice on one side, and its source.
-
-    ``meant`` says that two are meant, as in neutral lines and JSON, which machines write.
-    """
+    """The first node that a copy of a unit lists twice on one side, and its source."""
 
     node: str
     source: Source
-    meant: bool
 
 
 def repeated_node(inputs: Sequence[ObjectNode], outputs: Sequence[ObjectNode]) -> ObjectNode | None:
@@ -36,13 +31,3 @@ def repeated_note(repeated: Sequence[RepeatedNode]) -> list[str]:
         f"note: {units} an object node twice, which counts once: {first.node!r} in "
         f"{first.source.file}:{first.source.line}; foon-asp lint shows each"
     ]
-
-
-def refuse_repeated(repeated: Sequence[RepeatedNode]) -> None:
-    """Raise :class:`UserError` if a unit needs two of a node, which used-up items do not support yet."""
-    for node, source, meant in repeated:
-        if meant:
-            raise UserError(
-                f"{source}: found {node!r} twice on one side of a unit, expected it once: with items used "
-                "up it would count as one; give each its own name, or ask with --items lasting"
-            )

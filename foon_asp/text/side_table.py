@@ -10,6 +10,7 @@ from foon_asp.text.line import Mention
 from foon_asp.text.plain_file import each_line, split_lines
 from foon_asp.text.table import Table
 from foon_asp.text.tables import DURATIONS, RATES, TOOLS, UTENSILS
+from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 from foon_asp.text.unit_price_list import UNIT_PRICES
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ TABLES: dict[str, Table[Any, Any]] = {
     "motion.txt": RATES,
     "durations.txt": DURATIONS,
     "unit_prices.txt": UNIT_PRICES,
+    "unit_amounts.txt": UNIT_AMOUNTS,
     "utensils.txt": UTENSILS,
     "tools.txt": TOOLS,
 }
@@ -64,6 +66,6 @@ def _renamed_row(line: str, table: str, renaming: "Renaming") -> str:
         first = renaming.node(first)
     elif renaming.name(TABLES[table].names, first.strip()) != first.strip():
         first = first.replace(renaming.rename.old, renaming.rename.new)
-    if table == "unit_prices.txt":
+    if table in {"unit_prices.txt", "unit_amounts.txt"}:
         fields = [*map(renaming.node, fields[:-1]), *fields[-1:]]
     return "\t".join((first, *fields))

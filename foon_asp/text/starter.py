@@ -6,6 +6,8 @@ from fractions import Fraction
 from foon_asp.network import Network, ObjectNode
 from foon_asp.text.writer import write_node
 
+RATES_FILE = "motion.txt"
+"""The name of the file of success rates."""
 _KITCHEN = """\
 # What is at hand: an O line for each object, and below it its S lines, as in the recipe.
 # It begins with what makes the units of the recipe run: take out what you do not have, and add what you have.
@@ -42,7 +44,7 @@ def starter_files(
     return {
         "recipe.txt": recipe,
         "kitchen.txt": _KITCHEN + "".join(write_node(network.objects[o]) for o in sorted(kitchen)),
-        "motion.txt": _MOTIONS
+        RATES_FILE: _MOTIONS
         + ("" if rates else _UNKNOWN)
         + "".join(f"{motion}\t{_decimal(rate)}\n" for motion, rate in all_rates.items()),
         "utensils.txt": _UTENSILS + "".join(f"{label}\n" for label in _utensils(network.objects)),

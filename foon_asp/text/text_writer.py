@@ -17,7 +17,7 @@ from foon_asp.text.writer import write_line
 class TextWriter:
     """A writer of FOON text, which reads each line back: names from JSON may mean something else in text."""
 
-    holds_prices = holds_no_inputs = False
+    holds_prices = holds_amounts = holds_no_inputs = False
 
     def __init__(self, target: Dialect, numbering: Numbering) -> None:
         self._target = target

@@ -41,3 +41,28 @@ def test_what_is_no_recipe_is_refused(cli: Cli, tmp_path: Path) -> None:
     ran = cli("init", tmp_path / "new", "--from", tmp_path / "egg.foon")
     assert (ran.code, "found a store" in ran.err) == (2, True)
     assert not (tmp_path / "new").exists()
+
+
+def test_templates_have_the_motions_of_the_recipe_and_its_times(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "egg.txt").write_text(
+        "//\nO\tegg\nM\tcrack\t<0:10-0:14>\nO\tegg\nS\tcracked\n//\n"
+        "O\tegg\nS\tcracked\nM\tfry\tAssumed\nO\tegg\nS\tfried\n//\n"
+    )
+    folder = tmp_path / "data"
+    folder.mkdir()
+    (folder / "utensils.txt").write_text("pan\n")  # what is there stays
+    assert cli("init", folder, "--from", tmp_path / "egg.txt", "--rates", "--durations").code == 0
+    assert sorted(path.name for path in folder.iterdir()) == ["durations.txt", "motion.txt", "utensils.txt"]
+    assert (folder / "motion.txt").read_text().splitlines()[-2:] == ["crack\t1", "fry\t1"]
+    durations = folder / "durations.txt"
+    assert durations.read_text().splitlines()[1:] == ["crack\t4", "fry\tSECONDS"]
+    question = ("solve", tmp_path / "egg.txt", "--durations", durations, "--format", "steps")
+    assert "expected a number of seconds" in cli(*question).err
+    durations.write_text(durations.read_text().replace("SECONDS", "2 min"))
+    steps = cli(*question).json["steps"]
+    assert [step["duration"]["exact"] for step in steps] == ["4", "120"]
+    assert [step["clip"] for step in steps] == [{"begin": 10, "end": 14, "seconds": 4}, None]
+    ran = cli("init", folder, "--from", tmp_path / "egg.txt", "--durations")
+    assert (ran.code, "durations.txt already exists" in ran.err) == (2, True)
+    assert cli("init", tmp_path / "rates", "--rates").code == 0
+    assert [path.name for path in (tmp_path / "rates").iterdir()] == ["motion.txt"]

@@ -88,6 +88,8 @@ def test_a_class_is_described(name: str) -> None:
 def test_an_example_runs(name: str) -> None:
     if name in {"schedule", "Schedule"}:
         pytest.importorskip("ortools", reason="OR-Tools is not installed (foon-asp[schedule])")
+    if name == "py_trees_root":
+        pytest.importorskip("py_trees", reason="py_trees is not installed (foon-asp[robot])")
     if name in {"relax", "Relaxed"} and not translator.installed():
         pytest.skip("Fast Downward's translator is not installed (foon-asp[pddl])")
     assert not failures(name, PUBLIC[name].__doc__)

@@ -93,7 +93,8 @@ def test_a_constraint_changed_in_place_is_not_certified_as_ours(folder: Path, cl
         ("questions/other_trees.lp", ["alternatives"]),
         ("questions/at_most.lp", ["pareto", "--objective", "units,success"]),
         ("questions/second_opinion.lp", ["solve", "--cross-check"]),
-        ("questions/shopping_list.lp", ["shopping-list"]),
+        ("questions/shopping_list.lp", ["shopping-list", "--rule", ':- use(U), motion(U,"pat").']),
+        ("questions/union.lp", ["alternatives", "--union", "--within", "20"]),
     ],
 )
 def test_what_cannot_be_replaced_is_refused(folder: Path, cli: Cli, name: str, words: list[str]) -> None:

@@ -17,15 +17,16 @@ from foon_asp.hypergraph import (
     NONE,
     SAFE,
     Reduction,
-    branch_and_bound,
-    optimality_proof,
+    greedy_stages,
     reduce,
-    reduction,
+    relaxation_stages,
+    tuning,
 )
 from foon_asp.hypergraph.branch_and_bound import Branching, TooLongError, branched
 from foon_asp.hypergraph.covering import Covering, Relaxed
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.optimality_proof import Branch
+from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import RefusedError, seal, verify
 from tests.hypergraph.small_graphs import asked, cheapest, parts, reaches, require_proves
@@ -43,16 +44,19 @@ class Run:
         self.trees: list[set[int]] = []
         self.bounds: list[int] = []
         self.total = sum(costs) + 1
-        self.search = Branching(
-            *(graph, targets, range(len(costs)), costs.__getitem__, (), self.total),
-            *(guess, self.trees.append, self.bounds.append),
-        )
+        self.search = Branching(graph, targets, range(len(costs)), costs.__getitem__, (), self.total, guess)
 
     def require_right(
         self, best: int, effort: int = 10**6, expired: Callable[[], bool] = lambda: False
     ) -> bool:
         """Search, and hold all that is heard against what the cheapest costs; whether that is proved."""
-        ended = self.search.search(effort, expired)
+        search = self.search
+        for _ in search.search(effort, expired):
+            if search.incumbent is not None and (not self.trees or self.trees[-1] != search.incumbent):
+                self.trees.append(set(search.incumbent))
+            if not self.bounds or self.bounds[-1] != search.bound:
+                self.bounds.append(search.bound)
+        ended = search.closed
         graph, targets, costs = self.question
         before = self.total
         for tree in self.trees:
@@ -202,7 +206,7 @@ def test_guessed_derivations_count_and_those_of_other_actions_do_not(size: int) 
 @pytest.fixture
 def searching(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave small questions to branching, too."""
-    monkeypatch.setattr(reduction, "_SMALL", 0)
+    monkeypatch.setattr(tuning, "PRESOLVE", PresolveTuning(relaxed_actions=0))
 
 
 @pytest.mark.slow
@@ -213,8 +217,8 @@ def test_answers_are_those_of_the_plain_program(
     seed: int, rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With a tree that may be bad."""
-    monkeypatch.setattr(reduction, "improved", lambda graph, few, tree, *_: tree)
-    monkeypatch.setattr(reduction, "guessed", lambda *_: ())
+    monkeypatch.setattr(greedy_stages, "improved", lambda graph, few, tree, *_: tree)
+    monkeypatch.setattr(relaxation_stages, "guessed", lambda *_: ())
     problem = random_problem(seed, rule, units=14)
     by = [(Objective.UNITS,), (Objective.PRICE,), (Objective.INPUTS, Objective.PRICE), (Objective.KITCHEN,)]
     objectives = by[seed % 4]
@@ -292,7 +296,7 @@ def test_costs_that_no_rounding_brings_to_the_total_are_not_proved(prices: list[
 
 def test_a_proof_that_names_too_much_is_not_given(monkeypatch: pytest.MonkeyPatch) -> None:
     graph, targets, costs = corners(4)
-    monkeypatch.setattr(branch_and_bound, "_LENGTH", 10_000)
+    monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(proof_length=10_000))
     assert branched(graph, targets, range(len(costs)), costs.__getitem__, (), 9, lambda: False) is None
 
 
@@ -307,8 +311,7 @@ def test_certificates_of_many_actions_verify(
     objective: Objective, worth: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Greedy weights leave out what is too dear, those of the relaxation more, and the search the rest."""
-    monkeypatch.setattr(optimality_proof, "_MANY", 0)
-    monkeypatch.setattr(optimality_proof, "_WORTH", worth)
+    monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(rounded_actions=0, fixed_share=worth))
     by, told, proved = (objective,), list[str](), 0
     problems = [gap_problem(0), *(random_problem(n, ContainerRule.STRICT, units=30) for n in range(50, 66))]
     for problem in problems:

@@ -2,20 +2,31 @@
 
 import math
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 
 import pytest
 
 from foon_asp.asp import Settings, solve
 from foon_asp.certificate import certify
-from foon_asp.hypergraph import ALL, NONE, Reduced, Reduction, cost_partition, reduce, reduction
-from foon_asp.hypergraph.cost_partition import PARTS, SharedCosts, share_costs
+from foon_asp.hypergraph import (
+    ALL,
+    NONE,
+    Reduced,
+    Reduction,
+    greedy_stages,
+    reduce,
+    relaxation_stages,
+    tuning,
+)
+from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
 from foon_asp.hypergraph.covering import Covering, Relaxed, UnsolvedError, Weighed
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_cuts import Cuts
+from foon_asp.hypergraph.landmark_relaxation import PARTS
 from foon_asp.hypergraph.lexicographic import Lexicographic
 from foon_asp.hypergraph.optimality_proof import Prover
+from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import ContainerRule, Objective, levels
 from tests.hypergraph.small_graphs import asked, cheapest, crossing
 from tests.support.plain_graphs import Action, plain_problem
@@ -24,6 +35,19 @@ from tests.support.random_problems import random_problem
 
 def never() -> bool:
     return False
+
+
+def share_costs(
+    graph: Hypergraph,
+    targets: list[int],
+    actions: Iterable[int],
+    cost: Callable[[int], int],
+    known_cuts: Iterable[Iterable[int]],
+    enough: int,
+    expired: Callable[[], bool],
+) -> SharedCosts | None:
+    """Return the cost partition that a bound of ``enough``, convergence or time ends with."""
+    return CostPartitioning(graph, targets, [*actions], cost, expired, known_cuts).advance(enough)
 
 
 def require_holds(graph: Hypergraph, targets: list[int], costs: list[int], found: SharedCosts) -> None:
@@ -111,31 +135,25 @@ def test_costs_that_no_float_can_hold(seed: int) -> None:
         require_holds(graph, targets, costs, found)
 
 
-def test_what_is_known_is_heard_of_and_time_may_be_up_at_any_step() -> None:
+def test_the_bound_rises_with_each_solution_and_time_may_be_up_at_any_step() -> None:
     graph, targets, costs = asked(8, (1, 2, 3))
-    question = graph, targets, range(len(costs)), costs.__getitem__, (), 10**6
-    heard: list[SharedCosts] = []
-
-    def hear(shared: SharedCosts, enough: int = 10**6) -> int:
-        heard.append(shared)
-        return enough
-
-    whole = share_costs(*question, never, hear, every=1)
+    question = graph, targets, range(len(costs)), costs.__getitem__
+    whole = share_costs(*question, (), 10**6, never)
     assert whole is not None
-    assert len(heard) > 1
-    for shared in heard:
-        require_holds(graph, targets, costs, shared)
-        assert shared.bound <= whole.bound
-    often = len(heard)
-    heard.clear()
-    assert share_costs(*question, never, lambda shared: hear(shared, 0), every=1) is heard[0]  # that is all
-    assert len(heard) == 1
-    heard.clear()
-    share_costs(*question, never, hear, every=2)
-    assert len(heard) == often // 2
+    often = []
+    for solutions in (1, 2):
+        partitioning, advances = CostPartitioning(*question, never, ()), 0
+        while not partitioning.converged:
+            shared, advances = partitioning.advance(10**6, solutions), advances + 1
+            assert shared is not None
+            require_holds(graph, targets, costs, shared)
+            assert shared.bound <= whole.bound
+        often.append(advances)
+        assert shared == whole
+    assert often[0] > often[1] > 1
     for steps in range(30):
         looks = iter(range(steps))
-        late = share_costs(*question, lambda looks=looks: next(looks, None) is None)  # type: ignore[misc]
+        late = share_costs(*question, (), 10**6, lambda looks=looks: next(looks, None) is None)  # type: ignore[misc]
         assert late is not None
         require_holds(graph, targets, costs, late)
         assert late.bound <= whole.bound
@@ -166,10 +184,11 @@ def test_answers_are_those_of_the_plain_program(
     seed: int, rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where all that the greedy cuts leave is left to the shared costs, of which is heard each time."""
-    monkeypatch.setattr(reduction, "_SMALL", 0)
-    monkeypatch.setattr(cost_partition, "_OFTEN", 1)
-    monkeypatch.setattr(reduction, "_DENSE", seed % 2 / 600)  # hardly any member, or none
-    monkeypatch.setattr(reduction, "improved", lambda graph, few, tree, *_: tree)
+    few_members = seed % 2 / 600  # hardly any, or none
+    presolve_tuning = PresolveTuning(relaxed_actions=0, landmark_actions=few_members)
+    monkeypatch.setattr(tuning, "PRESOLVE", presolve_tuning)
+    monkeypatch.setattr(relaxation_stages, "_SOLUTIONS", 1)
+    monkeypatch.setattr(greedy_stages, "improved", lambda graph, few, tree, *_: tree)
     problem = random_problem(seed, rule, units=14)
     objectives = [(Objective.UNITS,), (Objective.PRICE,), (Objective.SUCCESS,), (Objective.KITCHEN,)][
         seed % 4
@@ -202,10 +221,20 @@ def reduced(
     every = dict.fromkeys(range(12), 0)
     told = SharedCosts(bound, {**every, 11: left}, [], dict.fromkeys(every, 0.0))
     answers = iter([told])
-    patched.setattr(cost_partition, "share_costs", lambda *_: next(answers, None))
-    patched.setattr(reduction, "landmark_cuts", lambda *_: Cuts(1, every, []))
-    patched.setattr(reduction, "_SMALL", 0)
-    patched.setattr(reduction, "_EFFORT", 0)
+
+    class Told:
+        """Comes to one cost partition, and the next time to none."""
+
+        converged = True
+
+        def __init__(self, *_: object) -> None: ...
+
+        def advance(self, *_: object) -> SharedCosts | None:
+            return next(answers, None)
+
+    patched.setattr(relaxation_stages, "CostPartitioning", Told)
+    patched.setattr(greedy_stages, "landmark_cuts", lambda *_: Cuts(1, every, []))
+    patched.setattr(tuning, "PRESOLVE", PresolveTuning(relaxed_actions=0, branching_budget=0))
     found = reduce(plain_problem(WAYS, [1], rates=["1"] * 12), levels((objective,)), reductions)
     assert found.tree == FEW
     assert found.shared == (told if bound > PARTS else None)

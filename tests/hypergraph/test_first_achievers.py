@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from foon_asp.hypergraph import first_achievers
+from foon_asp.hypergraph import first_achievers, tuning
 from foon_asp.hypergraph.first_achievers import FirstAchievers
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from tests.hypergraph.small_graphs import crossing, random_graph
@@ -60,7 +60,7 @@ def test_every_set_of_actions_makes_the_same_and_cuts_have_the_members_they_say(
 ) -> None:
     """Also where landmarks are known among a few objects only."""
     if bits is not None:
-        monkeypatch.setattr(first_achievers, "_BITS", bits)
+        monkeypatch.setattr(tuning, "RELAXATION", tuning.RelaxationTuning(landmark_bits=bits))
     fewer = wider = 0
     for rng, graph in drawn(range(200)):
         achievers = FirstAchievers(graph)

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from foon_asp.hypergraph import Subproblem, reduce
+from foon_asp.hypergraph import Subproblem, reduce_under_rules
 from foon_asp.problem import Objective, Problem, Restriction, levels
 from tests.hypergraph.test_extension import without_never
 from tests.hypergraph.test_reduction import interrupt_at, two_rows
@@ -17,7 +17,7 @@ UNITS, KITCHEN = Objective.UNITS, Objective.KITCHEN
 
 
 def subproblem_of(problem: Problem, *objectives: Objective, spare: bool = False) -> Subproblem:
-    subproblem = reduce(problem, levels(objectives or (UNITS,)), redundant=spare, other_rules=True).subproblem
+    subproblem = reduce_under_rules(problem, levels(objectives or (UNITS,)), redundant=spare).subproblem
     assert subproblem is not None
     return subproblem
 

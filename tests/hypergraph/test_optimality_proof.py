@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from foon_asp.errors import BugError
-from foon_asp.hypergraph import optimality_proof
+from foon_asp.hypergraph import optimality_proof, tuning
 from foon_asp.hypergraph.branch_and_bound import branched
 from foon_asp.hypergraph.covering import Covering, Relaxed
 from foon_asp.hypergraph.cut import Cut
@@ -283,7 +283,7 @@ def test_a_bound_is_rounded_up_where_it_is_no_multiple() -> None:
 @pytest.mark.parametrize("many", [2, 1000])
 def test_rounding_up_closes_a_gap(step: int, many: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of many actions, without exact weights."""
-    monkeypatch.setattr(optimality_proof, "_MANY", many)
+    monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(rounded_actions=many))
     if many == 2:
         monkeypatch.setattr(optimality_proof, "exact_optimum", lambda *_: None)
     # of three actions each pair is a landmark: half of each adds up to one and a half steps, rounded up
@@ -302,8 +302,7 @@ def test_rounding_up_closes_a_gap(step: int, many: int, monkeypatch: pytest.Monk
 def test_of_many_actions_rounded_weights_prove_each_of_the_cases_that_are_told_apart(
     worth: float, searched: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(optimality_proof, "_MANY", 0)
-    monkeypatch.setattr(optimality_proof, "_WORTH", worth)
+    monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(rounded_actions=0, fixed_share=worth))
     met, answers = Counter[type](), list[Proof | None]()
 
     def search(*asked: Any) -> Proof | None:
@@ -349,7 +348,7 @@ def test_what_a_search_proves_is_stated_of_all_actions_and_in_what_they_cost(
         once, twice = (Packing(((cut, (Fraction(n * step),)),)) for n in (1, 2))
         return Branch(0, Hopeless(cut), CostFixing((1,), once._replace(rounded=rounded), twice))
 
-    monkeypatch.setattr(optimality_proof, "_MANY", 0)
+    monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(rounded_actions=0))
     graph = Hypergraph(4, [[], [], []], [[1, 2], [2, 3], [1, 3]], [0])
     found = Prover(
         *(graph, [1, 2, 3], costs(3, 3, 3), COUNT),

@@ -10,7 +10,7 @@ import pytest
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.deadline import Deadline
-from foon_asp.hypergraph import ALL, NONE, priced_limit
+from foon_asp.hypergraph import ALL, NONE, priced_limit, tuning
 from foon_asp.hypergraph.priced_limit import Limited
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
@@ -26,17 +26,16 @@ SEEDS = [range(30, 40), pytest.param(range(100), marks=pytest.mark.slow)]
 Tree = tuple[frozenset[int], tuple[Any, ...]]
 # How an answer is looked for: small problems are treated as large ones are.
 WAYS = {
-    "by one price": {},
-    "by prices": {"priced_limit._EASY": 0},
-    "by rising prices": {"priced_limit._MANY": 0},
+    "by one price": tuning.PriceTuning(),
+    "by prices": tuning.PriceTuning(easy_units=0),
+    "by rising prices": tuning.PriceTuning(rising_units=0),
 }
 
 
 @pytest.fixture
 def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Have an answer looked for in one way."""
-    for tuned, value in WAYS[request.param].items():
-        monkeypatch.setattr(f"foon_asp.hypergraph.{tuned}", value)
+    monkeypatch.setattr(tuning, "PRICES", WAYS[request.param])
 
 
 ways = pytest.mark.parametrize("way", WAYS, indirect=True)

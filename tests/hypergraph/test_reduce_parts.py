@@ -11,8 +11,7 @@ from itertools import count
 import pytest
 
 from foon_asp.errors import UserError
-from foon_asp.hypergraph import ALL, NONE, SAFE, Reduction, dominance, parse_reductions
-from foon_asp.hypergraph import lazy_h_max as within_reach_module
+from foon_asp.hypergraph import ALL, NONE, SAFE, Reduction, dominance, parse_reductions, tuning
 from foon_asp.hypergraph.action_landmarks import relevant_beside_landmarks
 from foon_asp.hypergraph.dominance import undominated
 from foon_asp.hypergraph.exact_costs import CoarseCosts
@@ -208,8 +207,7 @@ def test_what_is_within_reach_is_what_is_derived_at_once(
     deep: int, looks: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Or it may be, where it is too deep to tell, as in circles that cost nothing."""
-    monkeypatch.setattr(within_reach_module, "_DEEP", deep)
-    monkeypatch.setattr(within_reach_module, "_LOOKS", looks)
+    monkeypatch.setattr(tuning, "CUTS", tuning.CutTuning(lazy_depth=deep, lazy_looks=looks))
     told = 0
     for seed in range(40):
         rng = random.Random(seed)
@@ -245,7 +243,7 @@ def test_circles_are_not_gone_round_for_ever(monkeypatch: pytest.MonkeyPatch) ->
         next(looked)
         return rests[action]
 
-    monkeypatch.setattr(within_reach_module, "_LOOKS", 500)
+    monkeypatch.setattr(tuning, "CUTS", tuning.CutTuning(lazy_looks=500))
     reach = within_reach(plain(actions, [1]), range(len(actions)), rest)
     assert reach(1, 10**7)
     assert reach(2, 10**7)

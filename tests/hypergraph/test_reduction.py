@@ -9,8 +9,19 @@ from itertools import count, pairwise
 import pytest
 
 from foon_asp.asp import Status, solve
-from foon_asp.hypergraph import ALL, NONE, SAFE, ExactCosts, Listener, Reduced, Reduction, reduce, reduction
+from foon_asp.hypergraph import (
+    ALL,
+    NONE,
+    SAFE,
+    ExactCosts,
+    Listener,
+    Reduced,
+    Reduction,
+    reduce,
+    tuning,
+)
 from foon_asp.hypergraph.landmark_cuts import Cuts, WeightedCut
+from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import Objective, Problem, levels
 from tests.support.plain_graphs import Action, plain_problem
 
@@ -308,9 +319,8 @@ def test_items_of_the_kitchen_are_no_units(
 
 
 def test_a_large_network_is_cut_to_what_its_goals_can_need(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reduction, "_LARGE", 0)
-    monkeypatch.setattr(reduction, "_FIRST", 1)
-    monkeypatch.setattr(reduction, "_EASY", 0)
+    presolve_tuning = PresolveTuning(lazy_actions=0, first_actions=1, easy_actions=0)
+    monkeypatch.setattr(tuning, "PRESOLVE", presolve_tuning)
     # the goal 1 comes of what is made in three more steps, in either of two ways, or dear at once
     near: list[Action] = [([2], [1]), ([3], [2]), ([4], [2]), ([5], [3]), ([6], [4]), ([0], [5]), ([0], [6])]
     far: list[Action] = [([100 + n], [200 + n]) for n in range(40)]

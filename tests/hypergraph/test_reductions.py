@@ -1,7 +1,6 @@
 """Reductions: each alone and all together leave the optimum as it is, whatever rules remove and require."""
 
 import random
-import sys
 from collections.abc import Collection
 from contextlib import nullcontext
 from dataclasses import replace
@@ -15,8 +14,20 @@ import pytest
 
 from foon_asp.asp import Proof, Settings, solve
 from foon_asp.certificate import certify
-from foon_asp.hypergraph import ALL, NONE, SAFE, Listener, Reduction, reduce, reduction
+from foon_asp.hypergraph import (
+    ALL,
+    NONE,
+    SAFE,
+    Listener,
+    Reduction,
+    greedy_stages,
+    reduce,
+    reduce_under_rules,
+    reduction,
+    tuning,
+)
 from foon_asp.hypergraph.exact_costs import ExactCosts
+from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import (
     ContainerRule,
@@ -98,21 +109,20 @@ def without_redundant(found: list[Measured]) -> list[Measured]:
 
 
 # How small networks are treated, as larger ones are.
-SIZES: dict[str, dict[str, object]] = {
-    "all at once": {},
-    "nearest first": {"_LARGE": 0, "_FIRST": 1},
-    "no searches left out": {"_LARGE": 0, "_FIRST": 1, "_EASY": 0},
-    "costs shared out": {"_SMALL": 0, "_EASY": 0},
-    "branching": {"_SMALL": 0, "_BRANCHING_GAP": (1, 0), "_AMONG": 1.0},
+SIZES = {
+    "all at once": PresolveTuning(),
+    "nearest first": PresolveTuning(lazy_actions=0, first_actions=1),
+    "no searches left out": PresolveTuning(lazy_actions=0, first_actions=1, easy_actions=0),
+    "costs shared out": PresolveTuning(relaxed_actions=0, easy_actions=0),
+    "branching": PresolveTuning(relaxed_actions=0, branching_bound=0, sparse_share=1),
 }
 
 
 @pytest.fixture(params=SIZES)
 def _sizes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name, value in SIZES[request.param].items():
-        monkeypatch.setattr(reduction, name, value)
+    monkeypatch.setattr(tuning, "PRESOLVE", SIZES[request.param])
     if request.param == "no searches left out":
-        monkeypatch.setattr(sys.modules["foon_asp.hypergraph.landmark_cuts"], "_FRESH", 1)
+        monkeypatch.setattr(tuning, "CUTS", tuning.CutTuning(guided_cuts=1))
 
 
 def assert_left(
@@ -171,7 +181,7 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
     Where only what is better than it is searched for, something better has to be left, unless it is optimal;
     else an optimal tree always has to be.
     """
-    monkeypatch.setattr(reduction, "improved", lambda _graph, _actions, tree, *_: tree)
+    monkeypatch.setattr(greedy_stages, "improved", lambda _graph, _actions, tree, *_: tree)
     bad = 0
     for seed in seeds:
         problem, found = restricted(seed)
@@ -180,26 +190,22 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
             names = list(map(str, objectives))
             worst = dearest(problem, found, names)
             monkeypatch.setattr(reduction, "irredundant", lambda *_, tree=worst: set(tree))
-            reducer = reduction._Reducer(
-                problem,
-                objectives,
-                reductions,
-                lambda: False,
-                Listener(),
-                redundant=False,
-                other_rules=False,
-            )
-            reduced = reducer.reduce(nullcontext)
+            task = reduction._task(problem, objectives, reductions, lambda: False)
+            presolve = reduction._Presolve(task, None, nullcontext)
+            presolve.extend_or_run()
+            reduced, gap = presolve.reduced(), presolve.gap
             if not found:
                 assert reduced.tree is None
                 continue
+            assert gap is not None
             expected = min(tree.key(names) for tree in found)
-            [in_hand] = [tree.key(names) for tree in found if tree.units == reducer._units(reducer.tree)]
+            [in_hand] = [tree.key(names) for tree in found if tree.units == reduced.tree]
             if reduced.settled or (Reduction.BOUNDS in reductions and in_hand == expected):
                 assert in_hand == expected
                 continue
             bad += in_hand > expected
-            assert_left(reducer._units(reducer.remaining), found, names, reductions)
+            units = {action for action in gap.candidates if action < len(problem.network)}
+            assert_left(units, found, names, reductions)
     assert bad > len(seeds) / 30
 
 
@@ -218,8 +224,8 @@ def test_all_that_trees_up_to_a_limit_have_is_within_it(seeds: range, redundant:
             found = without_redundant(found)
         names = LISTS[seed % len(LISTS)]
         by = [*names, "units"]
-        wide = reduce(
-            problem, levels(tuple(map(Objective, names))), redundant=redundant, other_rules=True
+        wide = reduce_under_rules(
+            problem, levels(tuple(map(Objective, names))), redundant=redundant
         ).subproblem
         if wide is None:
             continue
@@ -361,8 +367,8 @@ def test_trees_get_better_and_bounds_rise_and_the_optimum_is_between(
 ) -> None:
     """So it is, too, where better trees are not looked for, and the one in hand is no good."""
     if not looked_for:
-        monkeypatch.setattr(reduction, "improved", lambda graph, actions, tree, *_: tree)
-        monkeypatch.setattr(reduction, "_EASY", 0)
+        monkeypatch.setattr(greedy_stages, "improved", lambda graph, actions, tree, *_: tree)
+        monkeypatch.setattr(tuning, "PRESOLVE", PresolveTuning(easy_actions=0))
     for seed in (*range(12), 48, 54, 69, 72, 84):
         problem = gap_problem(seed, corners=4 + seed % 4)
         names = LISTS[seed % len(LISTS)] if seed % 3 else ["units"]

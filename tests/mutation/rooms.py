@@ -12,6 +12,7 @@ from tests.mutation.operators import mutants
 ROOT = Path(__file__).resolve().parents[2]
 PROVING = (
     "foon_asp/proof",
+    "foon_asp/plans",
     "foon_asp/hypergraph",
     "foon_asp/certificate",
     "foon_asp/asp/prepared.py",

@@ -1,6 +1,6 @@
 """The best tree with stand-ins by hand: shortest paths over all sets of object nodes that may be at hand."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import count
@@ -9,29 +9,35 @@ from foon_asp.network import StandInTable
 from foon_asp.problem import Problem
 
 Cost = tuple[Fraction | int, ...]
+State = tuple[frozenset[int], frozenset[int]]  # what is at hand, and which steps are still to be done
 
 
-def best(problem: Problem, table: StandInTable, objectives: tuple[str, ...]) -> Cost | None:
+def best(
+    problem: Problem, table: StandInTable, objectives: tuple[str, ...], steps: Collection[int] = ()
+) -> Cost | None:
     """Give the least cost of a tree of a problem without stand-ins, if what it lacks may be stood in for.
 
     A node that can be made has no stand-in. ``objectives`` are dissimilarity, units and inputs, in any order.
+    The units ``steps`` have to be executed.
     """
     moves = list(_moves(problem, table, objectives))
     goals = frozenset(problem.goals)
     numbers = count()
-    heap: list[tuple[Cost, int, frozenset[int]]] = [((0,) * len(objectives), 0, problem.kitchen)]
-    settled: set[frozenset[int]] = set()
+    start = problem.kitchen, frozenset(steps)
+    heap: list[tuple[Cost, int, State]] = [((0,) * len(objectives), 0, start)]
+    settled: set[State] = set()
     while heap:
         cost, _, here = heappop(heap)
         if here in settled:
             continue
         settled.add(here)
-        if goals <= here:
+        made, waiting = here
+        if goals <= made and not waiting:
             return cost
-        for needs, gives, price in moves:
-            if needs <= here and not gives <= here:
+        for move, (needs, gives, price) in enumerate(moves):
+            if needs <= made and (not gives <= made or move in waiting):
                 total = tuple(a + b for a, b in zip(cost, price, strict=True))
-                heappush(heap, (total, next(numbers), here | gives))
+                heappush(heap, (total, next(numbers), (made | gives, waiting - {move})))
     return None
 
 

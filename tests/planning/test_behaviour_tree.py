@@ -274,32 +274,37 @@ def test_bundled_goals_are_reached(bundled: Foon, goal: str, runs: int) -> None:
 @pytest.fixture
 def runs(request: pytest.FixtureRequest) -> int:
     """How often a tree is run: a hundred times by the slow tests."""
-    return 100 if request.node.get_closest_marker("slow") else 3
+    markers = map(request.node.get_closest_marker, ("slow", "nightly"))
+    return 100 if any(markers) else 3
 
 
 def reach(problem: Problem, answer: foon_asp.Answer, runs: int) -> None:
+    """Run the tree without failures, where each run is the same, and with 30 % of them, in many runs."""
     xml = answer.behaviour_tree()
+    assert bool(xml) is bool(answer)
     if not answer:
-        assert not xml
         return
     assert not list(faults(xml))
+    assert run(problem, xml, 0, 0).executed == [*(answer.ids or ())]
     for seed in range(runs):
-        certain, often = (run(problem, xml, failing, seed) for failing in (0, 0.3))
-        assert [*certain.executed] == [*often.executed] == [*(answer.ids or ())]
+        assert run(problem, xml, 0.3, seed).executed == [*(answer.ids or ())]
 
 
 @needs_py_trees
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_goals_of_the_corpus_are_reached(universal: Path, runs: int) -> None:
     with warnings.catch_warnings(action="ignore", category=foon_asp.FoonWarning):
         foon = foon_asp.load(universal)
-    goals, reached = foon.goals, 0
+    goals = [
+        node for outputs in foon.network.outputs for node in map(foon.network.objects.__getitem__, outputs)
+    ]
+    units = []
     for goal in random.Random(0).sample(goals, len(goals)):
         problem = foon.problem(goal)
         answer = foon_asp.solve(problem)
-        if answer.ids:
+        if len(answer.units or ()) > 2:
             reach(problem, answer, runs)
-            reached += 1
-        if reached == 20:
+            units.append(len(answer.units or ()))
+        if len(units) == 20:
             break
-    assert reached == 20
+    assert (len(units), max(units) > 20) == (20, True)

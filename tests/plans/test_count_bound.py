@@ -45,10 +45,23 @@ def executed(made: Flows, order: Sequence[int]) -> int | None:
     return sum(made.start.values()) - untouched.total()
 
 
+def flows_of(
+    asks: Sequence[Sequence[int]],
+    uses: Sequence[Sequence[int]],
+    adds: Sequence[Sequence[int]],
+    items: Sequence[Sequence[int]],
+    start: Mapping[int, int],
+    targets: Sequence[int],
+) -> Flows:
+    """Return flows in which an object counts as often as it is listed."""
+    asked, used, added = (list(map(Counter, side)) for side in (asks, uses, adds))
+    return Flows(asked, used, added, items, start, Counter(targets))
+
+
 def random_flows(choose: Random) -> Flows:
     objects, actions = range(choose.randint(2, 4)), range(choose.randint(2, 4))
     asks = [choose.sample(objects, choose.randint(0, 2)) for _ in actions]
-    return Flows(
+    return flows_of(
         asks,
         [[o for o in asked if choose.random() < 0.6] for asked in asks],
         [[o for o in choose.sample(objects, choose.randint(1, 2)) if o not in asked] for asked in asks],
@@ -137,7 +150,7 @@ def flows(*actions: str, start: dict[int, int] | None = None, targets: tuple[int
         uses.append([int(word) for word in words if "*" not in word and int(word) < 100])
         items.append([int(word) for word in words if "*" not in word and int(word) >= 100])
         adds.append([int(word) for word in after.split()])
-    return Flows(asks, uses, adds, items, start or {}, targets)
+    return flows_of(asks, uses, adds, items, start or {}, targets)
 
 
 def proves(bound: CountBound, *levels: Level) -> list[Counts]:

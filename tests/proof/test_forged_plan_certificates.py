@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from foon_asp.network import UnitPrices
+from foon_asp.network import UnitAmounts, UnitPrices
 from foon_asp.network.level import network_at_level
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.proof import verify, verify_plan
@@ -54,14 +54,20 @@ PRICED = replace(PLAIN, unit_prices=UnitPrices(PRICES, {}))
 LEVEL = replace(PLAIN, network=network_at_level(PLAIN.network, 2))
 
 
+# Of salt, two are mixed; and two of gold are dug, which changes nothing.
+MIX, DIG = PLAIN.network.unit(0), PLAIN.network.unit(2)
+COUNTED = replace(PLAIN, amounts={MIX: UnitAmounts({PLAIN.network.objects[SALT]: 2})})
+DUG = replace(PLAIN, amounts={DIG: UnitAmounts({}, {PLAIN.network.objects[GOLD]: 2})})
+
+
 def proving(**more: Any) -> Content:
     """Return the proof that bread takes mixing and baking, with more conditions."""
     return {"balance": [[DOUGH, "1"], [BREAD, "2"]], **more}
 
 
-def items(stock: Any = (), stays: Any = ()) -> Content:
+def items(stock: Any = (), stays: Any = (), wanted: Any = (), amounts: Any = ()) -> Content:
     """Return what is said of items."""
-    return {"stock": [*stock], "stays": [*stays]}
+    return {"stock": [*stock], "stays": [*stays], "wanted": [*wanted], "amounts": [*amounts]}
 
 
 PROOF = proving()
@@ -132,6 +138,15 @@ def branch(most: int, up_to: Any, above: Any) -> Content:
     return {"branch": {"unit": 1}, "most": most, "up_to": up_to, "above": above}
 
 
+TWO_SALTS: Content = {"items": items([[SALT, 1]], (), (), [[0, [[SALT, 2]], []]]), "at": COUNTED}
+
+
+def supplied(least: str) -> Forged:
+    """Return a certificate that salt is bought before it is mixed, which is right for 3."""
+    proof = {"weights": [[0, least], [1, "1"]], "supply": [[SALT, 0, "1"]]}
+    return at_least(least, proof, cuts=[[DOUGH, BREAD], [BREAD]], **TWO_SALTS)
+
+
 FORGED: dict[str, Forged] = {
     # --- the frame
     "verify_plan: below level 3 nothing says what is used up: contents decide": plain(level=2, at=LEVEL),
@@ -186,9 +201,14 @@ FORGED: dict[str, Forged] = {
         proof=[{"balance": [[FLOUR, "1"], *PROOF["balance"]]}]
     ),
     # --- items
-    "_stock: expected items of the stock in order, each of them once": plain(
-        items=items([[SALT, 0], [SALT, 1]])
+    "__init__: an amount of a goal is not above 1": plain(items=items([[SALT, 1]], (), [[BREAD, 1]])),
+    "__init__: an amount is wanted of what is no goal": plain(items=items([[SALT, 1]], (), [[DOUGH, 2]])),
+    "_amounts: expected …": plain(at=DUG, items=items([[SALT, 1]], (), (), [[2.0, [], [[GOLD, 2]]]])),
+    "_amounts: the amounts of units are not those of the data": plain(
+        items=items([[SALT, 1]], (), (), [[2, [], [[GOLD, 2]]]])
     ),
+    "_supply: what never runs out needs no supply": plain(proof=[proving(supply=[[FLOUR, 0, "1"]])]),
+    "_copies: expected … in order, each of them once": plain(items=items([[SALT, 0], [SALT, 1]])),
     "_stock: expected kitchen items in stock": plain(items=items([[SALT, 1], [DOUGH, 0]])),
     "_stays_stated: expected …": plain(items=items([[SALT, 1]], [["salt", 0]])),
     "_stays_stated: expected labels, and then nodes": plain(
@@ -207,7 +227,7 @@ FORGED: dict[str, Forged] = {
 PLACES: dict[str, Forged] = {
     "expected items and their copies in stock": plain(items=items([[SALT, True]])),
     "expected the format": plain(format="a song"),
-    "expected version 1 of the format": plain(version=99),
+    "expected version 2 of the format": plain(version=99),
     "expected the keys": plain(more=1),
     "not a claim about level 3": plain(level=3.0),
     "the seal does not match: something was changed": Forged(certificate() | {"seal": "0"}, PLAIN),
@@ -226,6 +246,8 @@ PLACES: dict[str, Forged] = {
     ),
     "balance: expected weights in order, each once": plain(proof=[{"balance": [[BREAD, "2"], [DOUGH, "1"]]}]),
     "balance: a weight is not above zero": at_least("1", {"balance": [[SALT, "-1"]]}),
+    "expected the id of a unit that is supplied": plain(proof=[proving(supply=[[SALT, -1, "1"]])]),
+    "expected the id of a node in a supply": plain(proof=[proving(supply=[[-1, 0, "1"]])]),
     "expected the id of a node in a balance": plain(proof=[{"balance": [[-1, "1"], *PROOF["balance"]]}]),
 }
 
@@ -242,6 +264,8 @@ def test_right_certificates_pass(tmp_path: Path) -> None:
         plain(proof=[branch(10**9 - 1, PROOF, PROOF)]),
     )
     bounds = (
+        supplied("3"),
+        at_least("3", {"balance": [[SALT, "1"], [DOUGH, "3"], [BREAD, "4"]]}, **TWO_SALTS),
         at_least("1", BREAD_ONCE),
         at_least(
             *("3", proving(**CUT)),
@@ -309,8 +333,8 @@ def test_what_is_nested_too_deeply_is_refused(tmp_path: Path) -> None:
 
 PARTS = {
     "copies in stock need not be made": Part(
-        "(o in check.goals) - initial",
-        "(o in check.goals)",
+        "wanted - self._initial(o, weight)",
+        "wanted",
         at_least("1", {"balance": [[SALT, "1"]]}, **goals(PLAIN, SALT)),
     ),
     "what costs less than two is executed once, at most": Part(
@@ -324,7 +348,7 @@ PARTS = {
         at_least("2", floured("2"), **FLOURED),
     ),
     "what is asked for is taken of the kitchen": Part(
-        "yield len(network) + o",
+        "yield from [len(network) + o] * counted",
         "yield from ()",
         at_least("2", floured("2"), **FLOURED),
     ),
@@ -344,24 +368,37 @@ PARTS = {
         at_least("1", {"weights": [[0, "2"]]}, **TWO_BAGS),
     ),
     "what a plan uses up is gone": Part(
-        "copies.subtract(uses - self.endless)",
+        "copies.subtract({o: n for o, n in uses.items() if o not in self.endless})",
         "pass",
         plain(claim="bound", bound=["2"], tree=[0, 1, 1], costs=[3]),
     ),
     "a copy of every input has to be there": Part(
-        "all(o in self.endless or copies[o] > 0 for o in asks)",
-        "any(o in self.endless or copies[o] > 0 for o in asks)",
+        "all(o in self.endless or copies[o] >= n for o, n in asks.items())",
+        "any(o in self.endless or copies[o] >= n for o, n in asks.items())",
         plain(items=items([[SALT, 0]])),
     ),
     "a goal in stock is taken of it": Part(
-        "least[goal] = max(least[goal], 1 + self.stock[goal] - copies[goal])",
+        "least[goal] = max(least[goal], wanted + self.stock[goal] - copies[goal])",
         "pass",
         plain(objective=["kitchen"], **goals(PLAIN, SALT), tree=[], costs=[0], proof=[{}]),
     ),
     "a copy in stock is there": Part(
         "self.stock.get(o, 0) > 0",
         "self.stock.get(o, 0) > 1",
-        at_least("3", proving(weights=[[0, "1"]]), cuts=[[SALT, DOUGH, BREAD]]),
+        plain(**{**NO_TREE, "unreached": [SALT, RARE, GOLD]}, rules=forbid(["buy"]), proof=[SPENT]),
+    ),
+    "a unit asks for as many as the data say": Part(
+        "asks = {o: taken.get(o, 1) for o in self.needs(unit) if o is not None}",
+        "asks = {o: 1 for o in self.needs(unit) if o is not None}",
+        plain(**TWO_SALTS),
+    ),
+    "a unit is supplied with what it asks for": Part(
+        "check.flow(supplied).asks.get(o, 0)", "check.flow(supplied).asks.get(o, 0) + 1", supplied("4")
+    ),
+    "as many of a goal are wanted as is said": Part(
+        "return self.wanted_stated.get(goal, 1)",
+        "return 1",
+        plain(items=items([[SALT, 1]], (), [[BREAD, 2]])),
     ),
     "what a unit is let skip it does not ask for": Part(
         "for unit in network.consumers[o] if o in self.flow(unit).asks",
@@ -414,8 +451,8 @@ PARTS = {
         at_least("9", {"weights": [[0, "9"]]}, cuts=[[BREAD]]),
     ),
     "what is used up has to come": Part(
-        "(o in flow.adds) - (o in flow.uses)",
-        "-(o in flow.uses)",
+        "flow.adds.get(o, 0) - flow.uses.get(o, 0)",
+        "-flow.uses.get(o, 0)",
         at_least("9", BREAD_OFTEN),
     ),
     "what is left of a limit is taken from the bound": Part(

@@ -14,13 +14,13 @@ from foon_asp.asp import Status
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 from foon_asp.problem import ContainerRule, Problem
-from foon_asp.problem.shop import Offer
+from foon_asp.problem.shop import Offer, Shop
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.tables import PRICES
 from tests.conftest import STRUCK_WHILE_READING, Cli
 from tests.oracle import task_trees
 from tests.questions.recipes import posed
-from tests.support.random_problems import random_problem
+from tests.support.random_problems import random_objectives, random_problem
 
 CAKE = posed(
     "oven; hot",
@@ -144,6 +144,55 @@ def test_lists_against_brute_force(rule: ContainerRule, seeds: range) -> None:
             assert task_trees.makes(found.answer.problem, tree)
     assert helped > 5
     assert none
+
+
+@pytest.mark.parametrize(
+    "seeds", [range(7200, 7230), pytest.param(range(7230, 7400), marks=pytest.mark.slow)]
+)
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_lists_by_tree_against_brute_force(rule: ContainerRule, seeds: range) -> None:
+    """Of one price and number of items, the list with the best tree by any objective comes first."""
+    ties = 0
+    for seed in seeds:
+        problem = random_problem(seed, rule, units=6)
+        rng = random.Random(seed)
+        others = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
+        sold = rng.sample(others, min(len(others), 5))
+        prices = {o: Fraction(rng.choice(["0", "0.5", "1", "1"])) for o in sold}
+        objectives = list(map(str, random_objectives(rng, 1)))
+        named = {whole_node(problem.network.objects[o]): price for o, price in prices.items()}
+        most = rng.choice((1, 3, 40))
+        found = shopping_list(problem, objectives, prices=named, lists=most)
+        left = good_lists(problem, sold, lambda _: True)
+        expected: list[tuple[Fraction | int, int]] = []
+        while left and len(expected) < most:
+            costs = {}
+            for items in left:
+                stocked = replace(problem, kitchen=problem.kitchen.union(items))
+                key = task_trees.best(list(task_trees.trees(stocked)), stocked, objectives)
+                costs[items] = sum(prices[o] for o in items), len(items), key
+            least = min((price, size) for price, size, _ in costs.values())
+            best = min(cost for cost in costs.values() if cost[:2] == least)
+            ties += sum(cost[:2] == least for cost in costs.values()) > 1
+            expected.append(best[:2])
+            each = found.lists[len(expected) - 1]
+            items = frozenset(item.id for item in each.items if item.id is not None)
+            assert each.proved
+            assert costs[items][:2] == least
+            assert each.costs is not None
+            if not any(map(Shop(problem).is_second_choice, sold)) and "kitchen" not in objectives:
+                assert costs[items] == best
+            left = [other for other in left if not other >= items]
+            if not items:
+                break
+        assert len(found.lists) == len(expected)
+        assert not (found.complete and left and expected and expected[-1][1])
+        if found.lists and found.lists[0].items:
+            assert found.answer is not None
+            assert found.answer.ids is not None
+            tree = tuple(map(problem.network.unit, found.answer.ids))
+            assert task_trees.makes(found.answer.problem, tree)
+    assert ties
 
 
 @pytest.mark.slow

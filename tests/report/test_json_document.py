@@ -60,7 +60,12 @@ ASKED: dict[str, list[tuple[str, ...]]] = {
         ("--goal", "ice", "--constraint", "require_motion", "-c", 'required_motion="crush"'),
     ],
     "shopping-list": [("--goal", "apple pie")],
-    "alternatives": [("--goal", "ice", "--different", "2"), ("--goal", "apple pie")],
+    "alternatives": [
+        ("--goal", "ice", "--different", "2"),
+        ("--goal", "apple pie"),
+        ("--goal", "ice", "--union", "--within", "50"),
+        ("--goal", "apple pie", "--union"),
+    ],
     "pareto": [("--goal", "ice"), ("--goal", "apple pie")],
     "regret": [("--goal", "ice", "--objective", "success,kitchen"), ("--goal", "apple pie")],
     "sensitivity": [("--goal", "ice"), ("--goal", "apple pie")],
@@ -171,7 +176,7 @@ def answers() -> dict[str, click.Command]:
 def test_every_verb_that_answers_has_a_schema() -> None:
     assert answers().keys() == ASKED.keys() == VERBS.keys() - OTHERS
     alone = {"batch-row", "compare-row", "diff-network", "durations", "each", "lint-baseline", "merge"}
-    alone |= {"optima", "pddl-map", "refused", "rules", "search", "state", "steps", "units"}
+    alone |= {"optima", "pddl-map", "refused", "rules", "search", "state", "steps", "unit-union", "units"}
     assert {*schema_kinds()} == {"answer" if verb == "solve" else verb for verb in ASKED} | alone
 
 
@@ -181,6 +186,7 @@ def test_what_is_printed_is_what_the_schema_says(printed: Any, verb: str, words:
     networks = verb == "diff" and "TREE" not in words
     kind = "diff-network" if networks else "answer" if verb == "solve" else verb
     kind = "units" if "--unit" in words else "rules" if "--explain" in words else kind
+    kind = "unit-union" if "--union" in words else kind
     assert document["schema"] == schema_name("refused" if "FORGED" in words else kind)
     if verb not in WITHOUT_GOALS and not networks:
         heads = [document["a"], document["b"]] if verb == "diff" else [document]

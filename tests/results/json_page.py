@@ -62,6 +62,12 @@ SECTIONS = (
     ),
     Section("solve --format steps", ("steps",), ("solve --goal ice --format steps",), depth=10),
     Section("alternatives", ("alternatives",), ("alternatives --goal ice --best 2 --format json",)),
+    Section(
+        "alternatives --union",
+        ("unit-union",),
+        ("alternatives --goal ice --union --within 50 --format json",),
+        depth=8,
+    ),
     Section("pareto", ("pareto",), ("pareto --goal ice --format json",)),
     Section("regret", ("regret",), ("regret --goal ice --format json",), depth=8),
     Section("sensitivity", ("sensitivity",), ("sensitivity --goal ice --format json",), depth=8),

@@ -284,6 +284,7 @@ def test_an_object_of_another_form_is_named_in_place(tmp_path: Path, value: str,
     assert (error.severity, error.source.line, error.source.column) == (Severity.ERROR, 2, 3)
     assert error.message.startswith(message)
     assert error.excerpt == f"  {value}]"
+    message = message.partition(", expected one of")[0]  # an object of a unit may have an amount, too
     found, reader = read("[\n" + ONE.replace('{"label": "b"}', value) + "]")
     assert [d.message.startswith(message) for d in reader.diagnostics] == [True]
     assert (found, reader.diagnostics[0].source.line) == ([], 2)

@@ -68,7 +68,7 @@ def parts(network: Network) -> object:
 def read_back(text: str) -> Network:
     reader = FoonReader()
     builder = NetworkBuilder()
-    for motion, inputs, outputs, sources in reader.units(text, "merged.txt"):
+    for motion, inputs, outputs, sources, _ in reader.units(text, "merged.txt"):
         builder.add(motion, inputs, outputs, *sources)
     reader.raise_errors()
     return builder.build()

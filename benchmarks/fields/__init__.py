@@ -1,0 +1,1 @@
+"""Data of other fields as networks, and the programs of these fields."""

@@ -1,0 +1,146 @@
+"""Stages without linear programs: landmark cuts, better trees, reduced-cost fixing, pruning."""
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+from foon_asp.hypergraph.action_landmarks import relevant_beside_landmarks
+from foon_asp.hypergraph.dominance import undominated
+from foon_asp.hypergraph.gap import FirstCuts, Gap, Stage
+from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing, reduced_costs_of
+from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.incumbent_trees import improved, irredundant
+from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
+from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
+from foon_asp.hypergraph.reductions import Reduction
+from foon_asp.hypergraph.task import Task
+
+NO_CUTS = Cuts(0, {}, [])
+Guide = Callable[[Callable[[int], int]], Mapping[int, int]]
+
+
+class Bounded(NamedTuple):
+    """A gap, and the landmark cuts over its candidates."""
+
+    gap: Gap
+    cuts: Cuts
+
+
+def bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None) -> Bounded:
+    """Raise the lower bound by landmark cuts; the candidates always contain a tree."""
+    costs = task.costs
+    assert costs is not None
+    max_members = task.tuning.landmark_actions * max(task.tuning.easy_actions, len(gap.candidates))
+    cuts = landmark_cuts(
+        task.graph, task.graph.goals, gap.candidates, costs, h_values, task.expired, guide, max_members
+    )
+    evidence = gap.evidence
+    if evidence.first is None and not cuts.interrupted:
+        evidence = evidence._replace(first=FirstCuts(cuts, gap.candidates))
+    if evidence.cuts is None or cuts.bound > evidence.cuts.bound:
+        evidence = evidence._replace(cuts=cuts)
+    return Bounded(gap.raised(min(cuts.bound, task.total(gap)), evidence), cuts)
+
+
+def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None, thorough: bool) -> Stage:
+    """Raise the lower bound by cuts, look for better trees by them, and fix candidates by reduced costs."""
+    gap, cuts = bound(task, gap, h_values, guide)
+    yield gap
+    if cuts.interrupted:
+        raise KeyboardInterrupt
+    if not meets(task, gap, cuts) and not task.expired():
+        gap = improve(task, gap, cuts, thorough)
+        yield gap
+    if meets(task, gap, cuts):
+        gap = gap.closed()
+    elif Reduction.DEAR in task.reductions and not task.expired():
+        gap = fix(task, gap, cuts)
+    yield gap
+    return gap
+
+
+def guide_by(task: Task, gap: Gap) -> Guide:
+    """Return h_max over the candidates, by which cuts are chosen."""
+    return lambda reduced_cost: derive(task.graph, gap.candidates, reduced_cost, h_add=False).cost
+
+
+def meets(task: Task, gap: Gap, cuts: Cuts) -> bool:
+    """Return whether cuts prove the incumbent optimal, and no tree below ``task.below`` is wanted."""
+    assert task.costs is not None
+    return task.only_better(gap) and task.costs.met(cuts, gap.incumbent)
+
+
+def improve(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
+    """Look for better trees in the reduced-cost neighbourhood."""
+    costs = task.costs
+    assert costs is not None
+    reduced_cost = reduced_costs_of(costs, cuts)
+    distance, tree = task.total(gap) - cuts.bound, set(gap.incumbent)
+    candidates = neighbourhood(
+        task.thin, gap.candidates, reduced_cost, distance, enough=task.tuning.neighbourhood_actions
+    )
+    better = improved(task.graph, candidates | tree, tree, costs, reduced_cost, task.expired, thorough)
+    return gap if better is tree else gap.with_incumbent(better)
+
+
+def improve_repeatedly(task: Task, gap: Gap) -> Stage:
+    """Look thoroughly for better trees, again from each new incumbent, within the budget of branching."""
+    budget, previous = task.tuning.branching_budget, frozenset[int]()
+    while gap.incumbent != previous and not task.expired():
+        previous = gap.incumbent
+        budget -= len(previous) * len(gap.candidates)
+        if budget < 0:
+            break
+        gap = improve(task, gap, gap.evidence.cuts or NO_CUTS, thorough=True)
+        yield gap
+    return gap
+
+
+def follow_h_add(task: Task, gap: Gap) -> Gap:
+    """Make the tree that follows h_add the incumbent, if it is better."""
+    costs = task.costs
+    assert costs is not None
+    tree = derive(task.graph, gap.candidates, costs, h_add=True).tree(task.graph, task.graph.goals)
+    better = irredundant(task.graph, tree or gap.incumbent, costs)
+    return gap.with_incumbent(better) if task.is_better(better, gap) else gap
+
+
+def fix(task: Task, gap: Gap, cuts: Cuts) -> Gap:
+    """Exclude the candidates above the cutoff by reduced-cost fixing."""
+    assert task.costs is not None
+    reduced_cost, distance = reduced_costs_of(task.costs, cuts), task.cutoff(gap) - cuts.bound
+    return gap.with_candidates(
+        reduced_cost_fixing(task.graph, gap.candidates, reduced_cost, distance, task.expired)
+    )
+
+
+def prune_dominated(task: Task, gap: Gap) -> Gap:
+    """Exclude the candidates that others dominate, where that is wanted and costs are exact."""
+    if task.costs is None or Reduction.DOMINATED not in task.reductions:
+        return gap
+    return gap.with_candidates(undominated(task.graph, gap.candidates, task.costs))
+
+
+def prune_beside_landmarks(task: Task, gap: Gap) -> Gap:
+    """Exclude the candidates that are of no use beside action landmarks, where that is wanted."""
+    large = len(gap.candidates) > task.tuning.neighbourhood_actions
+    if large or Reduction.FORCED not in task.reductions:
+        return gap
+    return gap.with_candidates(relevant_beside_landmarks(task.graph, gap.candidates))
+
+
+def relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:
+    """Return the gap over the relevant actions that can run, and their h-values; ``None`` without a tree.
+
+    A gap without an incumbent has the tree that follows h_max for one.
+    """
+    graph = task.graph
+    cone, _ = graph.cone(task.scope)
+    derivations = derive(graph, cone, task.coarse, h_add=False)
+    tree = derivations.tree(graph, graph.goals)
+    if tree is None:
+        return None
+    candidates: Collection[int] = derivations.h_actions
+    if len(candidates) < len(cone):  # others may lead only to actions that cannot run
+        candidates = graph.cone(candidates)[0]
+    return replace(gap, incumbent=gap.incumbent or frozenset(tree), candidates=candidates), derivations.cost

@@ -1,0 +1,141 @@
+"""The linear relaxation of the hitting set problem over landmark cuts, which grows by the cuts it violates.
+
+Each action is a column, each cut a row: its landmark actions add up to at least 1. Cuts are looked for in the
+graph of first achievers, where fewer actions cross them, and stated in the whole graph.
+"""
+
+import math
+import random
+from collections.abc import Callable, Collection, Iterable, Sequence
+from fractions import Fraction
+from typing import Any
+
+from foon_asp.hypergraph.covering import Covering
+from foon_asp.hypergraph.cut import Cutter
+from foon_asp.hypergraph.first_achievers import FirstAchievers
+from foon_asp.hypergraph.hypergraph import Hypergraph
+from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
+
+PARTS = 720720  # of 1: most weights are simple fractions
+_LARGE = 2**62  # sums that do not fit into 64 bits
+
+
+class LandmarkRelaxation:
+    """The relaxation over some actions, which all can run; objects and actions are numbered anew.
+
+    ``actions`` are the old numbers of the actions. ``graph`` has first achievers only, ``targets`` are its
+    targets, ``costs`` the costs of actions. The columns of ``covering`` cost ``relative``, at most 1: costs
+    by the greatest one, ``dearest``, as these may be too great for floats. ``rows`` are the actions of the
+    landmark of each of the ``cuts``.
+    """
+
+    def __init__(
+        self,
+        graph: Hypergraph,
+        targets: Iterable[int],
+        actions: Collection[int],
+        cost: Callable[[int], int],
+        expired: Callable[[], bool] = lambda: False,
+    ) -> None:
+        import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
+
+        self._np = np
+        self.actions = sorted(actions)
+        plain, self._objects, self.targets = _renumbered(graph, targets, self.actions)
+        self._achievers = FirstAchievers(plain, expired)
+        self.graph = self._achievers.graph
+        self.costs = [cost(a) for a in self.actions]
+        self.dearest = max(self.costs, default=1)
+        self.relative = np.array([c / self.dearest for c in self.costs])
+        self.covering = Covering(self.relative.tolist())
+        self.cuts: list[frozenset[int]] = []
+        self.rows: list[Any] = []
+        self._random = random.Random(0)
+        self._whole_cuts: dict[frozenset[int], frozenset[int]] = {}
+
+    def add(self, cut: frozenset[int]) -> None:
+        """Add a row for a cut: all actions that cross it."""
+        self.rows.append(self._np.array(self.members(cut), dtype=self._np.int32))
+        self.cuts.append(cut)
+        self.covering.add(self.rows[-1])
+
+    def add_known(self, cuts: Iterable[Iterable[int]]) -> None:
+        """Add rows for cuts of the whole graph."""
+        position = {o: i for i, o in enumerate(self._objects)}
+        for objects in cuts:
+            self.add(frozenset(position[o] for o in objects if o in position))
+
+    def members(self, cut: frozenset[int]) -> list[int]:
+        """Return the landmark of a cut."""
+        return self._achievers.members(cut)
+
+    def whole(self, cut: frozenset[int]) -> frozenset[int]:
+        """Return the objects of a cut by their numbers in the whole graph, where it has the same landmark."""
+        if cut not in self._whole_cuts:
+            self._whole_cuts[cut] = frozenset(self._objects[o] for o in self._achievers.widened(cut))
+        return self._whole_cuts[cut]
+
+    def separate(
+        self,
+        cutters: Iterable[Cutter],
+        used: Collection[int],
+        shares: Any,
+        budget: int,
+        stopped: Callable[[], bool],
+    ) -> tuple[int, int]:
+        """Add disjoint cuts that an LP solution violates, until ``budget`` actions were looked at.
+
+        ``shares`` is the array of the LP value of each action, which is used up; cuts have no action of
+        ``used``. Returns the number of cuts added, and of actions looked at.
+        """
+        added = looks = 0
+        for cutter in cutters:
+            cuts = disjoint_violated_cuts(cutter, used, shares, self.relative, self._random.random)
+            while looks < budget and not stopped():
+                looks += len(cutter.actions)
+                cut = next(cuts, None)
+                if cut is None:
+                    break
+                added += 1
+                self.add(frozenset(cut.objects))
+        return added, looks
+
+    def in_parts(self) -> Any:
+        """Return an array of costs in parts: 64-bit integers where their sum fits, else Python integers."""
+        fits = sum(self.costs) * PARTS < _LARGE
+        return self._np.array(self.costs, dtype=self._np.int64 if fits else object) * PARTS
+
+    def shared_out(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
+        """Return a feasible weight in parts for each row: its dual value rounded, limited by ``capacity``.
+
+        Capacity that rounding leaves over is used greedily. ``capacity`` is the cost of each action in parts,
+        which becomes its reduced cost. The weights add up to a lower bound, whatever the dual values are.
+        """
+        of_1 = self.dearest * PARTS
+        wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in dual_values}
+        weights = dict.fromkeys(wanted, 0)
+        dearest_first = sorted(wanted, key=lambda row: -wanted[row])
+        for limited in (True, False):
+            for row in dearest_first:
+                upper = wanted[row] if limited else math.inf
+                weight = int(min(upper, capacity[self.rows[row]].min())) if upper else 0
+                if weight:
+                    weights[row] += weight
+                    capacity[self.rows[row]] -= weight
+        return weights
+
+
+def _renumbered(
+    graph: Hypergraph, targets: Iterable[int], actions: Sequence[int]
+) -> tuple[Hypergraph, list[int], list[int]]:
+    """Return the graph of the given actions, the old numbers of its objects, and its targets."""
+    targets, start = tuple(targets), graph.start
+    objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))
+    number = {o: i for i, o in enumerate(objects)}
+    small = Hypergraph(
+        len(number),
+        [[number[o] for o in graph.needs[a] if o in number] for a in actions],
+        [[number[o] for o in graph.gives[a] if o in number] for a in actions],
+        (),
+    )
+    return small, objects, [number[o] for o in targets]

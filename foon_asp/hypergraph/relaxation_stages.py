@@ -1,0 +1,160 @@
+"""Stages over the linear relaxation: optimal cost partitioning, trees that follow it, branch and bound."""
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+from foon_asp.hypergraph.branch_and_bound import Branching
+from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
+from foon_asp.hypergraph.gap import Gap, Stage
+from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing
+from foon_asp.hypergraph.greedy_stages import improve_repeatedly, prune_dominated
+from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.incumbent_trees import following, guessed, irredundant, perturbation_search
+from foon_asp.hypergraph.landmark_relaxation import PARTS
+from foon_asp.hypergraph.reductions import Reduction
+from foon_asp.hypergraph.task import Task
+
+_THOROUGH = 4  # times the looks: a search after the last solution
+_SOLUTIONS = 8  # LP solutions between two searches for a better tree
+_LARGE_LANDMARK = 50, 0.01  # actions, or share of all: larger landmarks make the LP slow and are weak
+_DENSITY = 2  # landmark sizes together, for each action: with more, the LP begins without large landmarks
+_USED = 1e-4  # an action of a greater LP value counts as used by an LP solution
+
+
+def partition_costs(task: Task, gap: Gap) -> Stage:
+    """Raise the bound by optimal cost partitioning, follow its solutions to trees, and fix by it.
+
+    The relaxation begins anew over the candidates that remain, as long as that is worthwhile.
+    """
+    costs, graph, tuning = task.costs, task.graph, task.tuning
+    assert costs is not None
+    if not gap.evidence.starting:
+        gap = replace(gap, evidence=gap.evidence._replace(starting=_starting_cuts(gap)))
+    before = math.inf
+    while tuning.relaxed_actions < len(gap.candidates) < tuning.worthwhile_share * before:
+        before, almost_closed, starting = len(gap.candidates), False, gap.evidence.starting
+        partitioning = CostPartitioning(graph, graph.goals, gap.candidates, costs, task.expired, starting)
+        while True:
+            shared = partitioning.advance(task.total(gap), _SOLUTIONS)
+            if shared is None:
+                return gap
+            if partitioning.converged:
+                break
+            gap = yield from follow_solution(task, gap, shared, tuning.search_looks)
+            almost_closed = (
+                may_branch(task, gap) and gap.lower_bound > task.total(gap) * tuning.sufficient_bound
+            )
+            if gap.proved or almost_closed or len(gap.candidates) < tuning.worthwhile_share * before:
+                break
+        if not gap.proved:
+            gap = yield from follow_solution(task, gap, shared, _THOROUGH * tuning.search_looks)
+        if gap.proved or almost_closed or task.expired():
+            break
+    return gap
+
+
+def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
+    """Return the greedy cuts to begin the relaxation with: without large landmarks, where these are many."""
+    cuts = gap.evidence.cuts.cuts if gap.evidence.cuts else []
+    min_members, share = _LARGE_LANDMARK
+    dense = sum(len(cut.members) for cut in cuts) > _DENSITY * len(gap.candidates)
+    max_members = max(min_members, share * len(gap.candidates)) if dense else math.inf
+    return tuple(cut.objects for cut in cuts if len(cut.members) <= max_members)
+
+
+def follow_solution(task: Task, gap: Gap, shared: SharedCosts, looks: int) -> Stage:
+    """Look for better trees by an LP solution, with so many looks at each candidate, and fix by it."""
+    costs, graph = task.costs, task.graph
+    assert costs is not None
+    used = {action for action, share in shared.shares.items() if share > _USED} | gap.incumbent
+    for tree in following(graph, gap.candidates, costs, shared):
+        used |= tree
+        if task.is_better(tree, gap):
+            gap = gap.with_incumbent(tree)
+            yield gap
+    least, count = -(-shared.bound // PARTS), len(gap.candidates)
+    if least < task.total(gap) and len(used) <= task.tuning.sparse_share * count:
+        cuts = [cut for cut, _ in shared.cuts]
+        gap = yield from search_among(task, gap, used, cuts, 2 * looks * count)
+    elif least < task.total(gap):
+        tree = perturbation_search(
+            *(graph, gap.candidates, set(gap.incumbent), costs, least, task.expired),
+            *(shared.shares, task.chance.random, looks),
+        )
+        gap = gap.with_incumbent(tree) if task.is_better(tree, gap) else gap
+    gap = apply(task, gap, shared)
+    yield gap
+    return gap
+
+
+def apply(task: Task, gap: Gap, shared: SharedCosts) -> Gap:
+    """Raise the bound by a cost partition, and fix and prune by it; costs are whole, so it is rounded up."""
+    costs, total, evidence = task.costs, task.total(gap), gap.evidence
+    assert costs is not None
+    bound = min(-(-shared.bound // PARTS), total)
+    tight = tuple(dict.fromkeys((*evidence.tight, *shared.tight)))
+    evidence = evidence._replace(tight=tight, starting=tuple(shared.tight))
+    gap = gap.raised(bound, evidence._replace(shared=shared) if bound > gap.lower_bound else evidence)
+    if Reduction.DEAR in task.reductions:
+        distance = task.cutoff(gap) * PARTS - shared.bound
+        reduced_cost = shared.reduced_costs.__getitem__
+        gap = gap.with_candidates(
+            reduced_cost_fixing(task.graph, gap.candidates, reduced_cost, distance, task.expired)
+        )
+    gap = prune_dominated(task, gap)
+    return gap.closed() if task.only_better(gap) and not costs.doubt and bound == total else gap
+
+
+def search_among(
+    task: Task, gap: Gap, actions: Collection[int], cuts: Sequence[frozenset[int]], effort: int
+) -> Stage:
+    """Look for a better tree among a few actions, by branching up to an effort (sub-MIP heuristic)."""
+    graph, costs = task.graph, task.costs
+    assert costs is not None
+    runnable = derive(graph, actions, costs, h_add=False).h_actions
+    search = Branching(
+        *(graph, graph.goals, runnable, costs, cuts, task.total(gap)),
+        lambda shares, without: guessed(graph, runnable, costs, shares, without),
+    )
+    for _ in search.search(effort, task.expired):
+        tree = irredundant(graph, search.incumbent or gap.incumbent, costs)
+        if task.is_better(tree, gap):
+            gap = gap.with_incumbent(tree)
+            yield gap
+    return gap
+
+
+def may_branch(task: Task, gap: Gap) -> bool:
+    """Return whether branching may prove a tree optimal: not where rounding may decide."""
+    assert task.costs is not None
+    return task.only_better(gap) and not (task.costs.doubt or task.costs.limited) and gap.budget > 0
+
+
+def branch(task: Task, gap: Gap) -> Stage:
+    """Branch and bound over the candidates, within the budget, where the bound is close enough for it."""
+    costs, graph, tuning = task.costs, task.graph, task.tuning
+    assert costs is not None
+    close = gap.lower_bound >= task.total(gap) * tuning.branching_bound
+    if not may_branch(task, gap) or len(gap.candidates) <= tuning.relaxed_actions or not close:
+        return gap
+    gap = yield from improve_repeatedly(task, gap)
+    total, evidence, candidates = task.total(gap), gap.evidence, gap.candidates
+    cuts = [cut.objects for cut in evidence.cuts.cuts] if evidence.cuts else []
+    cuts += [objects for objects, _ in evidence.shared.cuts] if evidence.shared else []
+    search = Branching(
+        *(graph, graph.goals, candidates, costs, cuts, total),
+        lambda shares, without: guessed(graph, candidates, costs, shares, without),
+    )
+    for _ in search.search(gap.budget, task.expired):
+        incumbent = gap.incumbent if search.incumbent is None else search.incumbent
+        gap = gap.with_incumbent(incumbent).raised(search.bound, evidence)
+        yield gap
+    gap = replace(gap, budget=search.effort)
+    if search.closed:
+        proof = evidence._replace(cases=search.cases())
+        gap = gap.raised(task.total(gap), proof).closed()
+    elif evidence.shared is not None and task.total(gap) < total:
+        gap = apply(task, gap, evidence.shared)
+    yield gap
+    return gap

@@ -1,0 +1,55 @@
+"""One question to reduce: what all stages read, and none changes."""
+
+import random
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+
+from foon_asp.hypergraph.exact_costs import ExactCosts
+from foon_asp.hypergraph.gap import Gap
+from foon_asp.hypergraph.goal_graph import GoalGraph
+from foon_asp.hypergraph.reductions import Reduction
+from foon_asp.hypergraph.tuning import PresolveTuning
+from foon_asp.problem import Objective, Problem
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Task:
+    """A question as a graph with costs, and what of it is wanted.
+
+    ``coarse`` are rough costs, for estimates. ``costs`` compare trees exactly; ``None`` where rates are too
+    fine, and before the first tree. In ``thin``, required sets have few achievers. Trees that cost less than
+    ``below`` count, even if they are no better than the incumbent. ``scope`` are the actions that trees may
+    have. ``expired`` returns whether time is up.
+    """
+
+    problem: Problem
+    objectives: tuple[Objective, ...]
+    reductions: frozenset[Reduction]
+    expired: Callable[[], bool]
+    graph: GoalGraph
+    thin: GoalGraph
+    coarse: Callable[[int], int]
+    tuning: PresolveTuning
+    scope: Collection[int]
+    costs: ExactCosts | None = None
+    below: int = 0
+    chance: random.Random = field(default_factory=lambda: random.Random(0))
+
+    def total(self, gap: Gap) -> int:
+        """Return the cost of the incumbent."""
+        assert self.costs is not None
+        return sum(map(self.costs, gap.incumbent))
+
+    def is_better(self, tree: Collection[int], gap: Gap) -> bool:
+        """Return whether a tree costs less than the incumbent."""
+        assert self.costs is not None
+        return sum(map(self.costs, tree)) < self.total(gap)
+
+    def only_better(self, gap: Gap) -> bool:
+        """Return whether trees as good as the incumbent are not needed."""
+        return Reduction.BOUNDS in self.reductions and self.total(gap) >= self.below
+
+    def cutoff(self, gap: Gap) -> int:
+        """Return the greatest cost of trees that are still wanted."""
+        assert self.costs is not None
+        return max(self.total(gap), self.below) + self.costs.doubt - (Reduction.BOUNDS in self.reductions)

@@ -1,0 +1,125 @@
+"""Numbers that steer the stages of this room; none of them decides what is proved, only how fast.
+
+``benchmarks/tuning.py`` halves and doubles each, and prints what moves on the instances that it names. Stages
+read the objects at the end of this module when they are called.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+
+@dataclass(frozen=True)
+class PresolveTuning:
+    """When a stage of :mod:`foon_asp.hypergraph.reduction` begins, and when it ends.
+
+    ``lazy_actions``: actions of a network; with more, only those near the goals are looked at first.
+    ``first_actions``: actions nearest to the goals among which the first tree is looked for.
+    ``required_achievers``: achievers of a required set that are looked at while trees are looked for.
+    ``neighbourhood_actions``: actions of the neighbourhood in which better trees are looked for.
+    ``easy_actions``: actions; with fewer, clingo is faster than a thorough search for better trees.
+    ``relaxed_actions``: actions; with fewer, clingo is faster than the linear relaxation.
+    ``rounds``: rounds of cuts, better trees and fixing, at most.
+    ``branching_budget``: actions that branch and bound may look at; some 20 s of processor time.
+    ``branching_bound``: share of the incumbent's cost; branching begins from such a bound on.
+    ``sufficient_bound``: share of the incumbent's cost; from such a bound on, branching is faster than cuts.
+    ``search_looks``: looks at each action in a search for a better tree that follows an LP solution.
+    ``sparse_share``: share of the candidates; searched by branching up to it, else by perturbation.
+    ``landmark_actions``: sizes of all landmarks together, for each action, after which greedy cuts end.
+    ``worthwhile_share``: share of the candidates that may remain for another turn to pay.
+    """
+
+    lazy_actions: int = 40_000
+    first_actions: int = 4_000
+    required_achievers: int = 50
+    neighbourhood_actions: int = 2_000
+    easy_actions: int = 600
+    relaxed_actions: int = 200
+    rounds: int = 24
+    branching_budget: int = 3_000_000
+    branching_bound: float = 0.75
+    sufficient_bound: float = 0.98
+    search_looks: int = 10
+    sparse_share: float = 0.2
+    landmark_actions: float = 20
+    worthwhile_share: float = 0.9
+
+
+@dataclass(frozen=True)
+class CutTuning:
+    """How landmark cuts and h-values are looked for.
+
+    ``guided_cuts``: cuts, or one for each target, after which the h-values that guide cuts are computed anew.
+    ``guides``: times that h-values are computed for as many cuts as there are objects: each looks at all of
+    them, and more would make cuts quadratic (``benchmarks/shapes.py``, grid by kitchen).
+    ``lazy_depth``: depth of the recursion of lazy h_max. ``lazy_looks``: actions that it looks at in all.
+    """
+
+    guided_cuts: int = 64
+    guides: int = 32
+    lazy_depth: int = 100
+    lazy_looks: int = 200_000
+
+
+@dataclass(frozen=True)
+class RelaxationTuning:
+    """How the linear relaxation is solved and searched.
+
+    ``cuts``: violated cuts with disjoint landmarks that are separated for one LP solution, at most.
+    ``target_cutters``: total size of the cutters of single targets, times all actions, at most.
+    ``stalled_solutions``: solutions after which a bound that hardly grows counts as optimal.
+    ``stalled_growth``: share of the gap that these solutions have to gain.
+    ``node_rounds``: rounds of separation at each node but the root.
+    ``guess_interval``: nodes from one at which derivations are guessed to the next.
+    ``landmark_bits``: bits of the landmark sets by which first achievers are computed; in larger graphs,
+    landmarks among fewer objects are.
+    """
+
+    cuts: int = 40
+    target_cutters: int = 8
+    stalled_solutions: int = 8
+    stalled_growth: float = 0.01
+    node_rounds: int = 3
+    guess_interval: int = 10
+    landmark_bits: int = 400_000_000
+
+
+@dataclass(frozen=True)
+class ProofTuning:
+    """How certificates are looked for, by :class:`foon_asp.hypergraph.optimality_proof.Prover`.
+
+    ``orders``: orders in which cuts are grown before the relaxation counts as optimal.
+    ``rounded_actions``: actions; with more, rounded weights are tried before exact ones.
+    ``greedy_cuts``: known cuts that get weights greedily; others get weights only from the LP.
+    ``fixed_share``: share of the actions; with more above the cutoff, these are fixed before anything else.
+    ``search_budget``: actions that branch and bound may look at; about a minute of processor time.
+    ``proof_length``: objects and landmark actions that a proof by branching may list.
+    """
+
+    orders: int = 3
+    rounded_actions: int = 1000
+    greedy_cuts: int = 200
+    fixed_share: float = 0.5
+    search_budget: int = 10_000_000
+    proof_length: int = 2_000_000
+
+
+@dataclass(frozen=True)
+class PriceTuning:
+    """How a limit on a sum over units is priced, by :mod:`foon_asp.hypergraph.priced_limit`.
+
+    ``prices``: prices that are tried. ``easy_units``: units; with fewer, clingo is faster than another price.
+    ``rising_units``: units; with more, rising prices are tried. ``rising_prices``: these, at most.
+    """
+
+    prices: int = 2
+    easy_units: int = 1000
+    rising_units: int = 2000
+    rising_prices: int = 8
+
+
+LOWEST_PRICE = Fraction(3, 2)  # of the rising prices, times the mean cost of a unit
+PRESOLVE = PresolveTuning()
+CUTS = CutTuning()
+RELAXATION = RelaxationTuning()
+PROOF = ProofTuning()
+PRICES = PriceTuning()

@@ -1,0 +1,37 @@
+"""Amounts: how many copies of each object node a unit takes and makes."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+from foon_asp.network.functional_unit import FunctionalUnit
+from foon_asp.network.object_node import ObjectNode
+
+
+class UnitAmounts(NamedTuple):
+    """The amounts of a unit, by input and by output; of a node that is not in them, it is 1."""
+
+    inputs: Mapping[ObjectNode, int] = MappingProxyType({})
+    outputs: Mapping[ObjectNode, int] = MappingProxyType({})
+
+    def __bool__(self) -> bool:
+        """Whether some amount is not 1."""
+        return bool(self.inputs or self.outputs)
+
+
+Amounts = Mapping[FunctionalUnit, UnitAmounts]
+"""The amounts of units; of a unit that is not in it, all amounts are 1."""
+
+
+class DataAmounts(NamedTuple):
+    """The amounts of the units of data, and what is wrong with them, in words; empty where nothing is."""
+
+    units: Amounts
+    conflict: str = ""
+
+
+NO_AMOUNTS = DataAmounts({})
+"""Amounts that are all 1."""
+
+MAX_AMOUNT = 1_000_000
+"""The greatest amount of an object node in a unit, a kitchen or a goal."""

@@ -1,0 +1,194 @@
+"""Policies with retries: follow a tree, and after so many failed executions another one.
+
+An execution of a unit succeeds with its rate, whatever happened before, and what is there stays there. A
+failed execution changes nothing, but only so many failures are allowed in a run. A policy chooses the next
+unit by what is there and by how many failures are left. Of all policies over the units of some trees, the
+greatest chance is found by dynamic programming over what is there, in which a unit that every remaining way
+needs is executed first: all its failures come in any successful run, so to know them earlier is never worse.
+"""
+
+import heapq
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from functools import cache
+from typing import NamedTuple
+
+from foon_asp.problem import Problem
+
+MAX_STATES = 1000  # of the dynamic program; a few seconds on trees of fifty units
+_MAX_DEPTH = 150  # units, one of which is added by each call of the dynamic program
+_MAX_POLICIES = 300  # that are compared; each is evaluated exactly
+
+State = frozenset[int]
+"""The object nodes that are there, by id, without the kitchen."""
+
+
+class PolicyBranch(NamedTuple):
+    """A tree to follow, by unit ids in an order that executes, until so many executions failed."""
+
+    units: tuple[int, ...]
+    failures: int
+
+
+class Policy(NamedTuple):
+    """Trees to follow one after the other, and the ``chance`` that the goals are made.
+
+    No policy over the units of the trees has a chance above ``bound``. It ``is_exact`` if one has that
+    chance.
+    """
+
+    branches: tuple[PolicyBranch, ...]
+    chance: Fraction
+    bound: Fraction
+    is_exact: bool
+
+
+class _TooManyStates(Exception):  # noqa: N818 (is caught here)
+    """There are more states than :data:`MAX_STATES`."""
+
+
+def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int) -> Policy:
+    """Return the policy with the greatest chance of those that follow some trees one after the other.
+
+    Among equal chances, one with fewer branches is returned. If there are more than :data:`_MAX_POLICIES`,
+    only those with the fewest branches are compared.
+
+    Parameters:
+        problem: The problem, whose items last, with rates.
+        trees: Trees for its goals, by unit ids in an order that executes.
+        retries: How many executions may fail before the last one that ends the run.
+    """
+    candidates = itertools.islice(_candidates(trees, retries + 1), _MAX_POLICIES)
+    chance, branches = max(((_chance(problem, each), each) for each in candidates), key=lambda pair: pair[0])
+    units = tuple(dict.fromkeys(unit for tree in trees for unit in tree))
+    try:
+        return Policy(branches, chance, _Optimum(problem, units, retries).chance, True)
+    except _TooManyStates:
+        return Policy(branches, chance, _bound(problem, units, retries), False)
+
+
+def _candidates(trees: Sequence[tuple[int, ...]], failures: int) -> Iterator[tuple[PolicyBranch, ...]]:
+    """Yield the ways to share failures among ordered selections of trees, those of few trees first."""
+    for number in range(1, min(len(trees), failures) + 1):
+        for order in itertools.permutations(trees, number):
+            for cuts in itertools.combinations(range(1, failures), number - 1):
+                shares = (end - begin for begin, end in itertools.pairwise((0, *cuts, failures)))
+                yield tuple(map(PolicyBranch, order, shares))
+
+
+class _World:
+    """What units of a problem need, make and risk."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.kitchen, self.goals = problem.kitchen, frozenset(problem.goals) - problem.kitchen
+        self.rate = cache(lambda unit: Fraction(problem.rate(unit)))
+        self.needs = cache(lambda unit: frozenset(problem.needs[unit]) - problem.kitchen)
+        inputs, gives = problem.network.inputs, problem.gives
+        self.makes = cache(lambda unit: frozenset(gives[unit]).difference(inputs[unit]) - problem.kitchen)
+
+    def reaches(self, state: State, units: Iterable[int]) -> bool:
+        """Return whether units can make the goals from a state."""
+        available, waiting = set(state), list(units)
+        while not self.goals <= available:
+            blocked = []
+            for unit in waiting:  # one pass is enough where they are in an order that executes
+                if self.needs(unit) <= available:
+                    available |= self.makes(unit)
+                else:
+                    blocked.append(unit)
+            if len(blocked) == len(waiting):
+                return False
+            waiting = blocked
+        return True
+
+    def is_necessary(self, unit: int, state: State, units: Iterable[int]) -> bool:
+        """Return whether the other units cannot make the goals from a state."""
+        return not self.reaches(state, (each for each in units if each != unit))
+
+
+def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
+    """Return the exact chance that trees which are followed one after the other make the goals."""
+    world = _World(problem)
+    # by branch, position in it, and minus the failures left: a success and a failure lead to later keys
+    waiting = {(0, 0, -branches[0].failures): {State(): Fraction(1)}}
+    order = [*waiting]
+    reached = Fraction(0)
+    while order:
+        key = heapq.heappop(order)
+        branch, position, failures = key
+        units = branches[branch].units
+        for state, chance in waiting.pop(key).items():
+            index = position
+            while index < len(units) and world.makes(units[index]) <= state:
+                index += 1
+            if index == len(units):
+                reached += chance
+                continue
+            unit = units[index]
+            rate = world.rate(unit)
+            after = [((branch, index + 1, failures), state | world.makes(unit), rate)]
+            if failures < -1:
+                after.append(((branch, index, failures + 1), state, 1 - rate))
+            elif branch + 1 < len(branches):
+                after.append(((branch + 1, 0, -branches[branch + 1].failures), state, 1 - rate))
+            for following, new_state, share in after:
+                if share:
+                    if following not in waiting:
+                        waiting[following] = {}
+                        heapq.heappush(order, following)
+                    states = waiting[following]
+                    states[new_state] = states.get(new_state, 0) + chance * share
+    return reached
+
+
+class _Optimum:
+    """The greatest chance of all policies over some units, by dynamic programming over states."""
+
+    def __init__(self, problem: Problem, units: Sequence[int], retries: int) -> None:
+        self._world, self._units, self._retries = _World(problem), units, retries
+        self._values: dict[State, tuple[Fraction, ...]] = {}
+        if len(units) > _MAX_DEPTH:
+            raise _TooManyStates
+        self.chance = self._value(frozenset())[retries]
+
+    def _value(self, state: State) -> tuple[Fraction, ...]:
+        """Return the greatest chance from a state, for each number of failures that are left, from 0."""
+        if self._world.goals <= state:
+            return (Fraction(1),) * (self._retries + 1)
+        if state not in self._values:
+            if len(self._values) == MAX_STATES:
+                raise _TooManyStates
+            self._values[state] = ()  # counts while it is being computed
+            after = [
+                (self._world.rate(unit), self._value(state | self._world.makes(unit)))
+                for unit in self._choices(state)
+            ]
+            values: list[Fraction] = []
+            for failures in range(self._retries + 1):
+                failed = values[-1] if failures else Fraction(0)
+                outcomes = (rate * value[failures] + (1 - rate) * failed for rate, value in after)
+                values.append(max(outcomes, default=Fraction(0)))
+            self._values[state] = tuple(values)
+        return self._values[state]
+
+    def _choices(self, state: State) -> list[int]:
+        """Return the units that can be executed and add something; one that is necessary is the only one."""
+        world = self._world
+        useful = [unit for unit in self._units if not world.makes(unit) <= state]
+        ready = [unit for unit in useful if world.needs(unit) <= state]
+        return next(([unit] for unit in ready if world.is_necessary(unit, state, useful)), ready)
+
+
+def _bound(problem: Problem, units: Sequence[int], retries: int) -> Fraction:
+    """Return the chance that the units which every way needs fail no more often than is allowed."""
+    world = _World(problem)
+    chances = [Fraction(1)] + [Fraction(0)] * retries  # by the number of failures so far
+    for unit in units:
+        if not world.is_necessary(unit, State(), units):
+            continue
+        rate = world.rate(unit)
+        for failures in range(retries + 1):
+            earlier = chances[failures - 1] if failures else Fraction(0)  # of this unit, changed already
+            chances[failures] = rate * chances[failures] + (1 - rate) * earlier
+    return sum(chances, Fraction(0))

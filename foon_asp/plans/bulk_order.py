@@ -1,0 +1,179 @@
+"""Order of many executions at once: a founded order of counts, in runs of one action each.
+
+Whether each action can be executed as often as counted is a question about the firing sequences of a Petri
+net. An action is executed as often as it can be at once, and without alternatives where what it consumes is
+plentiful for all executions that wait; elsewhere the search branches.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from foon_asp.plans.conditions import Counts
+from foon_asp.plans.flows import Flows
+from foon_asp.plans.whole_program import Stopped
+
+Run = tuple[int, int]
+"""An action, and how often it is executed at once."""
+
+_MAX_STEPS = 20_000  # runs tried before the search is given up; most orders take as many as there are actions
+_MAX_SINGLE = 300  # executions up to which every order is tried, one execution at a time
+
+
+def bulk_order(
+    flows: Flows, counts: Counts, start: Mapping[int, int], expired: Callable[[], bool]
+) -> list[Run] | None:
+    """Return runs that execute each action as often as counted, from ``start``; ``None`` if there are none.
+
+    Raises :class:`Stopped` where neither is shown, or time is up.
+    """
+    if not _is_founded(flows, counts, start):
+        return None
+    runs = _Search(flows, counts, start, expired, single=False).runs()
+    if runs is None and sum(counts.values()) <= _MAX_SINGLE:
+        search = _Search(flows, counts, start, expired, single=True)
+        runs = search.runs()
+        if runs is None and search.is_exhausted:
+            return None
+    if runs is None:
+        raise Stopped
+    return runs
+
+
+def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
+    """Return for each initial object a number of copies that no order of counts can do without."""
+    change = Counter({o: -n for o, n in flows.targets.items()})
+    asked = Counter[int]()
+    for action, times in counts.items():
+        for o, n in flows.asks[action].items():
+            made_before = sum(flows.adds[a].get(o, 0) * counts[a] for a in counts if a != action)
+            asked[o] = max(asked[o], n - made_before)
+        for o, n in flows.uses[action].items():
+            change[o] -= n * times
+        for o, n in flows.adds[action].items():
+            change[o] += n * times
+    return {o: max(0, -change[o], asked[o]) for o in flows.start}
+
+
+def _is_founded(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
+    """Whether each action is reached, and the targets are left, if nothing were consumed before."""
+    copies, waiting = Counter(start), set(counts)
+    grown = True
+    while grown:
+        ready = [a for a in waiting if all(copies[o] >= n for o, n in flows.asks[a].items())]
+        grown = bool(ready)
+        waiting.difference_update(ready)
+        for action in ready:
+            for o, n in flows.adds[action].items():
+                copies[o] += n * counts[action]
+    for action, times in counts.items():
+        for o, n in flows.uses[action].items():
+            copies[o] -= n * times
+    if waiting or any(n < 0 for n in copies.values()):
+        return False
+    return all(copies[o] >= n for o, n in flows.targets.items())
+
+
+class _Search:
+    """A depth-first search for an order; with ``single``, of one execution at a time where it branches."""
+
+    def __init__(
+        self,
+        flows: Flows,
+        counts: Counts,
+        start: Mapping[int, int],
+        expired: Callable[[], bool],
+        single: bool,
+    ) -> None:
+        self._flows, self._expired, self._single = flows, expired, single
+        self._copies, self._waiting = Counter(start), dict(counts)
+        self._steps_left = _MAX_STEPS
+        # what all executions that wait consume, and the most that one of them has to find beyond that
+        self._consumed = Counter[int]()
+        for action, times in counts.items():
+            for o, n in flows.uses[action].items():
+                self._consumed[o] += n * times
+
+    @property
+    def is_exhausted(self) -> bool:
+        """Whether all orders were tried."""
+        return self._steps_left > 0
+
+    def runs(self) -> list[Run] | None:
+        """Return an order; ``None`` where none is found."""
+        done: list[Run] = []
+        dead: set[tuple[tuple[int, int], ...]] = set()  # what waited where no order was found
+        choices = [self._choices(dead)]
+        while choices:
+            if not self._waiting:
+                return done
+            run = next(choices[-1], None)
+            if run is not None:
+                self._execute(run, 1)
+                done.append(run)
+                choices.append(self._choices(dead))
+                continue
+            if self._steps_left <= 0:
+                return None
+            dead.add(self._state)
+            choices.pop()
+            if done:
+                self._execute(done.pop(), -1)
+        return None
+
+    @property
+    def _state(self) -> tuple[tuple[int, int], ...]:
+        return tuple(sorted(self._waiting.items()))
+
+    def _choices(self, dead: set[tuple[tuple[int, int], ...]]) -> Iterator[Run]:
+        """Yield the runs that can be next; only one where it takes nothing from the others."""
+        if self._state in dead:
+            return
+        ready = [(action, self._most(action)) for action in sorted(self._waiting)]
+        ready = [(action, most) for action, most in ready if most]
+        free = [(action, most) for action, most in ready if self._is_free(action)]
+        for action, most in free[:1] or sorted(ready, key=lambda run: len(self._flows.uses[run[0]])):
+            for times in (most,) if free or not self._single else (1,):
+                self._steps_left -= 1
+                if self._steps_left <= 0 or self._expired():
+                    self._steps_left = 0
+                    return
+                yield action, times
+
+    def _most(self, action: int) -> int:
+        """Return how often an action can be executed at once, 0 if not at all."""
+        most, flows = self._waiting[action], self._flows
+        for o, n in flows.asks[action].items():
+            spare = self._copies[o] - n
+            if spare < 0:
+                return 0
+            loss = flows.uses[action].get(o, 0) - flows.adds[action].get(o, 0)
+            if loss > 0:
+                most = min(most, spare // loss + 1)
+        return most
+
+    def _is_free(self, action: int) -> bool:
+        """Whether all that wait find enough of what an action consumes, also if it is executed first."""
+        return all(self._copies[o] - self._consumed[o] >= self._kept(o) for o in self._flows.uses[action])
+
+    def _kept(self, o: int) -> int:
+        """Return how many copies have to be there beyond those that are consumed."""
+        readers = (self._flows.asks[a].get(o, 0) - self._flows.uses[a].get(o, 0) for a in self._waiting)
+        return max(self._flows.targets.get(o, 0), *readers)
+
+    def _execute(self, run: Run, sign: int) -> None:
+        action, times = run
+        for o, n in self._flows.uses[action].items():
+            self._copies[o] -= sign * n * times
+            self._consumed[o] -= sign * n * times
+        for o, n in self._flows.adds[action].items():
+            self._copies[o] += sign * n * times
+        left = self._waiting.get(action, 0) - sign * times
+        if left:
+            self._waiting[action] = left
+        else:
+            del self._waiting[action]
+
+
+def plan_of(units: Sequence[int], runs: Sequence[Run]) -> tuple[int, ...]:
+    """Return the units of runs, with repeats."""
+    return tuple(unit for action, times in runs for unit in (units[action],) * times)

@@ -1,0 +1,103 @@
+"""Purchases as units: buying an object node is a unit without inputs, at a price."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from foon_asp.deadline import Deadline
+from foon_asp.network import Network, Source
+from foon_asp.problem.objective import Known, Objective
+from foon_asp.problem.problem import Problem
+from foon_asp.problem.restriction import Restriction
+
+_BUY = "buy"
+_PRICE, _ITEMS, _SECOND = "_price", "_items", "_second_choices"
+
+
+@dataclass(frozen=True)
+class _FixedCosts:
+    """A measure whose costs are known, by unit."""
+
+    name: str
+    known: Sequence[int | Fraction]
+    text: str = ""
+    place: str = ""
+
+    def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[int | Fraction]:
+        """Return the cost of each unit."""
+        del problem, deadline
+        return self.known
+
+
+class Purchases:
+    """A question about what to buy, as one about a tree.
+
+    ``problem`` has a unit more for each ware, which makes it out of nothing. Under ``objectives`` its best
+    tree has the cheapest purchases, of these the fewest, of these the fewest second choices, and the best
+    tree by the objectives of the question.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        wares: Mapping[int, Fraction],
+        second_choices: Collection[int],
+        objectives: Sequence[Objective],
+    ) -> None:
+        self._wares = tuple(wares)
+        self._first = len(problem.network)
+        self._purchases = range(self._first, self._first + len(wares))
+        nothing = [0] * self._first
+        costs: dict[str, list[int | Fraction]] = {_PRICE: [*nothing, *wares.values()]}
+        if set(wares.values()) != {Fraction(1)}:
+            costs[_ITEMS] = [*nothing, *(1 for _ in wares)]
+        if second_choices:
+            costs[_SECOND] = [*nothing, *(int(o in second_choices) for o in wares)]
+        by = [*map(Objective.of_measure, costs)]
+        for objective in objectives:
+            if objective.row.needs in {Known.PRICES, Known.MEASURES}:
+                name = f"_by_{objective}"
+                figures = problem.figures(objective, range(self._first))
+                costs[name] = [*figures, *(0 for _ in wares)]
+                objective = Objective.of_measure(name)  # noqa: PLW2901
+            by.append(objective)
+        self.objectives = tuple(by)
+        rates = None if problem.rates is None else {_BUY: Fraction(1), **problem.rates}
+        self.problem = replace(
+            problem,
+            network=_with_sources(problem.network, self._wares),
+            rates=rates,
+            own_rates=dict(problem.own_rates) | dict.fromkeys(self._purchases, Fraction(1)),
+            unit_prices=None,
+            measures={name: _FixedCosts(name, known) for name, known in costs.items()},
+            origin=None,
+        )
+
+    def without(self, wares: Collection[int]) -> Problem:
+        """Return the question without some wares, by the ids of the object nodes."""
+        removed = {unit for unit in self._purchases if self._wares[unit - self._first] in wares}
+        return (
+            replace(self.problem, restriction=Restriction(removed.__contains__)) if removed else self.problem
+        )
+
+    def split(self, units: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Return what a tree buys, as ascending ids of object nodes, and its other units, in their order."""
+        bought = sorted(self._wares[unit - self._first] for unit in units if unit >= self._first)
+        return tuple(bought), tuple(unit for unit in units if unit < self._first)
+
+
+def _with_sources(network: Network, wares: Sequence[int]) -> Network:
+    """Return a network with a unit for each ware that makes it out of nothing, after all others."""
+    count, numbers = len(wares), network.unit_numbers
+    if numbers:
+        numbers += tuple(range(numbers[-1] + 1, numbers[-1] + 1 + count))
+    return replace(
+        network,
+        motions=(*network.motions, *[_BUY] * count),
+        inputs=(*network.inputs, *[()] * count),
+        outputs=(*network.outputs, *((o,) for o in wares)),
+        sources=(*network.sources, *[(Source("-", 0),)] * count),
+        detailed=None,
+        stands_for=(),
+        unit_numbers=numbers,
+    )

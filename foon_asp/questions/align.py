@@ -1,0 +1,201 @@
+"""Which nodes of a recipe a network knows, and in which words it knows the others."""
+
+from collections import Counter
+from collections.abc import Iterator
+from enum import StrEnum
+from os import PathLike
+from pathlib import Path
+from typing import ClassVar
+
+from foon_asp.dataset import read_dataset
+from foon_asp.errors import UserError
+from foon_asp.foon import Foon, load
+from foon_asp.network import Edit, FunctionalUnit, Network, ObjectNode, StandInTable, counted
+from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
+from foon_asp.questions.posing import Command
+from foon_asp.questions.result import ENDINGS, Result
+from foon_asp.questions.stand_in import NodeEdit
+from foon_asp.results.document import Unserialized
+from foon_asp.results.table import Block
+from foon_asp.results.values import Node, Value
+from foon_asp.results.values_of import named_node, node_of
+from foon_asp.standins.node_prices import NodePrices
+from foon_asp.text.data_folder import find_data
+from foon_asp.text.json_value import schema_name
+from foon_asp.text.writer import write_units
+
+_WORDING = frozenset((Edit.WORD, Edit.SPELLING, Edit.LABEL, Edit.NODE))  # edits of words, not of things
+
+
+class Match(StrEnum):
+    """How a node of a recipe is found in a network."""
+
+    IN_NETWORK = "known"
+    ONE_EDIT = "one edit"
+    NEW = "new"
+
+
+class AlignedNode(Value, frozen=True):
+    """A node of a recipe, and the nearest one of a network.
+
+    Attributes:
+        match: known: the network has it; one edit: it has one that differs in one edit of the table of
+            stand-ins; new: it has neither.
+        node: The node of the recipe.
+        nearest: The node of the network that is one edit away; null for others.
+        edit: What the two differ in; null for others.
+    """
+
+    match: Match
+    node: Node
+    nearest: Node | None
+    edit: NodeEdit | None
+
+
+class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
+    """The nodes of a recipe compared with those of a network.
+
+    Attributes:
+        in_network: How many nodes the network has.
+        one_edit: How many are one edit away from one that it has.
+        new: How many are neither.
+        labels_known: How many labels the network has, of how many.
+        labels: How many different labels the recipe has.
+        units_known: How many units the network has.
+        units: How many units the recipe has.
+        nodes: The nodes, in the order of the recipe.
+
+    Example:
+        >>> egg = foon_asp.build([("boil", "egg; whole", "egg; boiled; on [plate]")])
+        >>> other = foon_asp.build([("boil", "egg; whole", "egg; boiled; in [plate]")])
+        >>> aligned = foon_asp.align(egg, other)
+        >>> [(str(node.match), str(node.nearest)) for node in aligned.nodes]
+        [('known', 'None'), ('one edit', 'egg; boiled; in [plate]')]
+    """
+
+    ROWS: ClassVar[str] = "nodes"
+    SUFFIXES: ClassVar = {**ENDINGS, ".txt": "foon"}
+
+    in_network: int
+    one_edit: int
+    new: int
+    labels_known: int
+    labels: int
+    units_known: int
+    units: int
+    nodes: tuple[AlignedNode, ...]
+
+    aligned_units = Unserialized[tuple[FunctionalUnit, ...]](())
+    """The units of the recipe in the words of the network."""
+
+    def foon(self) -> str:
+        """Return the recipe in the words of the network, as FOON text."""
+        return write_units(self.aligned_units, ["In the words of another network"])
+
+    def show(self) -> Iterator[Block]:
+        """Return how many nodes are known, and those that are not, with the edits."""
+        yield (
+            f"{counted(len(self.nodes), 'node')}: {self.in_network} known, {self.one_edit} one edit away, "
+            f"{self.new} new"
+        )
+        yield f"labels known: {self.labels_known} of {self.labels}; units: {self.units_known} of {self.units}"
+        near_nodes = sorted(
+            (row for row in self.nodes if row.edit is not None),
+            key=lambda row: (row.edit.price if row.edit else 0, str(row.node)),
+        )
+        if near_nodes:
+            yield from ("", "one edit away, and what the network has:")
+            for row in near_nodes:
+                yield f"  {row.node}"
+                yield f"    {row.nearest}: {row.edit}"
+        new_nodes = [node for node in self.nodes if node.match is Match.NEW]
+        if new_nodes:
+            yield from ("", "new:", *(f"  {row.node}" for row in new_nodes))
+
+
+def _posed(command: Command, to: Path) -> tuple[Foon, Foon]:
+    """Pose the recipe that the command names, and the network to compare it with."""
+    if not command.names_data:
+        raise UserError("align what? name a recipe: foon-asp align RECIPE --to NETWORK")
+    with command.reading():
+        return Foon(command.dataset, "the recipe"), Foon(read_dataset(find_data(None, [to])), str(to))
+
+
+@question(
+    Option("to", "The network whose words count.", Kind.FILE, Role.PROBLEM, metavar="NETWORK"),
+    formats=(*TABLES, "foon"),
+    suffixes=Aligned.SUFFIXES,
+    pose=_posed,
+    help_="""
+    \b
+    foon-asp align recipe.txt --to FOON.txt
+    foon-asp align recipe.txt --to FOON.txt -o renamed.txt
+
+    A node is known, one edit of the table of stand-ins away from a known one (docs/stand-ins.md), or new.
+    With -o FILE.txt, the recipe is written in the words of the network: nodes that differ in a word are
+    replaced (on for in, a label that is spelled alike or listed as similar); others stay.
+    """,
+)
+def align(data: Foon, to: Foon | str | PathLike[str]) -> Aligned:
+    """Compare the nodes of a recipe with those of a network: known, one edit away, or new.
+
+    Parameters:
+        data: The recipe. Its table of stand-ins is used, the usual one if it has none.
+        to: The network, or its path.
+
+    Returns:
+        The nodes with the nearest ones of the network.
+
+    Raises:
+        UserError: for a file that cannot be read.
+
+    Example:
+        >>> foon = foon_asp.load()
+        >>> foon_asp.align(foon, foon).new
+        0
+    """
+    recipe = data.dataset.data.network
+    other = (to if isinstance(to, Foon) else load(to)).dataset.data.network
+    table = data.dataset.stand_ins or StandInTable.usual()
+    prices = NodePrices(other, table)
+    nearest = {node: _one_edit_away(node, other, table, prices) for node in recipe.objects}
+    nodes = tuple(_aligned(node, o, recipe, other, table) for node, o in nearest.items())
+    matches = Counter(node.match for node in nodes)
+    labels = set(recipe.by_label)
+    aligned = Aligned(
+        in_network=matches[Match.IN_NETWORK],
+        one_edit=matches[Match.ONE_EDIT],
+        new=matches[Match.NEW],
+        labels_known=len(labels & set(other.by_label)),
+        labels=len(labels),
+        units_known=sum(other.unit_id(unit) is not None for unit in recipe),
+        units=len(recipe),
+        nodes=nodes,
+    )
+    words = {node: node if o is None else other.objects[o] for node, o in nearest.items()}
+    renamed = (
+        FunctionalUnit.of(
+            unit.motion, map(words.__getitem__, unit.inputs), map(words.__getitem__, unit.outputs)
+        )
+        for unit in recipe
+    )
+    return aligned.knowing(aligned_units=tuple(renamed))
+
+
+def _one_edit_away(node: ObjectNode, network: Network, table: StandInTable, prices: NodePrices) -> int | None:
+    """Return the cheapest node of a network that is one edit away, by id; ``None`` if known or new."""
+    if network.object_id(node) is not None:
+        return None
+    priced = sorted((price, o) for o, price in prices.of_node(node).items())
+    return next((o for _, o in priced if len(table.differences(network.objects[o], node) or ()) == 1), None)
+
+
+def _aligned(
+    node: ObjectNode, nearest: int | None, recipe: Network, other: Network, table: StandInTable
+) -> AlignedNode:
+    value = named_node(recipe, node)
+    if nearest is None:
+        match = Match.NEW if other.object_id(node) is None else Match.IN_NETWORK
+        return AlignedNode(match, value, None, None)
+    (edit,) = table.differences(other.objects[nearest], node) or ()
+    return AlignedNode(Match.ONE_EDIT, value, node_of(other, nearest), NodeEdit(*edit))

@@ -1,0 +1,170 @@
+"""The cheapest repair of a tree that does not execute: ``foon-asp check --repair``."""
+
+from collections.abc import Callable, Iterable, Iterator
+from os import PathLike
+from typing import Unpack
+
+from foon_asp.asp import Outcome, Proof, Status
+from foon_asp.asp.optimum import solve as find
+from foon_asp.dataset import Dataset
+from foon_asp.errors import UserError
+from foon_asp.network import FunctionalUnit, ObjectNode, StandInTable, counted
+from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.proof.simulation import Verdict, simulate_for
+from foon_asp.questions.answer import of_status
+from foon_asp.questions.arguments import whole
+from foon_asp.questions.caller import caller
+from foon_asp.questions.common_options import CommonOptions, settings_of
+from foon_asp.questions.contract import asked_in_python
+from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
+from foon_asp.questions.tree import Tree, posed_tree
+from foon_asp.results.document import AboutGoals, Unserialized
+from foon_asp.results.table import Block
+from foon_asp.results.values import Node, Step
+from foon_asp.results.values_of import head_of, nodes_of, steps_of
+from foon_asp.standins.repair import Repair
+from foon_asp.text.json_value import schema_name
+from foon_asp.text.writer import write_units
+
+_OBJECTIVES = Objective.DISSIMILARITY, Objective.UNITS
+
+
+class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("repair")):
+    """The cheapest repair of a tree: every step of it executes, with stand-ins and with units of a network.
+
+    Attributes:
+        verdict: Whether the tree executes as it is.
+        status: optimal: proved cheapest; feasible: stopped at a limit with a repair; infeasible: proved that
+            no repair exists; unknown: stopped without one.
+        proof: What proves it; null where nothing is proved.
+        costs: What the repaired tree costs; null without one.
+        stand_ins: What is used in place of what.
+        added: The numbers of the steps, from 1, that the tree did not have; stand-ins are not counted.
+        order: For each step of the given tree, its number in the repaired one; empty without one.
+        lacking: Without a repair: object nodes that nothing makes and nothing stands in for.
+        units: The steps of the repaired tree; null without one.
+
+    Example:
+        >>> tree = foon_asp.search(foon_asp.load().problem("macaroni"), "bfs").tree
+        >>> repaired = foon_asp.repair(foon_asp.load().problem("macaroni"), tree)
+        >>> str(repaired.status), len(repaired.stand_ins), len(repaired.added)
+        ('optimal', 0, 0)
+    """
+
+    ROWS = "stand_ins"
+
+    verdict: Verdict
+    status: Status
+    proof: Proof | None
+    costs: Costs | None
+    stand_ins: tuple[StandIn, ...]
+    added: tuple[int, ...]
+    order: tuple[int, ...]
+    lacking: tuple[Node, ...]
+    units: tuple[Step, ...] | None
+
+    @property
+    def ending(self) -> Ending:
+        """``DONE`` if the repair is proved to be the cheapest."""
+        return of_status(self.status)
+
+    tree = Unserialized[Tree | None](None)
+    """The repaired tree; ``None`` without one."""
+
+    outcome = Unserialized[Outcome | None](None)
+    """The outcome of the solver for the problem in which every step is a goal."""
+
+    def foon(self) -> str:
+        """Return the repaired tree as FOON text; empty without one."""
+        if self.tree is None:
+            return ""
+        return write_units(self.tree.units, [f"Repaired tree for: {' + '.join(map(str, self.goals))}"])
+
+    def show(self) -> Iterator[Block]:
+        """Return what has to change, and the steps of the repaired tree."""
+        yield from self.goal_lines()
+        yield f"as it is: {self.verdict}"
+        if self.units is None:
+            yield from self._without_repair()
+            return
+        claim = "proved cheapest" if self.status is Status.OPTIMAL else "not proved cheapest"
+        changes = [counted(len(self.stand_ins), "stand-in"), f"{counted(len(self.added), 'step')} added"]
+        if list(self.order) != sorted(self.order):
+            changes.append("in another order")
+        yield f"repaired ({self.conditions}; {claim}): {', '.join(changes)}"
+        yield from stand_in_lines(self.stand_ins)
+        yield ""
+        for step in self.units:
+            yield from step.lines()
+            if step.step in self.added:
+                yield "     (added)"
+
+    def _without_repair(self) -> Iterator[str]:
+        if self.status is not Status.INFEASIBLE:
+            yield "unknown: stopped at a limit before a repair was found"
+            return
+        yield f"no repair exists: proved ({self.conditions})"
+        if self.lacking:
+            yield "nothing makes, and nothing stands in for:"
+            yield from (f"  {node}" for node in self.lacking)
+
+
+@asked_in_python
+def repair(
+    problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit], **options: Unpack[CommonOptions]
+) -> Repaired:
+    """Find the cheapest repair of a tree: the least dissimilarity, then the fewest units.
+
+    Every step of the tree executes once it is repaired. For that, available nodes stand in for others, units
+    of the network of the problem are added, and the order changes.
+
+    Parameters:
+        tree: The path of a file (FOON text, or an answer in JSON), or functional units in the order listed.
+
+    Returns:
+        The repair, with its ``stand_ins``, ``added`` steps and the repaired ``tree``.
+
+    Raises:
+        UserError: if the file cannot be read, or for a problem in which items are used up.
+
+    Example:
+        >>> problem = foon_asp.load().problem("ice")
+        >>> foon_asp.repair(problem, foon_asp.solve(problem).tree).order
+        (1, 2)
+    """
+    settings = settings_of(options)
+    if settings.constraints or settings.replaced is not None:
+        raise UserError("a tree is repaired without rules and encodings: leave them out")
+    table = StandInTable.usual() if problem.stand_ins is None else problem.stand_ins.table
+    listed = posed_tree(problem, tree)
+    base = whole(problem) if problem.stand_ins is None else problem
+    needed = Repair.of(base, listed.units, listed.places, table, _is_in_kitchen(problem))
+    verdict = simulate_for(needed.shown, listed).verdict
+    outcome = find(needed.posed, _OBJECTIVES, settings, caller().reporter)
+    shown, units = needed.shown, outcome.units
+    if units is None:
+        lacking = nodes_of(shown.network, needed.lacking()) if outcome.status is Status.INFEASIBLE else ()
+    else:
+        lacking = ()
+    positions = {unit: number for number, unit in enumerate(units or (), 1)}
+    repaired = Repaired(
+        **head_of(shown, _OBJECTIVES),
+        verdict=verdict,
+        status=outcome.status,
+        proof=outcome.proof,
+        costs=None if units is None else shown.costs(units),
+        stand_ins=() if units is None else stand_ins_in(shown, units),
+        added=tuple(positions[unit] for unit in needed.added(units or ())),
+        order=tuple(positions[unit] for unit in needed.steps) if positions else (),
+        lacking=lacking,
+        units=None if units is None else steps_of(shown, units),
+    )
+    return repaired.knowing(tree=None if units is None else Tree.of(shown, units), outcome=outcome)
+
+
+def _is_in_kitchen(problem: Problem) -> Callable[[ObjectNode], bool]:
+    """Return whether a node that the network lacks is one that the kitchen file lists."""
+    data = problem.origin.data if isinstance(problem.origin, Dataset) else None
+    items = () if data is None else data.kitchen_items
+    return lambda node: any(item.pattern.matches(node) for item in items)

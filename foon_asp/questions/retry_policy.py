@@ -1,0 +1,54 @@
+"""The greatest chance of success with retries: which tree to follow, and when to go on with another one."""
+
+from typing import Unpack
+
+from foon_asp.asp import Settings
+from foon_asp.planning.policy import best_policy
+from foon_asp.problem import Objective
+from foon_asp.questions.alternatives import alternatives
+from foon_asp.questions.answer import Answer, PolicyTree, RetryPolicy
+from foon_asp.questions.caller import asked_by, caller
+from foon_asp.questions.common_options import CommonOptions
+from foon_asp.results.values_of import costed_tree
+
+_MAX_TREES = 4  # that a policy follows: the best one, and the next by success
+
+
+def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unpack[CommonOptions]) -> Answer:
+    """Return an answer with the policy of greatest chance over its tree and the best trees by success.
+
+    The other trees are those that :func:`alternatives` finds; an answer without a tree has no policy.
+
+    Parameters:
+        answer: The answer.
+        retries: How many executions may fail in a run that succeeds.
+        settings: The settings of the question, whose time has begun.
+        options: The rules that the trees keep to.
+    """
+    problem = answer.problem
+    problem.require_known_for([Objective.SUCCESS])
+    if answer.ids is None:
+        return answer.having(policy=None)
+    for limit in ("time_limit", "memory_limit"):  # hold for the whole question
+        options.pop(limit, None)  # type: ignore[misc]
+    with asked_by(caller()._replace(deadline=settings.begun)):
+        found = alternatives(problem, Objective.SUCCESS, best=_MAX_TREES, **options)
+    trees = [answer.ids]
+    for tree in found.trees:
+        units = problem.network.units_of_numbers(tree.ids)
+        if len(trees) < _MAX_TREES and set(units) not in map(set, trees):
+            trees.append(units)
+    policy = best_policy(problem, trees, retries)
+    return answer.having(
+        policy=RetryPolicy(
+            retries=retries,
+            chance=policy.chance,
+            bound=policy.bound,
+            is_exact=policy.is_exact,
+            considered=len(trees),
+            branches=tuple(
+                PolicyTree(branch.failures, costed_tree(problem, branch.units, problem.costs(branch.units)))
+                for branch in policy.branches
+            ),
+        )
+    )

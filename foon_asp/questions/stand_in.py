@@ -1,0 +1,120 @@
+"""Stand-ins as values: what a tree uses in place of what, why it costs that, and what is next best."""
+
+from collections.abc import Collection, Iterator, Sequence
+from fractions import Fraction
+
+from foon_asp.network import Difference, Edit, Network
+from foon_asp.problem import Problem
+from foon_asp.results.values import Node, Value
+from foon_asp.results.values_of import node_as, node_of
+from foon_asp.standins.next_best import stand_ins_of
+
+
+class NodeEdit(Value, frozen=True):
+    """A difference between the node that is used and the one that it stands in for.
+
+    Attributes:
+        edit: The kind of edit in the table of stand-ins.
+        served: The text of the node that is stood in for; empty where it has none.
+        serving: The text of the node that is used; empty where it has none.
+        price: The price in the table.
+    """
+
+    edit: Edit
+    served: str
+    serving: str
+    price: Fraction
+
+    def __str__(self) -> str:
+        return f"{_edit_text(self.edit, self.served, self.serving)} ({self.price})"
+
+
+class NextStandIn(Node, frozen=True, kw_only=True):
+    """The cheapest other node that could be used.
+
+    Attributes:
+        dissimilarity: What it costs by the table.
+    """
+
+    dissimilarity: Fraction
+
+
+class StandIn(Value, frozen=True):
+    """One node that is used in place of another.
+
+    Attributes:
+        unit: The id of the stand-in among the units.
+        used: The node that is used.
+        stands_in_for: The node in whose place it is used.
+        dissimilarity: What it costs by the table.
+        edits: The differences that add up to it.
+        next_best: The cheapest other node in the kitchen or made by the tree; null if there is none.
+    """
+
+    unit: int
+    used: Node
+    stands_in_for: Node
+    dissimilarity: Fraction
+    edits: tuple[NodeEdit, ...]
+    next_best: NextStandIn | None
+
+    def lines(self) -> Iterator[str]:
+        """Return the lines for people."""
+        yield f"  {self.used}"
+        yield f"    for {self.stands_in_for}"
+        yield f"    costs {self.dissimilarity}: {', '.join(map(str, self.edits))}"
+        if self.next_best is not None:
+            yield f"    next best: {self.next_best} ({self.next_best.dissimilarity})"
+
+
+def stand_ins_in(problem: Problem, tree: Collection[int]) -> tuple[StandIn, ...]:
+    """Return the stand-ins of a tree, by unit ids."""
+    network = problem.network
+    values: list[StandIn] = []
+    for unit, serving, served, next_best in stand_ins_of(problem, tree):
+        edits = _edits(problem, serving, served)
+        values.append(
+            StandIn(
+                network.unit_number(unit),
+                node_of(network, serving),
+                node_of(network, served),
+                sum((edit.price for edit in edits), Fraction(0)),
+                tuple(NodeEdit(*edit) for edit in edits),
+                None if next_best is None else _next_stand_in(network, *next_best),
+            )
+        )
+    return tuple(values)
+
+
+def stand_in_lines(stand_ins: Sequence[StandIn]) -> Iterator[str]:
+    """Return the lines of all stand-ins of a tree, for people."""
+    if not stand_ins:
+        yield "no stand-ins are needed"
+        return
+    total = sum((stand_in.dissimilarity for stand_in in stand_ins), Fraction(0))
+    yield f"stand-ins, with a dissimilarity of {total} in all:"
+    for stand_in in stand_ins:
+        yield from stand_in.lines()
+
+
+def _edits(problem: Problem, serving: int, served: int) -> tuple[Difference, ...]:
+    assert problem.stand_ins is not None
+    objects = problem.network.objects
+    return problem.stand_ins.table.differences(objects[serving], objects[served]) or ()
+
+
+def _next_stand_in(network: Network, o: int, dissimilarity: Fraction) -> NextStandIn:
+    return node_as(NextStandIn, network, o, dissimilarity=dissimilarity)
+
+
+def _edit_text(edit: Edit, served: str, serving: str) -> str:
+    """Return a difference in words: what is used, compared with what it stands in for."""
+    if edit is Edit.NODE:
+        return "listed"
+    if edit in {Edit.MORE_STATE, Edit.FEWER_STATE}:
+        return f"also {serving}" if serving else f"not {served}"
+    if edit in {Edit.MORE_INGREDIENT, Edit.FEWER_INGREDIENT}:
+        return f"with {serving}" if serving else f"without {served}"
+    if served and serving:
+        return f"{serving} instead of {served}"
+    return f"also {serving}" if serving else f"not {served}"

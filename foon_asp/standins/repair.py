@@ -1,0 +1,128 @@
+"""The cheapest repair of a tree: stand-ins, units of a network and another order, so that it executes."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from foon_asp.network import (
+    STAND_IN,
+    FunctionalUnit,
+    Network,
+    NetworkBuilder,
+    ObjectNode,
+    Source,
+    StandInTable,
+)
+from foon_asp.problem import Problem, reach
+from foon_asp.standins.extension import with_stand_ins
+
+
+@dataclass(frozen=True)
+class Repair:
+    """The problem whose best tree is the cheapest repair of a tree.
+
+    ``posed`` is the problem to solve: each step of the tree makes a node of its own there, which is a goal.
+    ``shown`` is the same without these nodes; the ids of units are the same. ``steps`` are the units of the
+    tree, by id, in the order listed, each once.
+    """
+
+    posed: Problem
+    shown: Problem
+    steps: tuple[int, ...]
+
+    @classmethod
+    def of(
+        cls,
+        problem: Problem,
+        tree: Sequence[FunctionalUnit],
+        sources: Sequence[Source],
+        table: StandInTable,
+        is_available: Callable[[ObjectNode], bool],
+    ) -> "Repair":
+        """Make the problem of a repair, over the network of a problem and the units of a tree.
+
+        Stand-ins in the network are left out.
+        ``is_available`` returns whether a node that the network lacks is in the kitchen.
+        """
+        whole = problem.network
+        builder = NetworkBuilder()
+        for unit, places in zip(whole, whole.sources, strict=True):
+            if unit.motion == STAND_IN:
+                continue
+            builder.add(unit.motion, unit.inputs, unit.outputs, *places)
+        listed = [
+            builder.add(unit.motion, unit.inputs, unit.outputs, source)
+            for unit, source in zip(tree, sources, strict=True)
+        ]
+        steps, network = tuple(dict.fromkeys(listed)), builder.build()
+        nodes = enumerate(network.objects)
+        kitchen = frozenset(
+            o
+            for o, node in nodes
+            if (problem.at_hand(node) if whole.object_id(node) is not None else is_available(node))
+        )
+        goals = [network.object_id(node) for node in problem.goal_nodes]
+        merged = replace(
+            problem,
+            network=network,
+            kitchen=kitchen,
+            goals=tuple(goal for goal in goals if goal is not None),
+            own_rates={},
+            origin=None,
+            stand_ins=None,
+        )
+        first = len(network.objects)
+        marked = replace(
+            merged,
+            network=_marked(network, steps),
+            goals=(*merged.goals, *range(first, first + len(steps))),
+        )
+        posed = with_stand_ins(marked, table)
+        shown = replace(posed, network=_unmarked(posed.network, network), goals=merged.goals)
+        return cls(posed, shown, steps)
+
+    def added(self, units: Sequence[int]) -> list[int]:
+        """Return the units of a repaired tree that are neither its own steps nor stand-ins, in order."""
+        motions, steps = self.posed.network.motions, frozenset(self.steps)
+        return [unit for unit in units if unit not in steps and motions[unit] != STAND_IN]
+
+    def lacking(self) -> list[int]:
+        """Return the nodes that the steps and goals need, that nothing makes and nothing stands in for."""
+        available = reach(self.posed).available
+        made = {o for unit in self.steps for o in self.shown.gives[unit]}
+        needed = {o for unit in self.steps for o in self.shown.needs[unit]}.union(self.shown.goals)
+        lacking = [o for o in sorted(needed) if not available[o]]
+        return [o for o in lacking if o not in made] or lacking
+
+
+def _marked(network: Network, steps: Sequence[int]) -> Network:
+    """Return a network in which each of some units has one more output, a node of its own."""
+    first = len(network.objects)
+    markers = {unit: o for o, unit in enumerate(steps, first)}
+    nodes = [ObjectNode(f"step {number}", frozenset({"done"})) for number in range(1, len(steps) + 1)]
+    outputs = tuple(
+        (*made, markers[unit]) if unit in markers else made for unit, made in enumerate(network.outputs)
+    )
+    return replace(
+        network,
+        objects=(*network.objects, *nodes),
+        outputs=outputs,
+        _object_ids={**network._object_ids, **{node: o for o, node in enumerate(nodes, first)}},
+        _unit_ids={
+            (motion, frozenset(inputs), frozenset(made)): unit
+            for unit, (motion, inputs, made) in enumerate(
+                zip(network.motions, network.inputs, outputs, strict=True)
+            )
+        },
+    )
+
+
+def _unmarked(extended: Network, plain: Network) -> Network:
+    """Return a network with stand-ins without the nodes that mark steps."""
+    stand_ins = {key: unit for key, unit in extended._unit_ids.items() if unit >= len(plain)}
+    return replace(
+        extended,
+        objects=plain.objects,
+        outputs=(*plain.outputs, *extended.outputs[len(plain) :]),
+        _object_ids=plain._object_ids,
+        _unit_ids={**plain._unit_ids, **stand_ins},
+    )

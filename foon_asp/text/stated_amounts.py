@@ -1,0 +1,96 @@
+"""Amounts that networks state for their units, and those of a table beside them."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+
+from foon_asp.network import DataAmounts, FunctionalUnit, Network, ObjectNode, Source, UnitAmounts
+from foon_asp.text.diagnostics import Diagnostic, Severity
+from foon_asp.text.table import Row
+
+UnitAmount = tuple[str, bool, ObjectNode]
+"""The first columns of a table of amounts: a motion, whether the node is an output, and the node."""
+
+
+class StatedAmounts:
+    """A collection of amounts of copies of units; ``len`` counts the units."""
+
+    def __init__(self) -> None:
+        self._copies: dict[FunctionalUnit, dict[Source, UnitAmounts]] = {}
+
+    def __len__(self) -> int:
+        return len(self._copies)
+
+    def add(self, unit: FunctionalUnit, amounts: UnitAmounts, source: Source) -> None:
+        """Record the amounts of one copy, and where they are stated."""
+        self._copies.setdefault(unit, {})[source] = amounts
+
+    def settled(self, network: Network | None = None) -> DataAmounts:
+        """Return the amounts of each unit, and the first two copies that disagree.
+
+        Copies that state no amounts, which are all 1, are in the ``network``, or are not looked at.
+        """
+        amounts: dict[FunctionalUnit, UnitAmounts] = {}
+        conflict = ""
+        for unit, copies in self._copies.items():
+            number = None if network is None else network.unit_id(unit)
+            sources = tuple(copies) if network is None or number is None else network.sources[number]
+            first = sources[0]
+            of_copies = [(copies.get(source, UnitAmounts()), source) for source in sources]
+            amounts[unit] = of_copies[0][0]
+            other = next((source for counted, source in of_copies if counted != amounts[unit]), None)
+            if other is not None and not conflict:
+                conflict = (
+                    f"{other}: found a copy of the unit {unit.motion!r} of {first} with other amounts, "
+                    "expected the same, since items used up are counted: give one of the two another name"
+                )
+        return DataAmounts(amounts, conflict)
+
+
+def with_table(
+    stated: DataAmounts, rows: Sequence[Row[UnitAmount, int]], network: Network
+) -> tuple[DataAmounts, list[Diagnostic]]:
+    """Return amounts with those of a table in their place, and warnings about rows that match no unit."""
+    amounts = dict(stated.units)
+    used: set[UnitAmount] = set()
+    motions = {row.name[0] for row in rows}
+    by_name = {row.name: row.value for row in rows}
+    for number, motion in enumerate(network.motions):
+        if motion not in motions:
+            continue
+        unit = network.unit(number)
+        sides: list[dict[ObjectNode, int]] = []
+        for is_output, nodes in enumerate((unit.inputs, unit.outputs)):
+            current = dict(amounts.get(unit, UnitAmounts())[is_output])
+            for node in nodes:
+                name = motion, bool(is_output), node
+                if name in by_name:
+                    used.add(name)
+                    current[node] = by_name[name]
+            sides.append({node: amount for node, amount in current.items() if amount != 1})
+        amounts[unit] = UnitAmounts(*sides)
+    warnings = [
+        Diagnostic(
+            Severity.WARNING,
+            "unit-amount",
+            f"no unit {row.name[0]!r} {'makes' if row.name[1] else 'takes'} {str(row.name[2])!r}",
+            row.source,
+        )
+        for row in rows
+        if row.name not in used
+    ]
+    counted = {unit: sides for unit, sides in amounts.items() if sides}
+    return stated._replace(units=counted), warnings
+
+
+def counted_amounts(
+    inputs: Iterable[tuple[ObjectNode, int]], outputs: Iterable[tuple[ObjectNode, int]]
+) -> UnitAmounts:
+    """Return the amounts of nodes that may come several times."""
+    return UnitAmounts(_above_one(inputs), _above_one(outputs))
+
+
+def _above_one(side: Iterable[tuple[ObjectNode, int]]) -> dict[ObjectNode, int]:
+    totals: Counter[ObjectNode] = Counter()
+    for node, amount in side:
+        totals[node] += amount
+    return {node: total for node, total in totals.items() if total > 1}

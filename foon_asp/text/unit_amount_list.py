@@ -1,0 +1,53 @@
+"""Amounts of units: ``unit_amounts.txt``, a motion, an object node and how many of it on each line."""
+
+import re
+from collections.abc import Mapping
+
+from foon_asp.network import MAX_AMOUNT, FunctionalUnit, ObjectNode, UnitAmounts, in_quotes
+from foon_asp.text.line import LineError, NameKind
+from foon_asp.text.line_parser import parse_node
+from foon_asp.text.stated_amounts import UnitAmount
+from foon_asp.text.table import Table
+from foon_asp.text.tables import motion_column
+
+_ARROWS = ("→", "->")
+_AMOUNT = re.compile(r"[1-9]\d{0,6}", re.ASCII)
+
+
+def _row(name: str, value: str, column: int) -> tuple[UnitAmount, int]:
+    motion = motion_column(name, "an object node")
+    *fields, written = value.split("\t")
+    written = written.strip()
+    if not _AMOUNT.fullmatch(written) or int(written) > MAX_AMOUNT:
+        last = column + len(value) - len(written)
+        raise LineError(last, repr(written[:40]), (f"an amount, from 1 to {MAX_AMOUNT}",))
+    is_output = bool(fields) and fields[0].strip() in _ARROWS
+    nodes = fields[is_output:]
+    if len(nodes) != 1:
+        raise LineError(column, f"{len(nodes)} object nodes", ("one, between the motion and its amount",))
+    return (motion, is_output, parse_node(nodes[0].strip())), int(written)
+
+
+UNIT_AMOUNTS = Table(
+    "unit-amount",
+    NameKind.MOTION,
+    "an object node, a tab and its amount",
+    _row,
+    "a second amount for {name!r}",
+)
+"""``motion⇥NODE⇥2`` and ``motion⇥→⇥NODE⇥4``: how many of an input or output units of a motion have."""
+
+
+def write_unit_amounts(amounts: Mapping[FunctionalUnit, UnitAmounts]) -> str:
+    """Return the text of a table of amounts; units of one motion that disagree have a line each."""
+    lines: dict[str, None] = {}
+    for unit, (inputs, outputs) in amounts.items():
+        for arrow, side in (("", inputs), (f"{_ARROWS[0]}\t", outputs)):
+            for node, amount in side.items():
+                lines[f"{unit.motion}\t{arrow}{_field(node)}\t{amount}\n"] = None
+    return "".join(lines)
+
+
+def _field(node: ObjectNode) -> str:
+    """Write a node, which is no arrow even where its label is one."""
+    return in_quotes(node.label) if str(node) in _ARROWS else str(node)
