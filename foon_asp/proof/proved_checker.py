@@ -46,7 +46,7 @@ def judge(checker: Path, data: str, certificate: str) -> tuple[str, str]:
 
 
 def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
-    """Ask the proved checker about a certificate that :func:`verify` accepts.
+    """Run the proved checker on a certificate that :func:`verify` accepts.
 
     Returns:
         ``accepted``, or else why it is not checked, in words.
