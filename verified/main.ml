@@ -178,7 +178,7 @@ let objective data word =
   | "success" ->
     never_zero data;
     (C.Success, Z.one)
-  | _ -> refuse "an objective is unknown"
+  | _ -> unknown ("the objective " ^ word)
 
 (* A part of a weight: a number, or exponents of rates. *)
 type weight = Sum of Q.t | Product of (Q.t * Q.t) list

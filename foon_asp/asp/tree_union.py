@@ -24,14 +24,14 @@ _JUST_ABOVE = Fraction(1, 10**30)  # a cost that is this much above a limit is a
 class TreeUnion(NamedTuple):
     """The units of some tree and of every tree.
 
-    ``some`` are units that some tree has, ``every`` those that every tree has, by id. A limit may leave
+    ``in_some`` are units that some tree has, ``in_every`` those that every tree has, by id. A limit may leave
     units ``undecided``: units outside ``some`` that a tree may have, and units in ``some`` that every tree
     may have.
     """
 
     best: Outcome
-    some: frozenset[int]
-    every: frozenset[int]
+    in_some: frozenset[int]
+    in_every: frozenset[int]
     undecided: frozenset[int]
 
 
@@ -71,7 +71,7 @@ class _Union:
         assert best.costs is not None
         self._prepared, self._costs, self._worse = prepared, best.costs, worse
         self._best = best
-        self._some, self._every = set(best.units), set(best.units)
+        self._in_some, self._in_every = set(best.units), set(best.units)
         self._number = prepared.problem.network.unit_number
         self._settled = "" if not worse else "_without_spare(1).\n"
         self._avoided = 0
@@ -81,18 +81,18 @@ class _Union:
         candidates = self._candidates()
         self._prepared = replace(self._prepared, units=candidates)
         undecided = set[int]()
-        while unseen := set(candidates) - self._some:
-            found = self._next(write_unseen(map(self._number, sorted(unseen))))
-            if not found:
-                undecided |= unseen if found is None else set()
+        while unseen := set(candidates) - self._in_some:
+            is_added = self._next(write_unseen(map(self._number, sorted(unseen))))
+            if not is_added:
+                undecided |= unseen if is_added is None else set()
                 break
-        while self._every:
-            found = self._next(write_in_all(map(self._number, sorted(self._every))))
-            if not found:
-                undecided |= self._every if found is None else set()
+        while self._in_every:
+            is_added = self._next(write_in_all(map(self._number, sorted(self._in_every))))
+            if not is_added:
+                undecided |= self._in_every if is_added is None else set()
                 break
-        some, every = frozenset(self._some), frozenset(self._every - undecided)
-        return TreeUnion(self._best, some, every, frozenset(undecided))
+        in_some, in_every = frozenset(self._in_some), frozenset(self._in_every - undecided)
+        return TreeUnion(self._best, in_some, in_every, frozenset(undecided))
 
     def _candidates(self) -> tuple[int, ...]:
         """Return the units that a tree up to the limit can have; with added rules a superset."""
@@ -111,15 +111,15 @@ class _Union:
                 none = dict.fromkeys(by, Fraction(0)) | {o: Fraction(1) for o in by if multiplies(o)}
                 limit = costs.of(Costs({**none, by[0]: self._limit()}))
             else:
-                limit = subproblem.total(self._some) + costs.doubt
+                limit = subproblem.total(self._in_some) + costs.doubt
             with deadline.watched("cutting the network"):
                 kept = at_costs(
-                    subproblem, by, costs, lambda: deadline.passed, self._some, below=limit + 1
+                    subproblem, by, costs, lambda: deadline.passed, self._in_some, below=limit + 1
                 ).units
         except KeyboardInterrupt:
             deadline.interrupt()
             return prepared.units
-        return tuple(sorted({*kept, *self._some}))
+        return tuple(sorted({*kept, *self._in_some}))
 
     def _limit(self) -> Fraction:
         """Return a value of the first objective just worse than the values of all trees that count."""
@@ -150,10 +150,10 @@ class _Union:
             tree = self._without_spare(order) if self._worse else frozenset(order)
             counts = self._counts(tree)
             if counts:
-                before = len(self._some), len(self._every)
-                self._some |= tree
-                self._every &= tree
-            if not counts or (len(self._some), len(self._every)) == before:
+                before = len(self._in_some), len(self._in_every)
+                self._in_some |= tree
+                self._in_every &= tree
+            if not counts or (len(self._in_some), len(self._in_every)) == before:
                 self._settled += write_avoided(self._avoided, map(self._number, sorted(tree)))
                 self._avoided += 1
                 continue

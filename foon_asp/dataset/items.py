@@ -26,8 +26,8 @@ def wanted_of(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) ->
     Raises :class:`UserError` where there are more or fewer, and for one that is out of range.
     """
     if amounts and len(amounts) != len(goals):
-        found = f"{counted(len(amounts), 'amount')} for {counted(len(goals), 'goal')}"
-        raise UserError(f"found {found}, expected one for each, in the order of the goals")
+        numbers = f"{counted(len(amounts), 'amount')} for {counted(len(goals), 'goal')}"
+        raise UserError(f"found {numbers}, expected one for each, in the order of the goals")
     for amount in amounts:
         if not 1 <= amount <= MAX_AMOUNT:
             raise UserError(f"found the amount {amount} of a goal, expected one from 1 to {MAX_AMOUNT}")

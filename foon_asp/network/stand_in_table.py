@@ -162,6 +162,9 @@ class StandInTable(NamedTuple):
             yield Edit.MORE_INGREDIENT, "", item, self.price(Edit.MORE_INGREDIENT, item)
 
 
+_PLURALS = {"sses": "ss", "shes": "sh", "ches": "ch", "ies": "y", "oes": "o", "s": ""}
+
+
 def spelled_alike(label: str, other: str) -> bool:
     """Return whether two labels differ only in number, blanks, hyphens and capitals."""
     return spelling_key(label) == spelling_key(other)
@@ -170,8 +173,8 @@ def spelled_alike(label: str, other: str) -> bool:
 def spelling_key(label: str) -> str:
     """Return what labels have in common that differ only in number, blanks, hyphens and capitals."""
     letters = label.casefold().replace(" ", "").replace("-", "").replace("_", "")
-    for plural, singular in (("ies", "y"), ("oes", "o"), ("s", "")):
-        if letters.endswith(plural) and len(letters) > len(plural) + 2 and not letters.endswith("ss"):
+    for plural, singular in _PLURALS.items():
+        if letters.endswith(plural) and len(letters) > (5 if singular else 3) and not letters.endswith("ss"):
             return letters.removesuffix(plural) + singular
     return letters
 

@@ -42,16 +42,16 @@ def bulk_order(
 def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
     """Return for each initial object a number of copies that no order of counts can do without."""
     change = Counter({o: -n for o, n in flows.targets.items()})
-    asked = Counter[int]()
+    required = Counter[int]()
     for action, times in counts.items():
         for o, n in flows.asks[action].items():
             made_before = sum(flows.adds[a].get(o, 0) * counts[a] for a in counts if a != action)
-            asked[o] = max(asked[o], n - made_before)
+            required[o] = max(required[o], n - made_before)
         for o, n in flows.uses[action].items():
             change[o] -= n * times
         for o, n in flows.adds[action].items():
             change[o] += n * times
-    return {o: max(0, -change[o], asked[o]) for o in flows.start}
+    return {o: max(0, -change[o], required[o]) for o in flows.start}
 
 
 def _is_founded(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
@@ -128,28 +128,28 @@ class _Search:
         """Yield the runs that can be next; only one where it takes nothing from the others."""
         if self._state in dead:
             return
-        ready = [(action, self._most(action)) for action in sorted(self._waiting)]
-        ready = [(action, most) for action, most in ready if most]
-        free = [(action, most) for action, most in ready if self._is_free(action)]
-        for action, most in free[:1] or sorted(ready, key=lambda run: len(self._flows.uses[run[0]])):
-            for times in (most,) if free or not self._single else (1,):
+        ready = [(action, self._max_times(action)) for action in sorted(self._waiting)]
+        ready = [(action, max_times) for action, max_times in ready if max_times]
+        free = [(action, max_times) for action, max_times in ready if self._is_free(action)]
+        for action, max_times in free[:1] or sorted(ready, key=lambda run: len(self._flows.uses[run[0]])):
+            for times in (max_times,) if free or not self._single else (1,):
                 self._steps_left -= 1
                 if self._steps_left <= 0 or self._expired():
                     self._steps_left = 0
                     return
                 yield action, times
 
-    def _most(self, action: int) -> int:
+    def _max_times(self, action: int) -> int:
         """Return how often an action can be executed at once, 0 if not at all."""
-        most, flows = self._waiting[action], self._flows
+        max_times, flows = self._waiting[action], self._flows
         for o, n in flows.asks[action].items():
-            spare = self._copies[o] - n
-            if spare < 0:
+            surplus = self._copies[o] - n
+            if surplus < 0:
                 return 0
             loss = flows.uses[action].get(o, 0) - flows.adds[action].get(o, 0)
             if loss > 0:
-                most = min(most, spare // loss + 1)
-        return most
+                max_times = min(max_times, surplus // loss + 1)
+        return max_times
 
     def _is_free(self, action: int) -> bool:
         """Whether all that wait find enough of what an action consumes, also if it is executed first."""
@@ -167,9 +167,9 @@ class _Search:
             self._consumed[o] -= sign * n * times
         for o, n in self._flows.adds[action].items():
             self._copies[o] += sign * n * times
-        left = self._waiting.get(action, 0) - sign * times
-        if left:
-            self._waiting[action] = left
+        unexecuted = self._waiting.get(action, 0) - sign * times
+        if unexecuted:
+            self._waiting[action] = unexecuted
         else:
             del self._waiting[action]
 

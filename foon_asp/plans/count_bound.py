@@ -69,6 +69,28 @@ class CountBound:
         self._landmarks = [Landmark(tuple(units)) for units in required]
         self._achievers = flows.achievers
 
+    def plain_counts(self, measures: Sequence[Measure]) -> Counts | None:
+        """Return counts of least cost in floats under the state equation alone; ``None`` if none are found.
+
+        They are found much faster than those of :meth:`counts`, as no action has an indicator, and more often
+        have no order. With other conditions, or costs that are no sums over actions, none are looked for.
+        """
+        others = self._limits or self._landmarks or self._levels or self._excluded_counts
+        if others or any(measure.item or measure.exact is not None for measure in measures):
+            return None
+        program = WholeProgram(self._size, self._expired)
+        for o, row, least in self._flows.balances():
+            program.row(row, least - self._flows.start.get(o, 0))
+        x: list[float] | None = None
+        for measure in measures:
+            costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
+            x = program.whole_optimum(costs)
+            if x is None:
+                return None
+            total = sum(cost * round(x[a]) for a, cost in costs.items())
+            program.row({a: -cost for a, cost in costs.items()}, -total)
+        return None if x is None else {a: round(n) for a, n in enumerate(x) if round(n)}
+
     def counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important; ``None`` if infeasible.
 

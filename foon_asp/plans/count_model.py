@@ -49,22 +49,13 @@ class CountModel:
         self.stock: dict[int, int] = {}
         if priced:
             self.stock = {o: program.column(0, count) for o, count in flows.start.items() if count}
-        change: dict[int, dict[int, int]] = {o: {} for o in (*achievers_of, *flows.targets)}
-        for action in range(size):
-            for o in flows.adds[action]:
-                change[o][action] = flows.adds[action][o]
-            for o in flows.uses[action]:
-                row = change.setdefault(o, {})
-                row[action] = row.get(action, 0) - flows.uses[action][o]
-        for o, row in change.items():
-            if any(effect < 0 for effect in row.values()) or o in flows.targets:
-                least = flows.targets.get(o, 0)
-                self.conditions[program.row(*self._with_stock(o, row, least))] = Balance(o)
-        for action, asked in enumerate(flows.asks):
-            for o in (o for o, n in asked.items() if n > 1):
+        for o, change, least in flows.balances():
+            self.conditions[program.row(*self._with_stock(o, change, least))] = Balance(o)
+        for action, preconditions in enumerate(flows.asks):
+            for o in (o for o, n in preconditions.items() if n > 1):
                 others = (a for a in achievers_of.get(o, ()) if a != action)
                 row = {achiever: flows.adds[achiever][o] for achiever in others}
-                supply = program.row(*self._with_stock(o, {**row, size + action: -asked[o]}, 0))
+                supply = program.row(*self._with_stock(o, {**row, size + action: -preconditions[o]}, 0))
                 self.conditions[supply] = Supply(o, action)
         items = self.items = dict[int, int]()
         for action in range(size):

@@ -267,11 +267,11 @@ class Counting:
             runs = bulk_order(flows, counts, dict(stock), lambda: question.deadline.passed)
             if runs is not None:
                 return plan_of(self.units, runs)
-            for place, (o, n) in enumerate(stock):
-                more = (*stock[:place], (o, n + 1), *stock[place + 1 :])
-                if more not in seen:
-                    seen.add(more)
-                    heappush(waiting, (total + 1, more))
+            for index, (o, n) in enumerate(stock):
+                larger = (*stock[:index], (o, n + 1), *stock[index + 1 :])
+                if larger not in seen:
+                    seen.add(larger)
+                    heappush(waiting, (total + 1, larger))
         raise Stopped
 
     def _keeps_to_rules(self, counts: Counts) -> bool:

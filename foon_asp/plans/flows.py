@@ -1,6 +1,6 @@
 """Preconditions, consumption and add effects of the units of a question, on plain numbers."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from foon_asp.problem import Problem
@@ -33,6 +33,19 @@ class Flows(NamedTuple):
             return [o for o, n in copies.items() if priced or n > self.start.get(o, 0)]
 
         return list(map(lacks, self.asks)), lacks(self.targets)
+
+    def balances(self) -> Iterator[tuple[int, dict[int, int], int]]:
+        """Yield the rows of the state equation: an object, its change by each action, the copies wanted."""
+        changes: dict[int, dict[int, int]] = {o: {} for o in (*self.achievers, *self.targets)}
+        for action, (uses, adds) in enumerate(zip(self.uses, self.adds, strict=True)):
+            for o, n in adds.items():
+                changes[o][action] = n
+            for o, n in uses.items():
+                change = changes.setdefault(o, {})
+                change[action] = change.get(action, 0) - n
+        for o, change in changes.items():
+            if o in self.targets or any(effect < 0 for effect in change.values()):
+                yield o, change, self.targets.get(o, 0)
 
     @property
     def achievers(self) -> dict[int, list[int]]:

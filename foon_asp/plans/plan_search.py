@@ -7,6 +7,7 @@ from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
 from foon_asp.asp.solver import NOT_ASKED
+from foon_asp.plans.conditions import Measure
 from foon_asp.plans.count_bound import BetterError
 from foon_asp.plans.counting import Counting
 from foon_asp.plans.plan_question import Plan, PlanQuestion
@@ -56,21 +57,22 @@ def _solve(question: PlanQuestion) -> Outcome:
 def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
-        asked = not question.program.own or question.problem.counts_amounts
-        if asked and counting.order({}) is None:
+        needs_check = not question.program.own or question.problem.counts_amounts
+        if needs_check and counting.order({}) is None:
             return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
         return question.outcome(Status.OPTIMAL if question.take(()) else Status.INFEASIBLE, Proof.CUTS)
     began = time.perf_counter()
+    measures = [counting.measure(objective) for objective in question.levels]
     with question.deadline.watched("counting executions"):
-        counts = counting.bound.counts([counting.measure(objective) for objective in question.levels])
+        plan = _plain_plan(question, counting, measures) if question.problem.counts_amounts else None
+        counts = counting.bound.counts(measures) if plan is None else None
     question.spent("bound", began)
-    plan = None
+    if plan is None and counts is None and counting.bound.none():
+        return question.outcome(Status.INFEASIBLE, Proof.COUNTS)
     if counts is not None:
         plan = counting.order(counts)
         if plan is None or not question.allows(plan):
             plan = counting.any_order(counts)
-    elif counting.bound.none():
-        return question.outcome(Status.INFEASIBLE, Proof.COUNTS)
     if plan is not None and question.take(plan):
         counting.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
         counting = _below_cutoff(question, counting, plan)
@@ -89,6 +91,16 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
         finally:
             question.bounds = counting.proved()
             question.spent("bound", began)
+
+
+def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
+    """Return an order of the best counts under the state equation alone, if they have one."""
+    counts = counting.bound.plain_counts(measures)
+    try:
+        plan = None if counts is None else counting.order(counts)
+    except Stopped:
+        return None
+    return plan if plan is not None and question.allows(plan) else None
 
 
 def _below_cutoff(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:

@@ -137,16 +137,16 @@ class UsedUp:
             amounts: How many of each node the unit takes and makes.
         """
         functional_unit, objects, inputs = network.unit(unit), network.objects, set(network.inputs[unit])
-        taken, made = amounts
-        asks = {o: taken.get(objects[o], 1) for o in needs}
+        input_amounts, output_amounts = amounts
+        asks = {o: input_amounts.get(objects[o], 1) for o in needs}
         uses, adds = dict[int, int](), dict[int, int]()
         for o, amount in asks.items():
             reason = self.fate(functional_unit, objects[o], utensils)
             if reason is Fate.OUTPUT:
-                uses[o] = amount - made.get(objects[o], 1)
+                uses[o] = amount - output_amounts.get(objects[o], 1)
             elif not reason.stays:
                 uses[o] = amount
         for o in gives:
-            amount = made.get(objects[o], 1)
-            adds[o] = amount - taken.get(objects[o], 1) if o in inputs else amount
+            amount = output_amounts.get(objects[o], 1)
+            adds[o] = amount - input_amounts.get(objects[o], 1) if o in inputs else amount
         return Flow(asks, *({o: n for o, n in effect.items() if n > 0} for effect in (uses, adds)))

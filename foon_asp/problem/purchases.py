@@ -19,14 +19,14 @@ class _FixedCosts:
     """A measure whose costs are known, by unit."""
 
     name: str
-    known: Sequence[int | Fraction]
+    unit_costs: Sequence[int | Fraction]
     text: str = ""
     place: str = ""
 
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[int | Fraction]:
         """Return the cost of each unit."""
         del problem, deadline
-        return self.known
+        return self.unit_costs
 
 
 class Purchases:
@@ -69,7 +69,7 @@ class Purchases:
             rates=rates,
             own_rates=dict(problem.own_rates) | dict.fromkeys(self._purchases, Fraction(1)),
             unit_prices=None,
-            measures={name: _FixedCosts(name, known) for name, known in costs.items()},
+            measures={name: _FixedCosts(name, unit_costs) for name, unit_costs in costs.items()},
             origin=None,
         )
 

@@ -80,18 +80,20 @@ def _execution(
     unit: FunctionalUnit,
 ) -> Execution:
     """Return preconditions, consumption and add effects of one execution of a unit."""
-    taken, made = amounts.get(unit, _NO_AMOUNTS)
-    preconditions = {node: taken.get(node, 1) for node in needed_inputs(unit, rule, utensils, network)}
+    input_amounts, output_amounts = amounts.get(unit, _NO_AMOUNTS)
+    preconditions = {
+        node: input_amounts.get(node, 1) for node in needed_inputs(unit, rule, utensils, network)
+    }
     consumed: dict[ObjectNode, int] = {}
     for node, amount in preconditions.items():
         fate = items.fate(unit, node, utensils)
         if not fate.stays:
             consumed[node] = amount
-        elif fate is Fate.OUTPUT and amount > made.get(node, 1):
-            consumed[node] = amount - made.get(node, 1)
+        elif fate is Fate.OUTPUT and amount > output_amounts.get(node, 1):
+            consumed[node] = amount - output_amounts.get(node, 1)
     added: dict[ObjectNode, int] = {}
     for node in given_outputs(unit, rule, utensils, network):
-        more = made.get(node, 1) - (taken.get(node, 1) if node in unit.inputs else 0)
-        if more > 0:
-            added[node] = more
+        surplus = output_amounts.get(node, 1) - (input_amounts.get(node, 1) if node in unit.inputs else 0)
+        if surplus > 0:
+            added[node] = surplus
     return Execution(preconditions, consumed, added)

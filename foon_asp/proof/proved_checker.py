@@ -23,8 +23,8 @@ def program() -> Path | None:
     """Return the proved checker: as it is built in a checkout, or on PATH; ``None`` where it is not built."""
     if _BUILT.is_file():
         return _BUILT
-    found = shutil.which(_NAME)
-    return None if found is None else Path(found)
+    installed = shutil.which(_NAME)
+    return None if installed is None else Path(installed)
 
 
 def judge(checker: Path, data: str, certificate: str) -> tuple[str, str]:
@@ -46,7 +46,7 @@ def judge(checker: Path, data: str, certificate: str) -> tuple[str, str]:
 
 
 def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
-    """Run the proved checker on a certificate that :func:`verify` accepts.
+    """Check a certificate that :func:`verify` accepts with the proved checker.
 
     Returns:
         ``accepted``, or else why it is not checked, in words.

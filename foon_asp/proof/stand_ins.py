@@ -118,6 +118,8 @@ def _bare(label: str) -> str:
     word = "".join(letter for letter in label.casefold() if letter not in " -_")
     if len(word) > 5 and word[-3:] in {"ies", "oes"}:
         return word[:-3] + {"i": "y", "o": "o"}[word[-3]]
+    if len(word) > 5 and word[-4:] in {"sses", "shes", "ches"}:
+        return word[:-2]
     plural = word[-1:] == "s" and word[-2:] != "ss"
     return word[:-1] if plural and len(word) > 3 else word
 

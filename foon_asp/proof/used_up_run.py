@@ -75,8 +75,8 @@ def _shortage_as_listed(
     """Return the copy that is missing when the steps are done as listed; ``None`` where they run."""
     copies, consumers = dict(stock), dict[ObjectNode, list[int]]()
 
-    def missing(step: int | None, asked: Mapping[ObjectNode, int]) -> Shortage | None:
-        for node, amount in asked.items():
+    def missing(step: int | None, required: Mapping[ObjectNode, int]) -> Shortage | None:
+        for node, amount in required.items():
             if copies.get(node, 0) < amount:
                 return Shortage(step, node, tuple(consumers.get(node, ())), amount)
         return None

@@ -117,16 +117,16 @@ class PlanCheck(Check):
     def _flow(self, unit: int) -> Flow:
         """Return preconditions, consumption and add effects of a unit; inputs are never add effects."""
         network, inputs = self.network, self.network.inputs[unit]
-        taken, made = self.amounts.get(unit, ({}, {}))
-        asks = {o: taken.get(o, 1) for o in self.needs(unit) if o is not None}
-        gives = {o: made.get(o, 1) for o in self.gives(unit) if o is not None}
+        input_amounts, output_amounts = self.amounts.get(unit, ({}, {}))
+        asks = {o: input_amounts.get(o, 1) for o in self.needs(unit) if o is not None}
+        gives = {o: output_amounts.get(o, 1) for o in self.gives(unit) if o is not None}
         self._spend(len(inputs) * (1 + len(network.outputs[unit])))
-        kept = {o: self._kept(unit, o, amount, made.get(o, 1)) for o, amount in asks.items()}
-        adds = {o: n - (taken.get(o, 1) if o in inputs else 0) for o, n in gives.items()}
+        kept = {o: self._kept(unit, o, amount, output_amounts.get(o, 1)) for o, amount in asks.items()}
+        adds = {o: n - (input_amounts.get(o, 1) if o in inputs else 0) for o, n in gives.items()}
         return Flow(
             asks,
             {o: amount - kept[o] for o, amount in asks.items() if amount > kept[o]},
-            {o: more for o, more in adds.items() if more > 0},
+            {o: surplus for o, surplus in adds.items() if surplus > 0},
         )
 
     def _lacks(self, unit: int) -> frozenset[int]:
@@ -548,7 +548,7 @@ def _amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], di
         require(len(columns) == 3 and type(columns[0]) is int, f"expected {what}")
         stated[columns[0]] = _copies(columns[1], what), _copies(columns[2], what)
     network = subject.network
-    known: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
+    of_data: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
     for unit, sides in subject.amounts.items():
         number = network.unit_id(unit)
         if number is not None and any(sides):
@@ -556,8 +556,8 @@ def _amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], di
                 {o: n for node, n in side.items() if (o := network.object_id(node)) is not None}
                 for side in sides
             )
-            known[number] = inputs, outputs
-    require(stated == known, "the amounts of units are not those of the data")
+            of_data[number] = inputs, outputs
+    require(stated == of_data, "the amounts of units are not those of the data")
     return stated
 
 

@@ -204,7 +204,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             if one has no tree.
         serves: Of several goals, those that each unit is needed for.
         cross_check: The checks by other engines, where they are requested.
-        policy: With ``--retries``, the trees to follow, and their chance; null without a tree.
+        policy: With ``--retries``, the trees to follow, and their chance; null without a tree, or if a limit
+            came first.
         stand_ins: Of a problem with stand-ins, what is used in place of what; empty without a tree.
 
     Example:
@@ -341,8 +342,9 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the tree is proved optimal."""
-        return of_status(self.status)
+        """``DONE`` if the tree is proved optimal, and there is the policy that was asked for."""
+        is_policy_missing = self.policy is None and self.units is not None
+        return Ending.LIMIT if is_policy_missing else of_status(self.status)
 
     def show(self) -> Iterator[Block]:
         """Return the goals, the claim, the steps, and notes; without a tree, the reasons."""

@@ -17,7 +17,7 @@ from foon_asp.problem import Problem
 from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.contract import Kind, Option, Role, asked_in_python, question
-from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
+from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.result import Result
 from foon_asp.results.document import AboutGoals, Unserialized
@@ -143,6 +143,7 @@ def _merged(problem: Problem, items: str | None) -> bool:
         python="In Python by default as in the problem; ``set`` is for one in which items are used up.",
     ),
     *ITEMS[1:],
+    AMOUNT,
     Option(
         "folder_written",
         "The folder to write domain.pddl, problem.pddl and map.json into; without it, the problem to stdout.",

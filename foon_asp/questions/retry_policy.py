@@ -17,7 +17,8 @@ _MAX_TREES = 4  # that a policy follows: the best one, and the next by success
 def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unpack[CommonOptions]) -> Answer:
     """Return an answer with the policy of greatest chance over its tree and the best trees by success.
 
-    The other trees are those that :func:`alternatives` finds; an answer without a tree has no policy.
+    The other trees are those that :func:`alternatives` finds. An answer without a tree has no policy, nor has
+    one for which a limit came first.
 
     Parameters:
         answer: The answer.
@@ -32,13 +33,18 @@ def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unp
     for limit in ("time_limit", "memory_limit"):  # hold for the whole question
         options.pop(limit, None)  # type: ignore[misc]
     with asked_by(caller()._replace(deadline=settings.begun)):
-        found = alternatives(problem, Objective.SUCCESS, best=_MAX_TREES, **options)
+        others = alternatives(problem, Objective.SUCCESS, best=_MAX_TREES, **options)
     trees = [answer.ids]
-    for tree in found.trees:
+    for tree in others.trees:
         units = problem.network.units_of_numbers(tree.ids)
         if len(trees) < _MAX_TREES and set(units) not in map(set, trees):
             trees.append(units)
-    policy = best_policy(problem, trees, retries)
+    try:
+        with settings.begun.watched("comparing policies"):
+            policy = best_policy(problem, trees, retries)
+    except KeyboardInterrupt:
+        settings.begun.interrupt()
+        return answer.having([f"no policy for retries: stopped at {settings.begun.stopped}"], policy=None)
     return answer.having(
         policy=RetryPolicy(
             retries=retries,

@@ -1,6 +1,6 @@
 """Plans for a robot's program: each step with its objects by role, and the steps that it waits for."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Self
 
@@ -9,7 +9,6 @@ from msgspec import UNSET, UnsetType, field
 from foon_asp.planning.behaviour_tree import Branch, behaviour_tree_text
 from foon_asp.planning.robot_step import RobotStep, robot_steps
 from foon_asp.problem import Objective, Problem
-from foon_asp.questions.caller import caller
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.values import UsedUpRun
 from foon_asp.results.values_of import head_of, used_up_of
@@ -43,7 +42,7 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
         objectives: Iterable[Objective],
         plan: Collection[int],
         durations: Mapping[str, Duration],
-        policy: Iterable[tuple[Collection[int], int]] | None = None,
+        policy: Sequence[tuple[Collection[int], int]] | None = None,
     ) -> Self:
         """Return the plan that units, by id, are in an order that executes.
 
@@ -54,7 +53,7 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
             durations: How long motions take, as far as that is known.
             policy: With ``--retries``, the trees to follow: units by id, and how many failures end each.
         """
-        clips = tuple(_clips(problem, plan))
+        clips = tuple(_clips(problem, (plan, *(units for units, _ in policy or ()))))
 
         def steps(units: Collection[int]) -> tuple[RobotStep, ...]:
             return tuple(robot_steps(problem, units, durations, clips))
@@ -77,8 +76,8 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
         return behaviour_tree_text(name, branches, is_used_up=self.items == "used-up")
 
 
-def _clips(problem: Problem, plan: Collection[int]) -> Iterator[ListedClips]:
-    """Return the annotated clips from the files of a plan that still exist."""
-    places = (source for unit in plan for source in problem.network.sources[unit])
+def _clips(problem: Problem, plans: Iterable[Collection[int]]) -> Iterator[ListedClips]:
+    """Return the annotated clips from the files of some plans that still exist, where they are understood."""
+    places = (source for plan in plans for unit in plan for source in problem.network.sources[unit])
     files = dict.fromkeys(Path(source.file) for source in places)
-    return listed_clips((file for file in files if file.is_file()), caller().lenient)
+    return listed_clips((file for file in files if file.is_file()), lenient=True)

@@ -227,7 +227,7 @@ def shopping_list(
     deadline, reporter = settings.begun, caller().reporter
     priced = None if prices is None else _priced(problem, _listed(prices))
     program = assemble(settings, reporter.warning, problem=problem)
-    found = _Found([], complete=True)
+    cheapest = _Lists([], complete=True)
     made_of = (Offer.FOR_SALE, dict[int, Fraction]()) if priced is None else (Offer.PRICED, priced)
     try:
         with deadline.watched("looking for what is for sale"):
@@ -235,15 +235,15 @@ def shopping_list(
             offers = _for_sale(problem, shop) if priced is None else [made_of]
         for made_of in offers:
             prepared = prepare(problem, chosen, settings, program, for_sale=made_of[1])
-            found = _lists(prepared, chosen, shop, made_of[1], max_lists)
-            if found.lists or not found.complete:
+            cheapest = _lists(prepared, chosen, shop, made_of[1], max_lists)
+            if cheapest.lists or not cheapest.complete:
                 break
     except KeyboardInterrupt:
         deadline.interrupt()
-        found = _Found([], complete=False)
+        cheapest = _Lists([], complete=False)
     offer, wares = made_of
     outcomes: list[tuple[_PricedList, Outcome]] = []
-    for candidate in found.lists:
+    for candidate in cheapest.lists:
         outcome = candidate.outcome
         if outcome is None:
             stocked = _stocked(problem, candidate.items)
@@ -266,7 +266,7 @@ def shopping_list(
             )
             for candidate, outcome in outcomes[:max_lists]
         ),
-        complete=found.complete and len(outcomes) <= max_lists,
+        complete=cheapest.complete and len(outcomes) <= max_lists,
         answer=Answer.of(outcomes[0][1], outcomes[0][0].items) if outcomes else None,
     )
 
@@ -280,7 +280,7 @@ class _PricedList(NamedTuple):
     outcome: Outcome | None = None
 
 
-class _Found(NamedTuple):
+class _Lists(NamedTuple):
     """Lists, the cheapest first, and whether there are no others."""
 
     lists: list[_PricedList]
@@ -369,10 +369,10 @@ def _lists(
     shop: Shop,
     wares: Mapping[int, Fraction],
     max_lists: int,
-) -> _Found:
+) -> _Lists:
     """Return the cheapest lists from ``wares``."""
     if prepared.tree is None:
-        return _Found([], complete=not prepared.stopped)
+        return _Lists([], complete=not prepared.stopped)
     problem = prepared.problem
     met = {*problem.goals, *(o for unit in prepared.units for o in problem.needs[unit])}
     sold = {o: price for o, price in wares.items() if o in met}
@@ -400,37 +400,37 @@ class _Shopper:
         self._objectives = objectives
         self._waiting: list[tuple[tuple[int | Fraction, ...], int, frozenset[int], Outcome]] = []
         self._seen: set[frozenset[int]] = set()
-        self._found: list[_PricedList] = []
+        self._listed: list[_PricedList] = []
 
-    def lists(self, max_lists: int) -> _Found:
+    def lists(self, max_lists: int) -> _Lists:
         """Return the cheapest lists."""
         if not self._look(frozenset(), caller().reporter):
-            return _Found(self._found, complete=False)
+            return _Lists(self._listed, complete=False)
         while self._waiting:
             _, _, left_out, outcome = heappop(self._waiting)
             listed = self._list(outcome)
-            if all(listed.items != earlier.items for earlier in self._found):
-                self._found.append(listed)
-                if not listed.items or len(self._found) == max_lists:
-                    return _Found(self._found, complete=not listed.items)
+            if all(listed.items != earlier.items for earlier in self._listed):
+                self._listed.append(listed)
+                if not listed.items or len(self._listed) == max_lists:
+                    return _Lists(self._listed, complete=not listed.items)
             if not all(self._look(left_out | {item}, Reporter()) for item in listed.items):
-                return _Found(self._found, complete=False)
-        return _Found(self._found, complete=True)
+                return _Lists(self._listed, complete=False)
+        return _Lists(self._listed, complete=True)
 
     def _look(self, left_out: frozenset[int], reporter: Reporter) -> bool:
         """Find the best list without some wares; return false at a limit."""
         if left_out in self._seen:
             return True
         self._seen.add(left_out)
-        for earlier in self._found:
+        for earlier in self._listed:
             if left_out.isdisjoint(earlier.items):  # which the best list might be
                 return all(self._look(left_out | {item}, reporter) for item in earlier.items)
         settings, by = self._prepared.settings, self._purchases.objectives
         outcome = solve(self._purchases.without(left_out), by, settings, reporter)
         if outcome.status is Status.OPTIMAL and outcome.costs is not None:
             heappush(self._waiting, (outcome.costs.key(levels(by)), len(self._seen), left_out, outcome))
-        if outcome.status is Status.FEASIBLE and not self._found:
-            self._found.append(self._list(outcome))
+        if outcome.status is Status.FEASIBLE and not self._listed:
+            self._listed.append(self._list(outcome))
         return outcome.status in {Status.OPTIMAL, Status.INFEASIBLE}
 
     def _list(self, outcome: Outcome) -> _PricedList:
@@ -459,7 +459,7 @@ def _lists_under_rules(
     second_choices: Collection[int],
     max_lists: int,
     compared: bool,
-) -> _Found:
+) -> _Lists:
     """Return the cheapest lists under rules, which may look at all units: one run of clingo each.
 
     If trees are ``compared`` by more than their size, all lists of the last price are found, too.
@@ -481,10 +481,10 @@ def _lists_under_rules(
             lists.append(_PricedList(items, price, ended.exhausted))
             facts += write_list(len(lists), items)
         if ended.units is None or not ended.exhausted:
-            return _Found(lists, ended.exhausted)
+            return _Lists(lists, ended.exhausted)
         if not items:
-            return _Found(lists, complete=True)
-    return _Found(lists, complete=False)
+            return _Lists(lists, complete=True)
+    return _Lists(lists, complete=False)
 
 
 def _decimal(number: Fraction) -> str:

@@ -4,7 +4,8 @@ from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
 
 from foon_asp.network import Difference, Edit, Network
-from foon_asp.problem import Problem
+from foon_asp.problem import Objective, Problem
+from foon_asp.results.figure_text import figure_text
 from foon_asp.results.values import Node, Value
 from foon_asp.results.values_of import node_as, node_of
 from foon_asp.standins.next_best import stand_ins_of
@@ -26,7 +27,7 @@ class NodeEdit(Value, frozen=True):
     price: Fraction
 
     def __str__(self) -> str:
-        return f"{_edit_text(self.edit, self.served, self.serving)} ({self.price})"
+        return f"{_edit_text(self.edit, self.served, self.serving)} ({_price_text(self.price)})"
 
 
 class NextStandIn(Node, frozen=True, kw_only=True):
@@ -62,9 +63,9 @@ class StandIn(Value, frozen=True):
         """Return the lines for people."""
         yield f"  {self.used}"
         yield f"    for {self.stands_in_for}"
-        yield f"    costs {self.dissimilarity}: {', '.join(map(str, self.edits))}"
+        yield f"    costs {_price_text(self.dissimilarity)}: {', '.join(map(str, self.edits))}"
         if self.next_best is not None:
-            yield f"    next best: {self.next_best} ({self.next_best.dissimilarity})"
+            yield f"    next best: {self.next_best} ({_price_text(self.next_best.dissimilarity)})"
 
 
 def stand_ins_in(problem: Problem, tree: Collection[int]) -> tuple[StandIn, ...]:
@@ -92,7 +93,7 @@ def stand_in_lines(stand_ins: Sequence[StandIn]) -> Iterator[str]:
         yield "no stand-ins are needed"
         return
     total = sum((stand_in.dissimilarity for stand_in in stand_ins), Fraction(0))
-    yield f"stand-ins, with a dissimilarity of {total} in all:"
+    yield f"stand-ins, with a dissimilarity of {_price_text(total)} in all:"
     for stand_in in stand_ins:
         yield from stand_in.lines()
 
@@ -105,6 +106,10 @@ def _edits(problem: Problem, serving: int, served: int) -> tuple[Difference, ...
 
 def _next_stand_in(network: Network, o: int, dissimilarity: Fraction) -> NextStandIn:
     return node_as(NextStandIn, network, o, dissimilarity=dissimilarity)
+
+
+def _price_text(price: Fraction) -> str:
+    return figure_text(Objective.DISSIMILARITY, price)
 
 
 def _edit_text(edit: Edit, served: str, serving: str) -> str:

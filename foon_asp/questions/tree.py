@@ -112,8 +112,8 @@ class Tree(TaskTree):
             lack: The copy that is missing.
         """
         if lack.position is None:
-            left = "no copy is" if lack.amount is UNSET else f"fewer than {lack.amount} copies are"
-            text = f"every step runs, but in the end {left} left of the goal: {lack.missing}"
+            remaining = "no copy is" if lack.amount is UNSET else f"fewer than {lack.amount} copies are"
+            text = f"every step runs, but in the end {remaining} left of the goal: {lack.missing}"
         else:
             copies = "a copy" if lack.amount is UNSET else f"{lack.amount} copies"
             text = f"step {lack.position}, {self.step_text(lack.position)}, lacks {copies} of {lack.missing}"

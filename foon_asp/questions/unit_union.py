@@ -24,13 +24,13 @@ class Membership(StrEnum):
     """In which of the trees a unit is."""
 
     EVERY = "every"
-    SOME = "some"
+    NOT_EVERY = "some"
     UNKNOWN = "unknown"
 
 
 _HEADINGS = {
     Membership.EVERY: "in every one",
-    Membership.SOME: "in some, not in every one",
+    Membership.NOT_EVERY: "in some, not in every one",
     Membership.UNKNOWN: "not decided before a limit",
 }
 
@@ -121,22 +121,22 @@ def unit_union(
     problem = asked_with(problem, settings)
     if problem.items is not None:
         raise not_built("alternatives --union")
-    found = tree_union(problem, chosen, settings, caller().reporter, Fraction(within, 100))
+    union = tree_union(problem, chosen, settings, caller().reporter, Fraction(within, 100))
     network = problem.network
 
     def membership(unit: int) -> Membership:
-        if unit in found.undecided:
+        if unit in union.undecided:
             return Membership.UNKNOWN
-        return Membership.EVERY if unit in found.every else Membership.SOME
+        return Membership.EVERY if unit in union.in_every else Membership.NOT_EVERY
 
     listed = sorted(
-        found.some | found.undecided, key=lambda unit: (membership(unit) is not Membership.EVERY, unit)
+        union.in_some | union.undecided, key=lambda unit: (membership(unit) is not Membership.EVERY, unit)
     )
     mentions = [(mention_of(network, unit), membership(unit)) for unit in listed]
     return UnitUnion(
         **head_of(problem, chosen),
         within=within,
-        complete=not found.undecided and found.best.proof is not None,
+        complete=not union.undecided and union.best.proof is not None,
         units=tuple(UnitOfTrees(m.id, m.motion, m.source, trees=trees) for m, trees in mentions),
-        answer=Answer.of(found.best),
+        answer=Answer.of(union.best),
     )

@@ -34,7 +34,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.certifying import certified
 from foon_asp.questions.common_options import CommonOptions, Limits, begin, settings_of
 from foon_asp.questions.contract import Kind, Option, Role, question
-from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
+from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
 from foon_asp.questions.posing import Command, is_for_goals, one_problem, the_data
@@ -283,6 +283,7 @@ def _posed(
     OBJECTIVES,
     CONTAINERS._replace(role=Role.PROBLEM | Role.QUESTION),
     *ITEMS,
+    AMOUNT,
     Option(
         "beside",
         f"What a page shows beside the tree: {', '.join(PagePart)}.",

@@ -163,7 +163,7 @@ def steps_of(
     network, steps = problem.network, []
     for number, (unit, times, origins) in enumerate(_origins(problem, units, bought), 1):
         uses = None if problem.items is None else problem.flows[unit].uses
-        taken, made = (
+        input_amounts, output_amounts = (
             problem.amounts.get(network.unit(unit), UnitAmounts()) if problem.counts_amounts else (None, None)
         )
         inputs = tuple(
@@ -173,13 +173,13 @@ def steps_of(
                 o,
                 origin=origin,
                 stays=UNSET if uses is None else o not in uses,
-                amount=_amount(taken, network, o),
+                amount=_amount(input_amounts, network, o),
             )
             for o, origin in zip(network.inputs[unit], origins, strict=True)
         )
         gives = frozenset(problem.gives[unit])
         outputs = tuple(
-            node_as(Output, network, o, made=o in gives, amount=_amount(made, network, o))
+            node_as(Output, network, o, made=o in gives, amount=_amount(output_amounts, network, o))
             for o in network.outputs[unit]
         )
         by = UNSET if helped is None else "person" if unit in helped else "robot"
@@ -311,20 +311,20 @@ def _origins_of_copies(
             elif o not in asks:
                 origins.append(_IMPLIED)
             else:
-                origins.append(_taken(copies.get(o, deque()), uses.get(o, 0) * times))
+                origins.append(_oldest_origin(copies.get(o, deque()), uses.get(o, 0) * times))
         for o, amount in adds.items():
             copies.setdefault(o, deque()).append((Origin(step=step), amount * times))
         yield unit, times if problem.counts_amounts else UNSET, origins
 
 
-def _taken(copies: deque[tuple[Origin, int]], amount: int) -> Origin:
+def _oldest_origin(copies: deque[tuple[Origin, int]], amount: int) -> Origin:
     """Take the oldest copies; return the origin of the first."""
     while copies and not copies[0][1]:
         copies.popleft()
     first = copies[0][0] if copies else _MISSING
     while amount and copies:
-        origin, there = copies.popleft()
-        if there > amount:
-            copies.appendleft((origin, there - amount))
-        amount -= min(there, amount)
+        origin, available = copies.popleft()
+        if available > amount:
+            copies.appendleft((origin, available - amount))
+        amount -= min(available, amount)
     return first

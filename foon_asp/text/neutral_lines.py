@@ -174,13 +174,13 @@ def _unit(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[Read
         name = value[key]
         name = _name(name.text if isinstance(name, JsonNumber) else name, key)
         key = "inputs"
-        inputs, taken = _nodes(value[key], key, nodes)
+        inputs, input_amounts = _nodes(value[key], key, nodes)
         key = "outputs"
-        outputs, made = _nodes(value[key], key, nodes)
+        outputs, output_amounts = _nodes(value[key], key, nodes)
         key = "price"
         price = value.get(key)
         written = _number_price(price.text) if isinstance(price, JsonNumber) else price_of(price)
-        return ReadUnit(name, inputs, outputs, (source,), UnitAmounts(taken, made)), written
+        return ReadUnit(name, inputs, outputs, (source,), UnitAmounts(input_amounts, output_amounts)), written
     except ValueError as problem:
         raise _LineError(str(problem), line.find(f'"{key}"') + 1 if key else 1) from None
 

@@ -22,12 +22,12 @@ def write_neutral_unit(id_: str, inputs: Iterable[str], outputs: Iterable[str], 
 
 def _line(id_: str, price: str, inputs: Sequence[tuple[str, int]], outputs: Sequence[tuple[str, int]]) -> str:
     """Write a unit from names as JSON, with their amounts."""
-    input_list, output_list = map(_side, (inputs, outputs))
+    input_list, output_list = map(_names_text, (inputs, outputs))
     last = f', "price": {Decimal(price):f}' if price else ""
     return f'{{"id": {json_line(id_)}, "inputs": {input_list}, "outputs": {output_list}{last}}}\n'
 
 
-def _side(names: Sequence[tuple[str, int]]) -> str:
+def _names_text(names: Sequence[tuple[str, int]]) -> str:
     """Write a list of names; or an object, where some amount is not 1."""
     if all(amount == 1 for _, amount in names):
         return f"[{', '.join(name for name, _ in names)}]"
@@ -80,7 +80,7 @@ class NeutralWriter:
         return ()
 
 
-def _amount(part: str) -> tuple[str, int]:
+def _amount(fragment: str) -> tuple[str, int]:
     """Return a name as JSON, and the amount that stands behind it."""
-    name, _, amount = (part, "", "1") if part.endswith('"') else part.rpartition(": ")
+    name, _, amount = (fragment, "", "1") if fragment.endswith('"') else fragment.rpartition(": ")
     return name, int(amount)

@@ -34,6 +34,7 @@ PAGES = (
     "docs/pddl.md",
     "docs/plans.md",
     "docs/proofs.md",
+    "docs/stand-ins.md",
 )
 # A block with a file name is a file; one without is a session.
 FENCE = re.compile(r"^```(?:(?:[\w-]+ )?(\S+\.\w+)|[\w-]*)\n((?:.*\n)*?)```$", re.MULTILINE)
@@ -66,6 +67,7 @@ def laid_out(printed: str) -> str:
     "docs/plans.md",
     "docs/writing-objectives.md",
     "docs/tutorial-logic.md",
+    "docs/stand-ins.md",
 )
 def test_the_examples_of_a_page(page: str, cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

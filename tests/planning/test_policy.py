@@ -144,7 +144,7 @@ def test_without_a_dynamic_program_the_bound_is_one(monkeypatch: pytest.MonkeyPa
 @needs_py_trees
 def test_the_chance_is_that_of_the_tree_that_is_run() -> None:
     several = 0
-    for problem, ways, retries in problems(80, units=5):
+    for problem, ways, retries in problems(40, units=5):
         best = best_policy(problem, ways, retries)
         shared = tuple(PolicyBranch(tree, 1) for tree in ways)  # also where that is not the best
         for branches, chance in ((best.branches, best.chance), (shared, None)):
@@ -154,7 +154,7 @@ def test_the_chance_is_that_of_the_tree_that_is_run() -> None:
             assert chance is None or run == chance
             assert run <= best_policy(problem, ways, sum(b.failures for b in branches) - 1).chance
             several += len(branches) > 1
-    assert several > 2
+    assert several > 1
 
 
 def test_a_safe_detour_is_better_than_a_risky_unit_only_with_retries() -> None:
@@ -199,7 +199,7 @@ def test_another_tree_is_a_branch_where_it_goes_on_with_what_is_there() -> None:
 
 def test_policies_without_end_are_best_by_attempts() -> None:
     compared = 0
-    for problem, _, _ in problems(60, units=6):
+    for problem, _, _ in problems(40, units=5):
         answer = foon_asp.solve(problem, "attempts")
         assert answer.costs is not None
         assert answer.costs.measures[Objective.ATTEMPTS] == least_attempts(problem)
@@ -250,3 +250,14 @@ def test_retries_are_refused_where_they_mean_nothing(cli: Cli) -> None:
     assert (ran.code, "retries of one goal" in ran.err) == (2, True)
     with pytest.raises(UserError, match="retries"):
         foon_asp.solve(foon_asp.load().problem("ice"), retries=-1)
+
+
+def test_a_limit_leaves_the_tree_without_a_policy(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    def endless(*_: object) -> None:
+        while True:
+            pass
+
+    monkeypatch.setattr("foon_asp.questions.retry_policy.best_policy", endless)
+    ran = cli("solve", "--goal", "ice", "--retries", "1", "--time-limit", "1")
+    assert (ran.code, "optimal by units" in ran.out) == (3, True)
+    assert "no policy for retries: stopped at the time limit" in ran.out

@@ -76,8 +76,8 @@ def test_torches(torches: int, units: int) -> None:
 def test_a_catalyst_has_to_be_there_first() -> None:
     for u235, units in ((40, 8), (39, None)):
         foon = foon_asp.build(URANIUM, kitchen=["u235", "u238"])
-        stock = {"u235": u235, "u238": 20}
-        answer = foon_asp.solve(foon.problem("fuel", amounts=4, stock={**stock}, items="used-up"))
+        stock: dict[str | foon_asp.ObjectNode, int] = {"u235": u235, "u238": 20}
+        answer = foon_asp.solve(foon.problem("fuel", amounts=4, stock=stock, items="used-up"))
         # four are there to be loaded at once, as nothing has to be left
         assert answer.costs is not None
         assert answer.costs.units == 4
@@ -110,7 +110,8 @@ def test_objectives_count_executions(tmp_path: Path) -> None:
     assert costs is not None
     assert [costs.measure(o) for o in (Objective.UNITS, Objective.INPUTS, Objective.PRICE)] == [5, 8, 4]
     assert (costs.success, costs.measure(Objective.ATTEMPTS)) == (Fraction(9, 80), Fraction(73, 9) - 0)
-    stocked = foon.problem("torch", amounts=9, stock={"log": 2, "coal": 9})
+    stock: dict[str | foon_asp.ObjectNode, int] = {"log": 2, "coal": 9}
+    stocked = foon.problem("torch", amounts=9, stock=stock)
     kitchen = foon_asp.solve(stocked, "kitchen", certificate=tmp_path / "proof.json")
     assert kitchen.costs is not None
     assert kitchen.costs.kitchen == 4

@@ -388,7 +388,7 @@ PARTS = {
         plain(**{**NO_TREE, "unreached": [SALT, RARE, GOLD]}, rules=forbid(["buy"]), proof=[SPENT]),
     ),
     "a unit asks for as many as the data say": Part(
-        "asks = {o: taken.get(o, 1) for o in self.needs(unit) if o is not None}",
+        "asks = {o: input_amounts.get(o, 1) for o in self.needs(unit) if o is not None}",
         "asks = {o: 1 for o in self.needs(unit) if o is not None}",
         plain(**TWO_SALTS),
     ),

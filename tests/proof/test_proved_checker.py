@@ -43,6 +43,7 @@ RIGHT = {
 # The proved checker knows rules that are a set of units or a sum over units.
 UNKNOWN = (
     "the rule ",
+    "the objective ",
     "stand-ins",
     "claims about several units",
     "measures of your own",

@@ -31,14 +31,14 @@ def of(found: UnitUnion, *memberships: Membership) -> set[int]:
 def test_an_optimal_tree_that_is_alone_has_all_units_of_every_tree() -> None:
     found = foon_asp.unit_union(TWO_WAYS)
     assert found.complete
-    assert (of(found, Membership.EVERY), of(found, Membership.SOME)) == ({0, 1}, set())
+    assert (of(found, Membership.EVERY), of(found, Membership.NOT_EVERY)) == ({0, 1}, set())
 
 
 def test_a_worse_tree_counts_within_a_gap() -> None:
     """Three units instead of two are 50 % more; boiling leads to no goal, so no tree needs it."""
-    assert of(foon_asp.unit_union(TWO_WAYS, within=49), Membership.SOME) == set()
+    assert of(foon_asp.unit_union(TWO_WAYS, within=49), Membership.NOT_EVERY) == set()
     found = foon_asp.unit_union(TWO_WAYS, within=50)
-    assert (of(found, Membership.EVERY), of(found, Membership.SOME)) == ({0}, {1, 2, 3})
+    assert (of(found, Membership.EVERY), of(found, Membership.NOT_EVERY)) == ({0}, {1, 2, 3})
 
 
 def test_without_a_tree_it_is_proved_that_there_is_none(cli: Cli) -> None:

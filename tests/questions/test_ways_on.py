@@ -75,7 +75,7 @@ def whole(problem: Problem) -> Problem:
 def test_the_state_after_a_step_is_a_kitchen(cli: Cli, tmp_path: Path) -> None:
     plan, state = tmp_path / "plan.txt", tmp_path / "state.txt"
     plan.write_text(cli("solve", "--goal", "macaroni", "--format", "foon").out)
-    for done in (0, 5, 9):
+    for done in (5, 9):
         words = ("--goal", "macaroni", "--items", "lasting", "--after", str(done), "-o", state)
         assert cli("trace", plan, *words).code == 0
         ways = cli("trace", "--state", state, "--goal", "macaroni", "--format", "json")

@@ -19,7 +19,7 @@ from tests.support.random_problems import random_problem
 
 PRICES = (None, Fraction(1, 2), Fraction(1), Fraction(1), Fraction(2), Fraction(7, 3))
 SEEDS = pytest.mark.parametrize(
-    "seeds", [range(150), pytest.param(range(150, 5000), marks=pytest.mark.slow)], ids=["few", "many"]
+    "seeds", [range(80), pytest.param(range(80, 5000), marks=pytest.mark.slow)], ids=["few", "many"]
 )
 
 
@@ -81,7 +81,7 @@ def test_every_pair_gives_the_best_tree_by_other_objectives(seeds: range) -> Non
 def test_certificates_hold_and_no_stand_in_may_be_missing() -> None:
     """Without a stand-in of the best tree, what is proved of the other trees is refused."""
     missing = 0
-    for seed in range(80):
+    for seed in range(45):
         problem, table = posed(seed)
         extended = with_stand_ins(problem, table)
         answer = foon_asp.solve(extended, "dissimilarity,units", certificate=os.devnull)
@@ -93,4 +93,4 @@ def test_certificates_hold_and_no_stand_in_may_be_missing() -> None:
             smaller = replace(extended, network=replace(network.without([unit]), unit_numbers=()))
             with pytest.raises(BugError, match="refused: a stand-in is missing"):
                 foon_asp.solve(smaller, "dissimilarity,units", certificate=os.devnull)
-    assert missing > 10
+    assert missing > 5
