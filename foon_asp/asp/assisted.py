@@ -54,7 +54,7 @@ def require_local(settings: Settings) -> None:
         if not shown.rule.local:
             raise UserError(
                 f"{shown.source}: this rule looks at units that the tree need not have "
-                f"({shown.rule.further}). "
+                f"({shown.rule.nonlocality}). "
                 "Beside a rule about who does a unit it would see those twice that a person does better: ask "
                 "it about units that are used, or leave one of the two out"
             )

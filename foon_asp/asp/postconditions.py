@@ -105,7 +105,7 @@ class Postconditions:
         """Require that the claims of an outcome with a tree are true.
 
         ``best`` has the costs of the incumbent of the search, ``reduced`` is the result of the reductions;
-        both are ``None`` where there is none.
+        both may be ``None``.
         """
         assert outcome.units is not None
         assert outcome.costs is not None

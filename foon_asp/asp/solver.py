@@ -26,7 +26,7 @@ if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
 
 _MAX_CUT_OBJECTS = 200_000  # of the cuts stored for a certificate to try first; it finds others by itself
 _NEAREST_UNITS = 200  # size of the first reduced-cost neighbourhood
-_MAX_ROUNDS = 12  # searches for trees with open preconditions, with ever fewer of these
+_MAX_ROUNDS = 12  # searches for trees with open preconditions, each with fewer open ones than before
 NOT_ASKED = (
     "clingo has no statistics: the question was settled without its search; --reduce none leaves it to clingo"
 )

@@ -47,7 +47,8 @@ def tree_union(
 
     With ``worse`` 0, these are the optimal trees; else all trees without redundant units whose first
     objective is worse than the best value by at most this share of it. Each search finds a tree that adds a
-    unit to those of some tree, or takes one from those of every tree; the last one proves that there is none.
+    unit to those of some tree, or takes one from those of every tree; the last one proves that no such tree
+    is left.
     Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for rules with ``worse``.
     """
     best = solve(problem, objectives, settings, reporter)
@@ -141,7 +142,7 @@ class _Union:
     def _next(self, question: str) -> bool | None:
         """Find another tree that changes the result, and add its units.
 
-        Returns ``False`` where there is none, ``None`` at a limit.
+        Returns ``False`` if no tree does, ``None`` at a limit.
         """
         problem, by = self._prepared.problem, self._prepared.levels
         while True:

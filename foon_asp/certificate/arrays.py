@@ -111,7 +111,10 @@ class Arrays:
         }
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
-        """Return by constraint the units excluded by the used actions, where ``without`` are excluded."""
+        """Return by constraint the barred units.
+
+        No tree with the used actions and none of ``without`` has a barred unit.
+        """
         return self.ruled.bars(self._units(used), without)
 
     def breaking(self, derivation: frozenset[int]) -> list[int]:

@@ -141,10 +141,10 @@ def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left
     """Return a summary in words: the dialects, and the losses, the most frequent first."""
     dialects = Counter(result.dialect for result in results)
     if len(tasks) == 1:
-        head = f"{tasks[0].file}: {results[0].dialect} → {target}"
+        first_line = f"{tasks[0].file}: {results[0].dialect} → {target}"
     else:
-        read = ", ".join(f"{count} {dialect}" for dialect, count in dialects.items())
-        head = f"{len(tasks)} files ({read}) → {target}"
+        dialect_counts = ", ".join(f"{count} {dialect}" for dialect, count in dialects.items())
+        first_line = f"{len(tasks)} files ({dialect_counts}) → {target}"
     losses = [(kind, lost) for result in results for kind, lost in result.lost.items()]
     rows = []
     for kind in dict.fromkeys(kind for kind, _ in losses):
@@ -153,7 +153,7 @@ def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left
     if left_out:
         rows.append((left_out, "lines that are in no unit; see the warnings"))
     if not rows:
-        return f"{head}; nothing is lost"
+        return f"{first_line}; nothing is lost"
     rows.sort(key=lambda row: -row[0])
     width = len(f"{rows[0][0]:,}")
-    return "\n".join([f"{head}; not in the result:", *(f"  {n:>{width},}  {text}" for n, text in rows)])
+    return "\n".join([f"{first_line}; not in the result:", *(f"  {n:>{width},}  {text}" for n, text in rows)])

@@ -248,7 +248,7 @@ def read_dataset(
         if stand_ins or stand_in_tables or similar:
             from foon_asp.standins.table_file import read_stand_ins
 
-            dataset = dataset.standing_in(read_stand_ins(stand_in_tables, similar, dataset.utensils))
+            dataset = dataset.with_stand_in_table(read_stand_ins(stand_in_tables, similar, dataset.utensils))
     context = click.get_current_context(
         silent=True
     )  # a worker of a batch has none, and never closes the data

@@ -285,7 +285,7 @@ class Dataset:
         """Return the data with changes, and without remarks on assumptions made while reading."""
         return replace(self, **{"remarks": (), "brief": (), "has_kitchen": True, **changes})
 
-    def remarked(
+    def with_remarks(
         self, warnings: Iterable[str], brief: Iterable[str], remarks: Sequence[str], has_kitchen: bool
     ) -> "Dataset":
         """Return the same data with remarks; ``brief`` is a summary of the warnings."""
@@ -296,7 +296,7 @@ class Dataset:
         """Return the same data with other user measures."""
         return replace(self, measures=measures)
 
-    def standing_in(self, table: StandInTable | None) -> "Dataset":
+    def with_stand_in_table(self, table: StandInTable | None) -> "Dataset":
         """Return the same data with stand-ins by a table, ``None`` for none.
 
         With stand-ins, the goals assumed are those of the first file: the others are what helps it.
@@ -321,7 +321,9 @@ class Dataset:
             return self._varied(kitchen=self.kitchen.changed(added, removed))
         return self._varied(kitchen=Kitchen(only, added, removed), kitchen_items=(), starting=False)
 
-    def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> "Dataset":
+    def with_rates_and_prices(
+        self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None
+    ) -> "Dataset":
         """Return the same data with other success rates and prices for some motions and units."""
         if rates is None and unit_prices is None:
             return self
@@ -335,7 +337,7 @@ class Dataset:
     def vary(self, changes: Changes) -> "Dataset":
         """Return the same data with another kitchen, other success rates or other prices."""
         kitchen, adding, without, rates, unit_prices, measures = changes
-        dataset = self.valued(rates, unit_prices)
+        dataset = self.with_rates_and_prices(rates, unit_prices)
         if measures is not None:
             # imports the facts for rules, which most questions do without
             from foon_asp.rules.measure import read_measures  # noqa: PLC0415

@@ -28,4 +28,4 @@ def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dat
     remarks += repeated_note(data.repeated)
     dataset = Dataset.of(data, time.perf_counter() - began)
     has_kitchen = files.kitchen is not None
-    return dataset.remarked(summarize(data.warnings), in_brief(data.warnings), remarks, has_kitchen)
+    return dataset.with_remarks(summarize(data.warnings), in_brief(data.warnings), remarks, has_kitchen)

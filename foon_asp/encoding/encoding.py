@@ -107,8 +107,8 @@ class Encoding:
         """The ``#const`` statements."""
         return [statement for statement in self.statements if statement.ast_type == ASTType.Definition]
 
-    def saying(self, constant: str) -> set[Signature]:
-        """Return the predicates that rules derive with a certain constant as argument."""
+    def deriving(self, constant: str) -> set[Signature]:
+        """Return the predicates that rules derive with a given constant as argument."""
         heads = (rule.head for rule in self.statements if rule.ast_type == ASTType.Rule)
         atoms = (
             head.atom.symbol for head in heads if head.ast_type == ASTType.Literal and _is_atom(head.atom)
@@ -497,7 +497,7 @@ def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list
             if (
                 value not in {'""', "#sup", "#inf"}
                 or name in settings_given
-                or encoding.saying(name) & others
+                or encoding.deriving(name) & others
             ):
                 continue
             if isinstance(rules, Stated) and rules.file is not None:

@@ -85,10 +85,10 @@ class Habits:
         gained: dict[int, list[str]] = {}
         kept = list(_containers(inputs, outputs))
         for node, old_contents, new_contents in kept:
-            missing = _unlike(
+            missing = _sharing_no_word(
                 old_contents - new_contents - output_names - emptied, new_contents - old_contents
             )
-            added = _unlike(new_contents - old_contents - input_names, input_names)
+            added = _sharing_no_word(new_contents - old_contents - input_names, input_names)
             if missing and not added:
                 lost[node] = missing
             elif added and not missing:
@@ -155,7 +155,7 @@ def _containers(
                 yield node, old_contents, new_contents
 
 
-def _unlike(names: Collection[str], others: Collection[str]) -> list[str]:
+def _sharing_no_word(names: Collection[str], others: Collection[str]) -> list[str]:
     """Return the names that share no word with the others, sorted."""
     words = words_in(others)
     return sorted(name for name in names if words.isdisjoint(words_in([name])))

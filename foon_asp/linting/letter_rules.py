@@ -37,7 +37,7 @@ def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
     for word in sorted(spelt, key=lambda form: (spelt[form], unicodedata.is_normalized("NFC", form))):
         usual[unicodedata.normalize("NFC", word)] = word
     for sheet, index, line in odd_lines:
-        faults = [_unseen(line), _of_two_scripts(line)]
+        faults = [_invisible_character(line), _of_two_scripts(line)]
         for word in dict.fromkeys(_WORD.findall(line)):
             if word != usual[unicodedata.normalize("NFC", word)]:
                 message = (
@@ -49,7 +49,7 @@ def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
             yield sheet.finding(message, index, column=column)
 
 
-def _unseen(line: str) -> tuple[int, str] | None:
+def _invisible_character(line: str) -> tuple[int, str] | None:
     """Return the column of the first invisible character, and the message about it."""
     for column, letter in enumerate(line, 1):
         category = unicodedata.category(letter)

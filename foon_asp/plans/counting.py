@@ -228,7 +228,7 @@ class Counting:
         return plan is not None and self._question.take(plan)
 
     def order(self, counts: Counts) -> Plan | None:
-        """Return an executable order of counts; ``None`` where there is none."""
+        """Return an executable order of counts; ``None`` if no order runs."""
         if self._problem.counts_amounts:
             return self._bulk_plan(counts)
         return self._plan({a: (n, n) for a, n in counts.items()})
@@ -354,7 +354,7 @@ def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
 
 
 def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
-    """Return units, repeats included, in an executable order; ``None`` where there is none."""
+    """Return units, repeats included, in an executable order; ``None`` if no order runs."""
     question = PlanQuestion(problem, (Objective.UNITS,), Settings(), Reporter())
     counted = Counter(units)
     return Counting(question, list(counted)).order(dict(enumerate(counted.values())))

@@ -72,7 +72,7 @@ class ExplainedRule(Value, frozen=True):
         """Return an analysed rule as a value."""
         rule, (file, line, *_) = explained.rule, explained.source
         reason = _remark(rule.reason, explained.reason_source)
-        beyond = _remark(rule.further, explained.further_source)
+        beyond = _remark(rule.nonlocality, explained.nonlocality_source)
         named = explained.use or None
         return cls(explained.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
 

@@ -305,11 +305,11 @@ def _sort_key(
 def _refuse_far_rules(program: Program) -> None:
     """Raise :class:`UserError` for a rule whose meaning depends on the items bought."""
     for rule in program.understood.rules if program.understood else ():
-        if rule.further:
+        if rule.nonlocality:
             raise UserError(
-                f"{rule.source}: {rule.further}, so what the rule says changes with the units that can be "
-                "made, and these with what is bought: no shopping list can be found under it; let it look at "
-                "units of the tree alone"
+                f"{rule.source}: {rule.nonlocality}, so what the rule says changes with the units that can "
+                "be made, and these with what is bought: no shopping list can be found under it; let it look "
+                "at units of the tree alone"
             )
 
 

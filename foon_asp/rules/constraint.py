@@ -27,7 +27,10 @@ class RuleText(NamedTuple):
 
 
 class LibraryUse(NamedTuple):
-    """A ready-made constraint with constants of its own; ``file``, and the option's text (``written``)."""
+    """A ready-made constraint with constants of its own.
+
+    ``file`` is its file, and ``written`` the text of its option.
+    """
 
     file: Path
     written: str
@@ -112,7 +115,7 @@ def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
 def find_constraint(constraint: Constraint) -> Constraint:
     """Return a constraint with the path of its file, that of a ready-made one for its name.
 
-    Raises :class:`UserError` where there is none.
+    Raises :class:`UserError` where neither exists.
     """
     if not isinstance(constraint, Path):
         return constraint

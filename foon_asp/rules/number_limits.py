@@ -109,7 +109,7 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 
 
 def _safe_magnitude(term: AST) -> int:
-    """Return a magnitude up to which values in a term cannot make it overflow, -1 where there is none."""
+    """Return a magnitude up to which values in a term cannot make it overflow, -1 if it may always."""
     return next((limit for limit in (LARGEST >> n for n in range(32)) if _size(term, limit) <= LARGEST), -1)
 
 

@@ -47,7 +47,7 @@ class StoreBuilder:
         self._database = database
         create_tables(database)
         self.copies = 0  # of units, added so far
-        self._written_units = self._sources = 0  # rows of these tables
+        self._written_units = self._sources = 0  # rows of the tables unit and source
         self.matched = [False] * len(kitchen or ())
         self._kitchen = kitchen
         self._entries: dict[LookupKey, list[int]] = {}

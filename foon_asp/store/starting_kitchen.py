@@ -30,7 +30,7 @@ class StoredStartingKitchen(StartingKitchen[int]):
         return [unit for unit, inputs in rows if o not in ids_of(inputs)]
 
     @reporting_damage
-    def granting(self, o: int) -> Iterable[int]:
+    def granting_files(self, o: int) -> Iterable[int]:
         """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
         rows = self.file.database.execute("SELECT file FROM granted WHERE node = ?", (o,))
         return [file for (file,) in rows]

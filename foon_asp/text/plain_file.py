@@ -99,7 +99,10 @@ def usual_line_end(text: str) -> str:
 
 
 def with_own_mark(text: str) -> str:
-    """Return the text to write; a text that begins with a byte order mark gets a second one."""
+    """Return the text to write to a file.
+
+    A byte order mark at its beginning belongs to the text, so the file gets another one before it.
+    """
     return f"\ufeff{text}" if text.startswith("\ufeff") else text
 
 

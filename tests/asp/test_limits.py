@@ -21,7 +21,7 @@ from foon_asp.asp import Outcome, Reporter, Settings, Status, optimum, solve
 from foon_asp.cli.main import cli as commands
 from foon_asp.cli.main import main
 from foon_asp.cli.options import begin
-from foon_asp.deadline import Deadline, LimitError, none_lost, uninterrupted
+from foon_asp.deadline import Deadline, LimitError, resend_lost_interrupts, uninterrupted
 from foon_asp.grounding import worker_process
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.processes import worker
@@ -310,13 +310,13 @@ def test_an_interrupt_in_a_destructor_comes_again(capfd: pytest.CaptureFixture[s
         Struck(KeyboardInterrupt)
         time.sleep(60)
 
-    with none_lost(), pytest.raises(KeyboardInterrupt):
+    with resend_lost_interrupts(), pytest.raises(KeyboardInterrupt):
         wait()
     assert capfd.readouterr().err == ""
     heard: list[object] = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys, "unraisablehook", heard.append)
-        with none_lost():
+        with resend_lost_interrupts():
             Struck(ValueError)
     assert len(heard) == 1
 
