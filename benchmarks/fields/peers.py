@@ -82,8 +82,8 @@ def ask_seed2lp(programs: Path, model: Path, problem: Problem, folder: Path, lim
     command += ["--mode", "minimize", "--solve", "reasoning", "--number-solution", "1"]
     command += ["--targets-as-seeds", "--accumulation"]
     said, seconds = _run(command, programs, folder, limit)
-    found = re.search(r"Optimum found\D*(\d+)|Optimal solution size\D*(\d+)", said)
-    size = int(next(filter(None, found.groups()))) if found else None
+    stated = re.search(r"Minimal size of seed set is (\d+)", said)  # those of the kitchen included
+    size = int(stated[1]) if stated else None
     return PeerAnswer(None if size is None else size - len(problem.kitchen), seconds)
 
 
