@@ -42,6 +42,7 @@ PAGES = {
     ),
     "How to": (
         "docs/questions",
+        "docs/stand-ins",
         "docs/writing-constraints",
         "docs/writing-objectives",
         "docs/plans",

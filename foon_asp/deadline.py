@@ -307,7 +307,7 @@ class Deadline:
 
 
 @contextlib.contextmanager
-def none_lost() -> Iterator[None]:
+def resend_lost_interrupts() -> Iterator[None]:
     """Resend interrupts that Python loses in a ``with`` block of the main thread.
 
     Python only reports an exception in a destructor, so an interrupt in a destructor is sent again.

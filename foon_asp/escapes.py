@@ -36,13 +36,13 @@ def encodable(text: str, encoding: str = "utf-8") -> str:
     try:
         text.encode(encoding)
     except UnicodeEncodeError:
-        return "".join(letter if _has(encoding, letter) else _code(letter) for letter in text)
+        return "".join(letter if _encodes(encoding, letter) else _escape_of(letter) for letter in text)
     except LookupError:  # no such encoding: ASCII is in all of them
         return encodable(text, "ascii")
     return text
 
 
-def _has(encoding: str, letter: str) -> bool:
+def _encodes(encoding: str, letter: str) -> bool:
     """Return whether an encoding has a letter."""
     try:
         letter.encode(encoding)
@@ -52,14 +52,14 @@ def _has(encoding: str, letter: str) -> bool:
 
 
 def _escape(match: re.Match[str]) -> str:
-    return _code(match[0])
+    return _escape_of(match[0])
 
 
 def _without_command(match: re.Match[str]) -> str:
-    return f"{match[1] or ''}{_code(match[0][-1])}"
+    return f"{match[1] or ''}{_escape_of(match[0][-1])}"
 
 
-def _code(letter: str) -> str:
+def _escape_of(letter: str) -> str:
     r"""Return the escape of a letter, ``\\uXXXX``."""
     number = ord(letter)
     if number > 0xFFFF:  # two halves, as in JSON

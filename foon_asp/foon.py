@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, Self
 
 from foon_asp.dataset import Dataset, read_dataset
-from foon_asp.dataset.items import Stays, Stock, items_of, wanted_of
-from foon_asp.dataset.names import in_python, node_ids
+from foon_asp.dataset.item_options import Stays, Stock, items_of, wanted_of
+from foon_asp.dataset.named_ids import in_python, node_ids
 from foon_asp.dataset.paths import File, Files, files
 from foon_asp.deadline import Cancel, seconds, stoppable
 from foon_asp.errors import UserError
@@ -31,7 +31,7 @@ from foon_asp.text.data_folder import STARTING, Data, find_data
 from foon_asp.text.goal_name import GoalError
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_node
-from foon_asp.text.reading import size_of, telling
+from foon_asp.text.reading import reporting_to, size_of
 from foon_asp.text.stated_amounts import StatedAmounts, counted_amounts
 from foon_asp.typed import typed
 from foon_asp.warning import warn
@@ -107,11 +107,11 @@ def load(
     with _limited(time_limit, cancel, "reading"):
         definitions = read_measures(measures)
         named = find_data(folder, () if folder else paths, *side_files)
-        with _counted(on_progress, size_of(named.network)) as tell, telling(tell):
+        with _counted(on_progress, size_of(named.network)) as tell, reporting_to(tell):
             dataset = read_dataset(named, lenient, level).measured(definitions)
             if stand_ins:
                 table = StandInTable.usual() if isinstance(stand_ins, bool) else stand_ins
-                dataset = dataset.standing_in(table)
+                dataset = dataset.with_stand_in_table(table)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
     foon = Foon(dataset, name)
     for remark in foon.warnings:
@@ -214,7 +214,9 @@ def build(
         at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
         data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(goals_from=LAST if goals is None else "", amounts=stated.settled(network))
-        dataset = Dataset.of(data).remarked((), (), (), kitchen is not None).measured(read_measures(measures))
+        dataset = (
+            Dataset.of(data).with_remarks((), (), (), kitchen is not None).measured(read_measures(measures))
+        )
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
             listed = (as_entry(node, Source("the goals", number)) for number, node in enumerate(nodes, 1))

@@ -69,7 +69,10 @@ def write_all_whole(contents: Mapping[Path, bytes]) -> None:
 
 
 def utf_8(text: str) -> bytes:
-    """Return the bytes of a text; raises :class:`UserError` for half a character, which has none."""
+    """Return a text in UTF-8.
+
+    Raises :class:`UserError` for half of a surrogate pair, which UTF-8 cannot hold.
+    """
     try:
         return text.encode()
     except UnicodeEncodeError as error:

@@ -1,7 +1,8 @@
 """E-graphs in the JSON of egraph-serialize: extraction as a task, and the greedy extractor of extraction-gym.
 
 An e-class is a fact, an e-node an action that gives its class and needs those of its children, at its cost;
-all roots are wanted. Each node counts once, which is DAG extraction. Costs are the decimals of the text. A
+all roots are wanted; where a file names none, the classes that no node has as a child. Each node counts once,
+which is DAG extraction. Costs are the decimals of the text, and 1 for a node without one. A
 node that has its own class among its children, or an infinite cost, is of no use and left out.
 
 A negative cost is a reward for a class that is reached. It is taken where its node is the only one of its
@@ -48,10 +49,13 @@ class EGraph:
             classes = {name: str(node["eclass"]) for name, node in found["nodes"].items()}
             nodes = []
             for name, node in found["nodes"].items():
-                children = tuple(dict.fromkeys(classes[child] for child in node["children"]))
-                if node["cost"] not in (None, "Infinity") and classes[name] not in children:
-                    nodes.append(ENode(name, classes[name], children, Fraction(node["cost"])))
-            return cls(file.stem, nodes, map(str, found["root_eclasses"]))
+                children = tuple(dict.fromkeys(classes[child] for child in node.get("children", ())))
+                cost = node.get("cost", "1")
+                if cost not in (None, "Infinity") and classes[name] not in children:
+                    nodes.append(ENode(name, classes[name], children, Fraction(cost)))
+            used = {child for node in nodes for child in node.children}
+            top = [eclass for eclass in dict.fromkeys(classes.values()) if eclass not in used]
+            return cls(file.stem, nodes, map(str, found.get("root_eclasses") or top))
         except (KeyError, TypeError, AttributeError) as error:
             raise ValueError(f"{file}: expected an e-graph, but {error!r}") from None
 

@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.settings import Bounded, Settings
-from foon_asp.encoding.facts import write_assisted
+from foon_asp.encoding.fact_writer import write_assisted
 from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.stated import Stated
-from foon_asp.rules.constraint import Constraint, find_constraint
+from foon_asp.rules.passed_constraint import Constraint, find_constraint
 
 # The predicates that rules may read in this question are local as motion/2 is.
 _AS_FACTS = "_by_person(U) :- motion(U,_). _takes_over(P,U) :- motion(P,M), motion(U,M), P < U."
@@ -54,7 +54,7 @@ def require_local(settings: Settings) -> None:
         if not shown.rule.local:
             raise UserError(
                 f"{shown.source}: this rule looks at units that the tree need not have "
-                f"({shown.rule.further}). "
+                f"({shown.rule.nonlocality}). "
                 "Beside a rule about who does a unit it would see those twice that a person does better: ask "
                 "it about units that are used, or leave one of the two out"
             )

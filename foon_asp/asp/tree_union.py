@@ -3,6 +3,7 @@
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble
@@ -11,7 +12,7 @@ from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
 from foon_asp.asp.solver import solve
-from foon_asp.encoding.facts import write_avoided, write_in_all, write_objectives, write_unseen
+from foon_asp.encoding.fact_writer import write_avoided, write_in_all, write_objectives, write_unseen
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
 from foon_asp.hypergraph.reduction import at_costs, reduce_under_rules
@@ -46,7 +47,8 @@ def tree_union(
 
     With ``worse`` 0, these are the optimal trees; else all trees without redundant units whose first
     objective is worse than the best value by at most this share of it. Each search finds a tree that adds a
-    unit to those of some tree, or takes one from those of every tree; the last one proves that there is none.
+    unit to those of some tree, or takes one from those of every tree; the last one proves that no such tree
+    is left.
     Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for rules with ``worse``.
     """
     best = solve(problem, objectives, settings, reporter)
@@ -120,6 +122,15 @@ class _Union:
             return prepared.units
         return tuple(sorted({*kept, *self._in_some}))
 
+    @cached_property
+    def _opt_mode(self) -> str:
+        """The mode of the search: where no cost is rounded, trees above the cost of the best do not count."""
+        scales, by = self._prepared.scales, self._prepared.levels
+        if self._worse or scales.rounded is not None:
+            return "opt"
+        assert self._best.units is not None
+        return ",".join(["opt", *(str(scales.weight(objective, self._best.units)) for objective in by)])
+
     def _limit(self) -> Fraction:
         """Return a value of the first objective just worse than the values of all trees that count."""
         first = self._prepared.levels[0]
@@ -131,12 +142,12 @@ class _Union:
     def _next(self, question: str) -> bool | None:
         """Find another tree that changes the result, and add its units.
 
-        Returns ``False`` where there is none, ``None`` at a limit.
+        Returns ``False`` if no tree does, ``None`` at a limit.
         """
         problem, by = self._prepared.problem, self._prepared.levels
         while True:
             text = write_objectives(by) + question + self._settled
-            ended = self._prepared.run(text, encodings=(question_encoding("union.lp"),))
+            ended = self._prepared.run(text, self._opt_mode, encodings=(question_encoding("union.lp"),))
             if not ended.exhausted:
                 return None
             if ended.units is None:

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from foon_asp.batch.batch_question import BatchQuestion
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.comparison.many import makeable
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.item_options import items_of
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import ContainerRule, Problem
@@ -34,7 +34,7 @@ class Opening:
     def __call__(self, quiet: bool = True) -> "BatchData":
         """Return the data, opened; ``quiet`` suppresses the warnings, which the first process has shown."""
         with contextlib.redirect_stderr(io.StringIO()) if quiet else contextlib.nullcontext():
-            return BatchData(options.read_dataset(**dict(self.named)))
+            return BatchData(shared_options.read_dataset(**dict(self.named)))
 
 
 class BatchData:
@@ -45,7 +45,7 @@ class BatchData:
 
     def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
         """Return the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
-        dataset = self._with(kitchen)
+        dataset = self._dataset_with_kitchen(kitchen)
         if word == "@makeable":
             problem = dataset.problem((0,), containers, everything=True)
             return [str(problem.network.objects[goal]) for goal in makeable(problem)]
@@ -62,13 +62,13 @@ class BatchData:
 
     def problem(self, question: BatchQuestion) -> Problem:
         """Return the problem of a question; of a large store, the relevant part is read at its first use."""
-        dataset = self._with(question.kitchen)
+        dataset = self._dataset_with_kitchen(question.kitchen)
         files = question.stock, question.stays
         stock, stays = (None if file is None else NamedPath(file) for file in files)
         items = items_of(dataset, question.items, stock, stays)
         return dataset.nearby(dataset.goals(question.goals), question.containers, items)
 
-    def _with(self, kitchen: str | None) -> Dataset:
+    def _dataset_with_kitchen(self, kitchen: str | None) -> Dataset:
         """Return the dataset with another kitchen: a file, or ``@starting``; ``None`` is its own kitchen."""
         if kitchen is not None and kitchen not in self._datasets:
             dataset = self._datasets[None]

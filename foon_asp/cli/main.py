@@ -12,10 +12,10 @@ import click
 from foon_asp import __version__
 from foon_asp.cli.ctrl_c import end_at_ctrl_c, raise_at_ctrl_c
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.cli.output import drop_output, safe_streams, say_remarks
-from foon_asp.cli.verbs import FIRST, FOR_PROGRAMS, SHELL_REQUEST, VERBS, verb_command, write_verbs
+from foon_asp.cli.output import drop_output, safe_streams, show_remarks
+from foon_asp.cli.verbs import FIRST_VERBS, FOR_PROGRAMS, SHELL_REQUEST, VERBS, verb_command, write_verbs
 from foon_asp.cli.whole_process import BEGAN, keep, leave
-from foon_asp.deadline import LimitError, none_lost
+from foon_asp.deadline import LimitError, resend_lost_interrupts
 from foon_asp.errors import FoonWarning, UserError
 from foon_asp.escapes import escaped
 
@@ -62,7 +62,7 @@ class _Verbs(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        write_verbs(formatter, "Verbs that most people need", FIRST)
+        write_verbs(formatter, "Verbs that most people need", FIRST_VERBS)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> "list[CompletionItem[str]]":
         from click.shell_completion import CompletionItem
@@ -90,15 +90,15 @@ def cli() -> None:
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit with the documented code."""
     words = sys.argv[1:] if arguments is None else arguments
-    with safe_streams(), none_lost(), warnings.catch_warnings():
+    with safe_streams(), resend_lost_interrupts(), warnings.catch_warnings():
         warnings.simplefilter("always", FoonWarning)
         warnings.showwarning = _warned
-        say_remarks("--quiet" not in words[: words.index("--") if "--" in words else None])
+        show_remarks("--quiet" not in words[: words.index("--") if "--" in words else None])
         code = _run(words, BEGAN if arguments is None else None)
         try:
             sys.stdout.flush()
         except (OSError, UserError) as error:
-            code = _ended(error, debug=False)
+            code = _report_error(error, debug=False)
         if code is not ExitCode.DONE:
             drop_output()
     if arguments is None:
@@ -118,7 +118,7 @@ def _run(words: list[str], began: float | None) -> ExitCode:
     try:
         try:
             if SHELL_REQUEST in os.environ:
-                from foon_asp.cli.completion import answer_shell
+                from foon_asp.cli.completion_command import answer_shell
 
                 return answer_shell(cli, os.environ[SHELL_REQUEST])
             ended = cli.main(args=words, prog_name="foon-asp", standalone_mode=False, obj=began)
@@ -127,15 +127,15 @@ def _run(words: list[str], began: float | None) -> ExitCode:
             if began is not None:
                 end_at_ctrl_c()
     except Exception as error:
-        return _ended(error, "--debug" in words)
+        return _report_error(error, "--debug" in words)
     except KeyboardInterrupt as error:
-        return _ended(error, debug=False)
+        return _report_error(error, debug=False)
 
 
-def _ended(error: BaseException, debug: bool) -> ExitCode:
+def _report_error(error: BaseException, debug: bool) -> ExitCode:
     """Report an error on stderr, and return its exit code."""
     keep(error)  # with the frames of its traceback, whose memory would take long to free
-    say_remarks(True)
+    show_remarks(True)
     if debug and not isinstance(error, click.ClickException | click.Abort | KeyboardInterrupt):
         traceback.print_exception(error)
     if isinstance(error, BrokenPipeError):  # the reader of our output has ended, as `head` does

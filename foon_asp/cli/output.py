@@ -105,7 +105,7 @@ def safe_streams() -> Iterator[None]:
         sys.stdout, sys.stderr = out, err
 
 
-def say_remarks(shown: bool) -> None:
+def show_remarks(shown: bool) -> None:
     """Show, or drop, all text that is written to standard error from now on."""
     cast(SafeStream, sys.stderr).quiet = not shown
 

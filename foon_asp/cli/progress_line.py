@@ -17,7 +17,7 @@ from foon_asp.asp.reporter import Reporter
 from foon_asp.cli.output import console, say
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective
-from foon_asp.text.reading import size_of, telling
+from foon_asp.text.reading import reporting_to, size_of
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -153,7 +153,7 @@ def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
             elif time.monotonic() - began >= _DELAY_SECONDS:
                 advance = bars.enter_context(_bar(word, total, done))
 
-        with telling(report):
+        with reporting_to(report):
             yield
 
 

@@ -8,8 +8,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from foon_asp.dataset.data_source import Source
 from foon_asp.dataset.kitchen import Kitchen
-from foon_asp.dataset.names import (
+from foon_asp.dataset.named_ids import (
     NamesAndUnits,
     changed_prices,
     changed_rates,
@@ -19,7 +20,6 @@ from foon_asp.dataset.names import (
     node_ids,
 )
 from foon_asp.dataset.prices import NO_PRICES, DataPrices
-from foon_asp.dataset.source import Source
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -51,11 +51,11 @@ from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
 
 if TYPE_CHECKING:  # plain answers do not need it
-    from foon_asp.proof.verify import Subject
+    from foon_asp.proof.verifier import Subject
     from foon_asp.store.unit_distances import UnitDistances
 
 
-FIRST = 1000
+FIRST_UNITS = 1000
 """The number of units that are read at first, about, of a store for goals that can need more."""
 
 
@@ -285,7 +285,7 @@ class Dataset:
         """Return the data with changes, and without remarks on assumptions made while reading."""
         return replace(self, **{"remarks": (), "brief": (), "has_kitchen": True, **changes})
 
-    def remarked(
+    def with_remarks(
         self, warnings: Iterable[str], brief: Iterable[str], remarks: Sequence[str], has_kitchen: bool
     ) -> "Dataset":
         """Return the same data with remarks; ``brief`` is a summary of the warnings."""
@@ -296,7 +296,7 @@ class Dataset:
         """Return the same data with other user measures."""
         return replace(self, measures=measures)
 
-    def standing_in(self, table: StandInTable | None) -> "Dataset":
+    def with_stand_in_table(self, table: StandInTable | None) -> "Dataset":
         """Return the same data with stand-ins by a table, ``None`` for none.
 
         With stand-ins, the goals assumed are those of the first file: the others are what helps it.
@@ -321,7 +321,9 @@ class Dataset:
             return self._varied(kitchen=self.kitchen.changed(added, removed))
         return self._varied(kitchen=Kitchen(only, added, removed), kitchen_items=(), starting=False)
 
-    def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> "Dataset":
+    def with_rates_and_prices(
+        self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None
+    ) -> "Dataset":
         """Return the same data with other success rates and prices for some motions and units."""
         if rates is None and unit_prices is None:
             return self
@@ -335,7 +337,7 @@ class Dataset:
     def vary(self, changes: Changes) -> "Dataset":
         """Return the same data with another kitchen, other success rates or other prices."""
         kitchen, adding, without, rates, unit_prices, measures = changes
-        dataset = self.valued(rates, unit_prices)
+        dataset = self.with_rates_and_prices(rates, unit_prices)
         if measures is not None:
             # imports the facts for rules, which most questions do without
             from foon_asp.rules.measure import read_measures  # noqa: PLC0415
@@ -389,7 +391,7 @@ class Dataset:
         :class:`UserError` is raised if a stated digest is not true. A starting kitchen is the one for
         ``goals``.
         """
-        from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
+        from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
         source, stocked = self.source, self.for_goals(goals)
         rates = None if self.unrated else self.rates
@@ -420,7 +422,7 @@ class Dataset:
 
     def subject_with_stand_ins(self, goals: Sequence[int], containers: str, everything: bool) -> "Subject":
         """Return the subject of a certificate about a network with the stand-ins for goals."""
-        from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
+        from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
         problem = self.problem(goals, containers, everything)
         values = problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
@@ -501,7 +503,7 @@ class Dataset:
         return ask(dataset._data_of(network), _local_ids(network, goals), containers, self, items)
 
     def nearby(
-        self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = FIRST
+        self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = FIRST_UNITS
     ) -> Problem:
         """Return the problem of goals; of a store, only ``first`` units near the goals are read now.
 

@@ -147,7 +147,10 @@ def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: se
 def least_with_more(
     costs: Costs, order: Sequence[Objective], extra_units: int = 1
 ) -> tuple[int | Fraction, ...]:
-    """Return a lower bound on the keys of trees with more units than a tree of these ``costs`` or worse."""
+    """Return a lower bound on the keys of trees that cost at least ``costs`` and have more units.
+
+    ``extra_units`` is how many more units they have at least.
+    """
     least_costs = dict(zip(order, costs.key(order), strict=True))
     least_costs[Objective.UNITS] += extra_units
     return tuple(least_costs.values())

@@ -77,7 +77,7 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
         dataset = Dataset.of(_at_level(dataset.data, level))
         store.close()
     dataset.source.seconds = time.perf_counter() - began
-    return dataset.remarked(
+    return dataset.with_remarks(
         summarize(warnings), in_brief(warnings), remarks, files.kitchen is not None or store.has_kitchen
     )
 

@@ -25,7 +25,7 @@ from foon_asp.hypergraph.optimality_proof import Branch, Cases, CostFixing, Hope
 
 _WHOLE = 1e-6  # integrality tolerance of LP values
 
-_PACKING_LENGTH = 5000  # of these, counted for each cost partition: limits the depth of the branching
+_PACKING_LENGTH = 5000  # objects and actions, counted per cost partition: limits the branching depth
 
 Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
 

@@ -2,7 +2,7 @@
 
 An object that every derivation of another object makes is a *landmark* of it. An add effect that is a
 landmark of the action's preconditions was true before, so the action never achieves it first. Without these
-add effects the same derivations remain, and far fewer actions cross a cut: those that undo others do not.
+add effects the same derivations remain, and fewer actions cross a cut: actions that only undo others do not.
 """
 
 from collections import deque

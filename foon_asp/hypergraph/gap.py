@@ -72,5 +72,5 @@ class Gap:
         return replace(self, proved=True)
 
 
-# A stage yields each gap that it comes to, and returns the last.
+# A stage yields each gap that it reaches, and returns the last.
 Stage = Generator[Gap, None, Gap]

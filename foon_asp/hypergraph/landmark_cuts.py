@@ -17,9 +17,9 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 class WeightedCut(NamedTuple):
     """A cut with its landmark ``members``, its weight, and the cheapest landmark action.
 
-    ``weight`` is the reduced cost of the ``cheapest`` action. Cuts form chains: each landmark action of the
-    cut ``after`` this one needs an object of that cut, so that cut's objects belong to this cut as well;
-    ``own`` are the other objects.
+    ``weight`` is the reduced cost of the ``cheapest`` action. Cuts form chains: every landmark action of
+    the cut ``after`` needs an object of this cut. So this cut includes the objects of ``after``; ``own``
+    are its other objects.
     """
 
     own: frozenset[int]

@@ -106,7 +106,11 @@ class Rules(Protocol):
     """Rules on derivations that neither targets nor limits express."""
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        """Return by rule the actions excluded by the used actions, where ``without`` are excluded."""
+        """Return by rule the barred actions.
+
+        No derivation with the used actions and none of ``without`` that keeps to the rule has a barred
+        action.
+        """
 
     def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
         """Return actions of a derivation that together break a rule; empty where it keeps to all rules."""

@@ -157,7 +157,8 @@ def any_within_limit(
 ) -> Limited | None:
     """Search for any tree whose units count at most ``max_count`` together, by minimizing the count.
 
-    Returns ``Limited(None)`` where a bound proves that there is none, ``None`` where nothing is found out.
+    Returns ``Limited(None)`` where a bound proves that no tree is within the limit, ``None`` where nothing is
+    found out.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
     limit = units_cost.beyond * (max_count + 1)

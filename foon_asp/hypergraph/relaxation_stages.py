@@ -64,7 +64,7 @@ def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
 
 
 def follow_solution(task: Task, gap: Gap, shared: SharedCosts, looks: int) -> Stage:
-    """Look for better trees by an LP solution, with so many looks at each candidate, and fix by it."""
+    """Look for better trees by an LP solution, and fix by it; ``looks`` is the budget of each candidate."""
     costs, graph = task.costs, task.graph
     assert costs is not None
     used = {action for action, share in shared.shares.items() if share > _USED} | gap.incumbent

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from foon_asp.network import Network, ObjectNode
 
 _STEM, _SHORTEST = 4, 3  # letters by which words count as one: wrapped, wrapping
-_NOTHING: frozenset[str] = frozenset()
+_NO_NAMES: frozenset[str] = frozenset()
 
 
 class Changes(NamedTuple):
@@ -27,7 +27,7 @@ class Changes(NamedTuple):
 
 def content_names(node: ObjectNode) -> AbstractSet[str]:
     """Return the names of the contents of a node."""
-    return _NOTHING if not node.contents else {item for _, items in node.contents for item in items}
+    return _NO_NAMES if not node.contents else {item for _, items in node.contents for item in items}
 
 
 def mentioned(nodes: Collection[ObjectNode]) -> set[str]:
@@ -85,10 +85,10 @@ class Habits:
         gained: dict[int, list[str]] = {}
         kept = list(_containers(inputs, outputs))
         for node, old_contents, new_contents in kept:
-            missing = _unlike(
+            missing = _sharing_no_word(
                 old_contents - new_contents - output_names - emptied, new_contents - old_contents
             )
-            added = _unlike(new_contents - old_contents - input_names, input_names)
+            added = _sharing_no_word(new_contents - old_contents - input_names, input_names)
             if missing and not added:
                 lost[node] = missing
             elif added and not missing:
@@ -155,7 +155,7 @@ def _containers(
                 yield node, old_contents, new_contents
 
 
-def _unlike(names: Collection[str], others: Collection[str]) -> list[str]:
+def _sharing_no_word(names: Collection[str], others: Collection[str]) -> list[str]:
     """Return the names that share no word with the others, sorted."""
     words = words_in(others)
     return sorted(name for name in names if words.isdisjoint(words_in([name])))

@@ -1,4 +1,4 @@
-"""Places: an object in something that does not contain it, or that is not there."""
+"""Rules about places: objects in containers that do not contain them, or that are not there."""
 
 from collections.abc import Collection, Iterator
 
@@ -26,7 +26,7 @@ def unheld(context: Context) -> Iterator[Diagnostic]:
 
 
 def unheld_nodes(side: Side, habits: Habits) -> Faults:
-    """Yield the one object that is in a container, and is not among its contents."""
+    """Yield each object that is in a container whose contents do not list it, if it is the only one."""
     for holder in side.nodes:
         contents = content_names(holder)
         if not contents or holder.label in habits.ingredients:

@@ -84,7 +84,7 @@ class StartingKitchen(ABC, Generic[File]):
         """Return the units that make a node out of others."""
 
     @abstractmethod
-    def granting(self, o: int) -> Iterable[File]:
+    def granting_files(self, o: int) -> Iterable[File]:
         """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
 
     @abstractmethod
@@ -101,7 +101,9 @@ class StartingKitchen(ABC, Generic[File]):
         A goal is not assumed where a unit makes it.
         """
         goals = [goal for goal in goals if goal in self.nodes and self.makers(goal)]
-        kitchens = {file: self._nodes_of_file(file, goals) for goal in goals for file in self.granting(goal)}
+        kitchens = {
+            file: self._nodes_of_file(file, goals) for goal in goals for file in self.granting_files(goal)
+        }
         added = {o for kitchen in kitchens.values() for o in kitchen}
         lacking = set()
         for goal in goals:
@@ -157,7 +159,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         inputs = self._network.inputs
         return [unit for unit in self._network.producers[o] if o not in inputs[unit]]
 
-    def granting(self, o: int) -> Sequence[str]:
+    def granting_files(self, o: int) -> Sequence[str]:
         """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
         return self._granting.get(o, ())
 

@@ -1,10 +1,11 @@
-"""Policies with retries: follow a tree, and after so many failed executions another one.
+"""Policies with retries: follow a tree, and after a number of failed executions another one.
 
-An execution of a unit succeeds with its rate, whatever happened before, and what is there stays there. A
-failed execution changes nothing, but only so many failures are allowed in a run. A policy chooses the next
-unit by what is there and by how many failures are left. Of all policies over the units of some trees, the
-greatest chance is found by dynamic programming over what is there, in which a unit that every remaining way
-needs is executed first: all its failures come in any successful run, so to know them earlier is never worse.
+An execution of a unit succeeds with its rate, whatever happened before, and available nodes stay available.
+A failed execution changes nothing, but a run may have only a limited number of failures. A policy chooses
+the next unit by the available nodes and by the failures left. Of all policies over the units of some trees,
+the greatest chance is found by dynamic programming over the available nodes, in which a unit that all
+remaining trees need is executed first: a successful run has to bear its failures anyway, so to know them
+earlier is never worse.
 """
 
 import heapq
@@ -18,14 +19,14 @@ from foon_asp.problem import Problem
 
 MAX_STATES = 10_000  # of the dynamic program, some seconds; thirteen bundled goals need fewer than 3,000
 _MAX_DEPTH = 150  # units, one of which is added by each call of the dynamic program
-_MAX_POLICIES = 300  # that are compared; each is evaluated exactly
+_MAX_POLICIES = 300  # the policies compared; each is evaluated exactly
 
 State = frozenset[int]
 """The object nodes that are there, by id, without the kitchen."""
 
 
 class PolicyBranch(NamedTuple):
-    """A tree to follow, by unit ids in an order that executes, until so many executions failed."""
+    """A tree to follow, by unit ids in an order that executes, and the failures that end it."""
 
     units: tuple[int, ...]
     failures: int

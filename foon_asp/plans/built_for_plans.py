@@ -35,6 +35,6 @@ def require_rules_of_plans(program: Program) -> None:
     if rules is not None and not rules.local:
         rule = next(rule for rule in rules.rules if not rule.local)
         raise UserError(
-            f"{rule.source}: this rule looks at more than the units of a plan ({rule.further}), which is "
+            f"{rule.source}: this rule looks at more than the units of a plan ({rule.nonlocality}), which is "
             "not built for items that are used up"
         )

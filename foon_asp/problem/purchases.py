@@ -33,8 +33,8 @@ class Purchases:
     """A question about what to buy, as one about a tree.
 
     ``problem`` has a unit more for each ware, which makes it out of nothing. Under ``objectives`` its best
-    tree has the cheapest purchases, of these the fewest, of these the fewest second choices, and the best
-    tree by the objectives of the question.
+    tree has the cheapest purchases; ties are broken by fewer purchases, by fewer second choices, and by the
+    objectives of the question.
     """
 
     def __init__(

@@ -119,7 +119,7 @@ class Shop:
         return o in self._problem.goals or not names.isdisjoint(self._dishes)
 
     def is_second_choice(self, o: int) -> bool:
-        """Return whether lists should avoid a node: one that units make, except vessels, or a mixture."""
+        """Return whether lists should avoid a node: a mixture, or a node that is not plain."""
         return not self._is_plain(o) or len(self._problem.network.objects[o].ingredients) > 1
 
     def _is_plain(self, o: int) -> bool:

@@ -61,15 +61,15 @@ def share(
     A process that dies, or exceeds the ``seconds`` of its task, is replaced by another one. The time of the
     first task of a process starts once ``begin`` has returned in it.
     """
-    first, remaining, messages = packed(begin), iter(tasks), _Messages()
+    packed_begin, remaining, messages = packed(begin), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
     started = 0
     try:
         for task in islice(remaining, jobs):
-            workers[started] = _Worker(first, task, started, messages)
+            workers[started] = _Worker(packed_begin, task, started, messages)
             started += 1
         while workers:
-            number, (kind, value) = _next(workers, messages)
+            number, (kind, value) = _next_message(workers, messages)
             worker = workers.get(number)
             if worker is None:  # it was killed before its message was read
                 continue
@@ -83,7 +83,7 @@ def share(
             for task in islice(remaining, 1):
                 if kind == "lost":
                     del workers[number]
-                    workers[started] = _Worker(first, task, started, messages)
+                    workers[started] = _Worker(packed_begin, task, started, messages)
                     started += 1
                 else:
                     worker.ask(task, seconds(task))
@@ -101,7 +101,7 @@ _Message = tuple[str, Any]  # its kind (ready, done, raised, lost) and value
 _Messages = SimpleQueue[tuple[int, _Message]]  # with the number of the process that sent it
 
 
-def _next(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tuple[int, _Message]:
+def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tuple[int, _Message]:
     """Wait for a message, and return it with the number of its worker.
 
     A worker that died or exceeds its time has the message ``lost``.
@@ -122,13 +122,13 @@ class _Worker(PythonProcess, Generic[Task]):
     ``end_by`` is a time of the monotonic clock, or ``None``.
     """
 
-    def __init__(self, first: bytes, task: Task, number: int, messages: _Messages) -> None:
+    def __init__(self, packed_begin: bytes, task: Task, number: int, messages: _Messages) -> None:
         super().__init__("foon_asp.processes.pool", "work is shared")
         self.task = task
         self.is_late = False
         self.end_by: float | None = None
         self.start_thread(
-            write_if_open, self._out, first + packed(task)
+            write_if_open, self._out, packed_begin + packed(task)
         )  # waits until the process has started
         self.start_thread(_listen, self._in, number, messages)
 

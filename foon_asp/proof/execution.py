@@ -67,7 +67,7 @@ def _execution_of(
 
 @lru_cache(maxsize=4)
 def _by_the_rule(rule: ContainerRule, utensils: frozenset[str]) -> Callable[[FunctionalUnit], Execution]:
-    """Return a function as above, the same one for all trees that are compared or checked one by one."""
+    """Return the execution function under the plain rule of docs/plans.md, one for all checked trees."""
     return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None, {}))
 
 

@@ -93,7 +93,7 @@ def waits(replay: Replay) -> Iterator[set[int]]:
 
 
 def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
-    """Return, for each copy that several steps need and leave there, the positions of these steps.
+    """Return, for each copy that several steps need and do not use up, the positions of the steps.
 
     A copy is made by a step or in the stock: nodes that are not consumable, and labels that ``is_free``
     accepts, always have another copy.

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.proof.constraint import Barred, Meaning, Units
+from foon_asp.proof.rule_meaning import Barred, Meaning, Units
 
 
 class Limit(NamedTuple):
@@ -61,7 +61,10 @@ class Ruled:
         self.limits.update((len(meanings) + number, Limit(*limit)) for number, limit in enumerate(several))
 
     def bars(self, used: Units, without: Units) -> dict[int, Units]:
-        """Return by constraint the units excluded by the used units, where ``without`` are excluded."""
+        """Return by constraint the barred units.
+
+        No tree with the used units and none of ``without`` has a barred unit.
+        """
         return {number: barred(used, without) for number, barred in self.barred.items()}
 
     def fault(self, units: Units, others: Units) -> str | None:

@@ -3,16 +3,16 @@
 from collections import Counter
 from collections.abc import Iterator
 from enum import StrEnum
-from os import PathLike
 from pathlib import Path
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 from foon_asp.dataset import read_dataset
+from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
-from foon_asp.foon import Foon, load
+from foon_asp.foon import Foon
 from foon_asp.network import Edit, FunctionalUnit, Network, ObjectNode, StandInTable, counted
-from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
-from foon_asp.questions.posing import Command
+from foon_asp.questions.contract import TABLES, Kind, Option, question
+from foon_asp.questions.posing import Command, the_data
 from foon_asp.questions.result import ENDINGS, Result
 from foon_asp.questions.stand_in import NodeEdit
 from foon_asp.results.document import Unserialized
@@ -66,11 +66,9 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
         nodes: The nodes, in the order of the recipe.
 
     Example:
-        >>> egg = foon_asp.build([("boil", "egg; whole", "egg; boiled; on [plate]")])
-        >>> other = foon_asp.build([("boil", "egg; whole", "egg; boiled; in [plate]")])
-        >>> aligned = foon_asp.align(egg, other)
-        >>> [(str(node.match), str(node.nearest)) for node in aligned.nodes]
-        [('known', 'None'), ('one edit', 'egg; boiled; in [plate]')]
+        >>> aligned = foon_asp.align(foon_asp.load(), to=foon_asp.load())
+        >>> aligned.in_network, aligned.one_edit, aligned.new, str(aligned.nodes[0].match)
+        (418, 0, 0, 'known')
     """
 
     ROWS: ClassVar[str] = "nodes"
@@ -113,16 +111,14 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
             yield from ("", "new:", *(f"  {row.node}" for row in new_nodes))
 
 
-def _posed(command: Command, to: Path) -> tuple[Foon, Foon]:
-    """Pose the recipe that the command names, and the network to compare it with."""
+def _posed(command: Command) -> tuple[Foon]:
+    """Return the recipe that the command names."""
     if not command.names_data:
         raise UserError("align what? name a recipe: foon-asp align RECIPE --to NETWORK")
-    with command.reading():
-        return Foon(command.dataset, "the recipe"), Foon(read_dataset(find_data(None, [to])), str(to))
+    return the_data(command)
 
 
 @question(
-    Option("to", "The network whose words count.", Kind.FILE, Role.PROBLEM, metavar="NETWORK"),
     formats=(*TABLES, "foon"),
     suffixes=Aligned.SUFFIXES,
     pose=_posed,
@@ -134,28 +130,35 @@ def _posed(command: Command, to: Path) -> tuple[Foon, Foon]:
     A node is known, one edit of the table of stand-ins away from a known one (docs/stand-ins.md), or new.
     With -o FILE.txt, the recipe is written in the words of the network: nodes that differ in a word are
     replaced (on for in, a label that is spelled alike or listed as similar); others stay.
+
+    Exits with 0, whatever is new.
     """,
 )
-def align(data: Foon, to: Foon | str | PathLike[str]) -> Aligned:
+def align(
+    data: Foon, *, to: Annotated[File | Foon | None, Option(kind=Kind.FILE, metavar="NETWORK")] = None
+) -> Aligned:
     """Compare the nodes of a recipe with those of a network: known, one edit away, or new.
 
     Parameters:
         data: The recipe. Its table of stand-ins is used, the usual one if it has none.
-        to: The network, or its path.
+        to: The network whose words count, or its path.
 
     Returns:
         The nodes with the nearest ones of the network.
 
     Raises:
-        UserError: for a file that cannot be read.
+        UserError: for a file that cannot be read, or without a network.
 
     Example:
         >>> foon = foon_asp.load()
-        >>> foon_asp.align(foon, foon).new
+        >>> foon_asp.align(foon, to=foon).new
         0
     """
+    if to is None:
+        raise UserError("align with what? name a network: --to NETWORK")
     recipe = data.dataset.data.network
-    other = (to if isinstance(to, Foon) else load(to)).dataset.data.network
+    read = to.dataset if isinstance(to, Foon) else read_dataset(find_data(None, [Path(to)]))
+    other = read.data.network
     table = data.dataset.stand_ins or StandInTable.usual()
     prices = NodePrices(other, table)
     nearest = {node: _one_edit_away(node, other, table, prices) for node in recipe.objects}

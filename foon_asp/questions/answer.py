@@ -475,7 +475,7 @@ def answered(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter | None = None
 ) -> Answer:
     """Solve a problem; the answer includes the seconds that reading took, if known."""
-    return _noted(find(problem, objectives, settings, reporter or caller().reporter))
+    return _answer_of(find(problem, objectives, settings, reporter or caller().reporter))
 
 
 def answered_under(
@@ -498,16 +498,16 @@ def answered_under(
 
         outcome = solve_nearby_under(problem, objectives, settings, reporter)
     if outcome is not None and (outcome.proof is not None or outcome.stopped):
-        return _noted(outcome)
+        return _answer_of(outcome)
     try:
         answer = _answered_reading(problem, objectives, settings, reporter)
     except KeyboardInterrupt:
         if outcome is None:
             raise
         settings.begun.interrupt()
-        return _noted(outcome._replace(stopped=settings.begun.stopped))
+        return _answer_of(outcome._replace(stopped=settings.begun.stopped))
     if outcome is not None and answer.status is Status.UNKNOWN:  # there is a tree already
-        return _noted(outcome._replace(stopped=answer.stopped))
+        return _answer_of(outcome._replace(stopped=answer.stopped))
     return answer
 
 
@@ -524,7 +524,7 @@ def _answered_reading(
             order = levels(tuple(objectives))
             least = least_with_more(unconstrained.costs, order)
             if partial.status is Status.OPTIMAL and partial.costs and partial.costs.key(order) <= least:
-                return _noted(partial)
+                return _answer_of(partial)
             try:
                 with settings.begun.watched("reading"):  # and not late, since there may be a tree already
                     problem = asked_with(problem, settings, objectives)
@@ -534,7 +534,7 @@ def _answered_reading(
                 settings.begun.interrupt()
                 bounds = {order[0]: unconstrained.costs.measure(order[0])}
                 partial = partial._replace(status=Status.FEASIBLE, proof=None, stopped=settings.begun.stopped)
-                return _noted(partial._replace(bounds=bounds))
+                return _answer_of(partial._replace(bounds=bounds))
     return answered(asked_with(problem, settings, objectives), objectives, settings, reporter)
 
 
@@ -545,13 +545,13 @@ def answered_nearby(nearby: "Nearby", objectives: Sequence[Objective], settings:
     """
     outcome = solve_nearby(nearby, objectives, settings, caller().reporter)
     if outcome is not None:
-        return _noted(outcome)
+        return _answer_of(outcome)
     with reading():
         problem = nearby.whole()
     return answered_under(problem, objectives, settings)
 
 
-def _noted(outcome: Outcome) -> Answer:
+def _answer_of(outcome: Outcome) -> Answer:
     """Return the answer for an outcome; its ``seconds`` include the time of reading, if known."""
     read = caller().read_seconds
     if read is not None:

@@ -22,7 +22,7 @@ from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import a_plan
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree, posed_tree, read_answer
-from foon_asp.questions.verdict import Stop, found_of, verdict_lines
+from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import ListedConstraint, UsedUpRun
@@ -77,7 +77,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         foreign = tuple(n for n, unit in enumerate(map(problem.network.unit_id, tree), 1) if unit is None)
         checked = cls(
             **head_of(problem, objectives),
-            **found_of(tree, simulation),
+            **simulation_fields(tree, simulation),
             costs=None if foreign else problem.costs(tree.ids),
             not_in_network=foreign,
             **fields,

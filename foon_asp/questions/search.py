@@ -16,7 +16,7 @@ from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import COUNT, DEPTH, TIES, search_settings, searched
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
-from foon_asp.questions.verdict import Stop, found_of, verdict_lines
+from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
@@ -89,7 +89,7 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
             package=search.package,
             ended=ended,
             stuck_at=stuck_at,
-            **(_NO_TREE if tree is None or simulation is None else found_of(tree, simulation)),
+            **(_NO_TREE if tree is None or simulation is None else simulation_fields(tree, simulation)),
             costs=None if tree is None else problem.costs(ids),
             units=None if tree is None else steps_of(problem, ids),
         )

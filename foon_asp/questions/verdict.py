@@ -57,7 +57,7 @@ class SimulationFields(TypedDict):
     used_up: UsedUpRun | None
 
 
-def found_of(tree: Tree, simulation: Simulation) -> SimulationFields:
+def simulation_fields(tree: Tree, simulation: Simulation) -> SimulationFields:
     """Return the fields of a result that are about the simulation of a tree."""
     return {
         "verdict": simulation.verdict,

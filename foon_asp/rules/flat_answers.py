@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from clingo.ast import ComparisonOperator
 from clingo.symbol import Number, String, Symbol
 
-from foon_asp.encoding.facts import millionths, quote, source_names
+from foon_asp.encoding.fact_writer import millionths, quote, source_names
 from foon_asp.escapes import encodable
 from foon_asp.problem import Problem
 from foon_asp.rules.clause import Signature, compared
@@ -200,14 +200,14 @@ class FlatAnswers:
             self._step(disjunct.items, (), self._collecting(head, rows))(self._values)
         return rows
 
-    def _step(self, items: Sequence[Item], bound: Iterable[Variable], then: _Step) -> _Step:
-        """Return a function that searches for values under which the items and ``then`` hold."""
+    def _step(self, items: Sequence[Item], bound: Iterable[Variable], next_step: _Step) -> _Step:
+        """Return a function that searches for values under which the items and ``next_step`` hold."""
         bound_so_far = set(bound)
         before = []
         for item in items:
             before.append(frozenset(bound_so_far))
             bound_so_far.update(bound_by([item]))
-        pure = then is _success
+        pure = next_step is _success
         for position, so_far in reversed(list(enumerate(before))):
             item = items[position]
             leads_to = item.terms[-1] if isinstance(item, Fact) and len(item.terms) > 1 else None
@@ -217,24 +217,24 @@ class FlatAnswers:
                 and bound_by([item]) - so_far == {leads_to}
                 and _is_apart(items[position + 1 :], so_far)
             ):
-                then = _remembered(leads_to, then)
-            then = self._item_step(item, so_far, then)
-        return then
+                next_step = _remembered(leads_to, next_step)
+            next_step = self._item_step(item, so_far, next_step)
+        return next_step
 
-    def _item_step(self, item: Item, bound: frozenset[Variable], then: _Step) -> _Step:
-        """Return a step that searches for values under which one item and ``then`` hold."""
+    def _item_step(self, item: Item, bound: frozenset[Variable], next_step: _Step) -> _Step:
+        """Return a step that searches for values under which one item and ``next_step`` hold."""
         if isinstance(item, Never):
             inner = [self._step(disjunct.items, item.bound, _success) for disjunct in item.disjuncts]
-            return lambda values: not any(step(values) for step in inner) and then(values)
+            return lambda values: not any(step(values) for step in inner) and next_step(values)
         if isinstance(item, Counted):
-            return self._counted(item, then)
+            return self._counted(item, next_step)
         if isinstance(item, Compare):
-            return self._compare(item, bound, then)
+            return self._compare(item, bound, next_step)
         if isinstance(item, Listed):
-            return self._match(item.terms, bound, self._tables[item.signature], then)
-        return self._fact(item, bound, then)
+            return self._match(item.terms, bound, self._tables[item.signature], next_step)
+        return self._fact(item, bound, next_step)
 
-    def _counted(self, item: Counted, then: _Step) -> _Step:
+    def _counted(self, item: Counted, next_step: _Step) -> _Step:
         """Return a step that compares the number of different rows of a count with its guards."""
         seen: set[_Answer] = set()
         steps = [
@@ -255,7 +255,7 @@ class FlatAnswers:
                 holds = all(compared(number, operator, _symbol(read(values))) for operator, read in guards)
                 if fixed:
                     verdicts[len(seen)] = holds
-            return holds is not item.negated and then(values)
+            return holds is not item.negated and next_step(values)
 
         return step
 
@@ -269,68 +269,68 @@ class FlatAnswers:
 
         return collect
 
-    def _compare(self, item: Compare, bound: frozenset[Variable], then: _Step) -> _Step:
+    def _compare(self, item: Compare, bound: frozenset[Variable], next_step: _Step) -> _Step:
         """Return a step that compares two terms, or binds one to the value of the other."""
         for one, other in ((item.first, item.second), (item.second, item.first)):
             if isinstance(one, Variable) and one not in bound:
-                return self._equal(one, bound, self._read(other), then)
+                return self._equal(one, bound, self._read(other), next_step)
         first, second = self._read(item.first), self._read(item.second)
         if item.comparison is ComparisonOperator.Equal:
-            return lambda values: first(values) == second(values) and then(values)
+            return lambda values: first(values) == second(values) and next_step(values)
         if item.comparison is ComparisonOperator.NotEqual:
-            return lambda values: first(values) != second(values) and then(values)
+            return lambda values: first(values) != second(values) and next_step(values)
         operator = item.comparison
         return lambda values: (
-            compared(_symbol(first(values)), operator, _symbol(second(values))) and then(values)
+            compared(_symbol(first(values)), operator, _symbol(second(values))) and next_step(values)
         )
 
-    def _fact(self, item: Fact, bound: frozenset[Variable], then: _Step) -> _Step:
+    def _fact(self, item: Fact, bound: frozenset[Variable], next_step: _Step) -> _Step:
         """Return a step that searches the facts about the first term of an item."""
         name, of = item.signature[0], self._read(item.terms[0])
         if name == "goal":
-            return self._match(item.terms, bound, [(goal,) for goal in self._problem.goals], then)
+            return self._match(item.terms, bound, [(goal,) for goal in self._problem.goals], next_step)
         if name in self._fact_readers.tests:
             holds = self._fact_readers.tests[name]
-            return lambda values: holds(of(values)) and then(values)
+            return lambda values: holds(of(values)) and next_step(values)
         if name in self._fact_readers.once:
             value_of = self._fact_readers.once[name]
-            return self._equal(item.terms[1], bound, lambda values: value_of(of(values)), then)
+            return self._equal(item.terms[1], bound, lambda values: value_of(of(values)), next_step)
         values_of = self._fact_readers.often[name]
         term = item.terms[1]
         if len(item.terms) > 2:
             rows = item.terms[1:]
-            return lambda values: self._match(rows, bound, values_of(of(values)), then)(values)
+            return lambda values: self._match(rows, bound, values_of(of(values)), next_step)(values)
         if isinstance(term, Variable) and term not in bound:
-            return _for_each_value(term, lambda values: values_of(of(values)), then)
+            return _for_each_value(term, lambda values: values_of(of(values)), next_step)
         wanted = self._read(term)
-        return lambda values: wanted(values) in values_of(of(values)) and then(values)
+        return lambda values: wanted(values) in values_of(of(values)) and next_step(values)
 
     def _equal(
-        self, term: Term, bound: Collection[Variable], read: Callable[[_Values], Any], then: _Step
+        self, term: Term, bound: Collection[Variable], read: Callable[[_Values], Any], next_step: _Step
     ) -> _Step:
         """Return a step that compares a term with what ``read`` returns, or binds the term to it."""
         if isinstance(term, Constant):
             constant = term.value
-            return lambda values: read(values) == constant and then(values)
+            return lambda values: read(values) == constant and next_step(values)
         if term in bound:
-            return lambda values: read(values) == values[term] and then(values)
+            return lambda values: read(values) == values[term] and next_step(values)
 
         def step(values: _Values) -> bool:
             values[term] = read(values)
-            return then(values)
+            return next_step(values)
 
         return step
 
     def _match(
-        self, terms: Sequence[Term], bound: Collection[Variable], rows: Collection[_Answer], then: _Step
+        self, terms: Sequence[Term], bound: Collection[Variable], rows: Collection[_Answer], next_step: _Step
     ) -> _Step:
         """Return a step that searches for a row that unifies with the terms."""
         reads = list(map(self._read, terms))
         if all(isinstance(term, Constant) or term in bound for term in terms):
             if len(terms) == 1:
                 read, single = reads[0], frozenset(row[0] for row in rows)
-                return lambda values: read(values) in single and then(values)
-            return lambda values: tuple(read(values) for read in reads) in rows and then(values)
+                return lambda values: read(values) in single and next_step(values)
+            return lambda values: tuple(read(values) for read in reads) in rows and next_step(values)
 
         def step(values: _Values) -> bool:
             for row in rows:
@@ -342,7 +342,7 @@ class FlatAnswers:
                     elif reads[position](values) != value:
                         break
                 else:
-                    if then(values):
+                    if next_step(values):
                         return True
             return False
 
@@ -404,13 +404,13 @@ def _fact_readers(problem: Problem, prices: Mapping[int, int]) -> _FactReaders:
     return _FactReaders(once, often, tests)
 
 
-def _for_each_value(variable: Variable, read: Callable[[_Values], Iterable[Any]], then: _Step) -> _Step:
+def _for_each_value(variable: Variable, read: Callable[[_Values], Iterable[Any]], next_step: _Step) -> _Step:
     """Return a step that tries each value that ``read`` returns for a variable."""
 
     def step(values: _Values) -> bool:
         for value in read(values):
             values[variable] = value
-            if then(values):
+            if next_step(values):
                 return True
         return False
 
@@ -423,15 +423,15 @@ def _is_apart(items: Sequence[Item], bound: Collection[Variable]) -> bool:
     return bool(items) and used.isdisjoint(bound)
 
 
-def _remembered(variable: Variable, then: _Step) -> _Step:
-    """Return ``then``, memoized by the value of the only variable that it depends on."""
+def _remembered(variable: Variable, next_step: _Step) -> _Step:
+    """Return ``next_step``, memoized by the value of the only variable that it depends on."""
     verdicts: dict[Any, bool] = {}
 
     def step(values: _Values) -> bool:
         value = values[variable]
         holds = verdicts.get(value)
         if holds is None:
-            holds = verdicts[value] = then(values)
+            holds = verdicts[value] = next_step(values)
         return holds
 
     return step

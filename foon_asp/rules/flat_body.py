@@ -522,7 +522,8 @@ class _Scope:
     def summands(self, element: Element) -> list[tuple[Disjunct, Term]]:
         """Return the disjuncts of an element of a sum, each with the weight of one execution of its unit.
 
-        Several executions weigh as many times as much, since the condition reads their number nowhere else.
+        The weight of several executions is a multiple of it, since nothing else in the condition reads
+        their number.
         """
         scope = self._inner_scope()
         executions = [

@@ -22,8 +22,8 @@ _FACTS = {**SUBJECTS, **DECISIONS}
 _TreeTerms = dict[str, set[Subject]]  # by term: what it is known to stand for in the tree
 
 
-class Further(NamedTuple):
-    """The reason why a rule is not local (it reads further than the tree), and its place."""
+class Nonlocality(NamedTuple):
+    """The reason why a rule is not local, and its place."""
 
     reason: str
     source: Source
@@ -41,24 +41,26 @@ class Locality:
         self._leads_to = self._find_leads()
         # of auxiliary predicates: what their arguments have to be in the tree, and which are not local at all
         self._about: dict[Signature, dict[int, Subject]] = {signature: {} for signature in self._rules}
-        self._further: dict[Signature, Further] = {}
+        self._nonlocal: dict[Signature, Nonlocality] = {}
         self._find_abouts(program)
 
-    def further(self, clause: Clause) -> Further | None:
+    def nonlocality(self, clause: Clause) -> Nonlocality | None:
         """Return why a rule is not local, ``None`` where it is."""
         if any(atom.signature[0].startswith("-") for atom in clause.heads):
-            return Further("an atom with a minus rules out the one without, wherever that is", clause.source)
+            return Nonlocality(
+                "an atom with a minus rules out the one without, wherever that is", clause.source
+            )
         tree_terms = self._tree_terms(clause.body)
         lacking = self._lacking(clause.body, tree_terms, clause.source)
         for atom, condition in clause.others:
             lacking = lacking or self._lacking(
                 (atom, *condition), self._tree_terms(condition, tree_terms), clause.source
             )
-        return lacking.further if lacking else None
+        return lacking.nonlocality if lacking else None
 
     def closed(self, signature: Signature) -> bool:
         """Whether an auxiliary predicate has the same atoms, whatever the network has beyond the tree."""
-        return signature in self._about and signature not in self._further and not self._about[signature]
+        return signature in self._about and signature not in self._nonlocal and not self._about[signature]
 
     def _find_leads(self) -> dict[Signature, dict[int, set[Subject]]]:
         """Return the arguments of auxiliary predicates that are always in the tree, by position."""
@@ -93,14 +95,14 @@ class Locality:
                 heads = clause.heads
                 loops = any(head.signature in self._dependence.loops for head in heads)
                 if not clause.plain or loops:
-                    further = self.further(clause)
-                    if further is None and any(self._about[head.signature] for head in heads):
-                        further = Further(
+                    nonlocality = self.nonlocality(clause)
+                    if nonlocality is None and any(self._about[head.signature] for head in heads):
+                        nonlocality = Nonlocality(
                             "it is left open of object nodes or units beyond the tree", clause.source
                         )
-                    for head in heads if further else ():
-                        assert further
-                        changed |= self._mark_further(head.signature, further)
+                    for head in heads if nonlocality else ():
+                        assert nonlocality
+                        changed |= self._mark_nonlocal(head.signature, nonlocality)
                 else:
                     assert clause.head is not None
                     changed |= self._find_about(clause, clause.head)
@@ -108,11 +110,11 @@ class Locality:
     def _find_about(self, clause: Clause, head: Literal) -> bool:
         """Add the requirements of a rule's body to the conditions on its head; return whether any is new."""
         changed = False
-        while head.signature not in self._further:
+        while head.signature not in self._nonlocal:
             about = self._about[head.signature]
             tree_terms: _TreeTerms = {}
             for position, subject in about.items():
-                if _simple(head.arguments[position]):
+                if _has_one_value(head.arguments[position]):
                     tree_terms.setdefault(str(head.arguments[position]), set()).add(subject)
             lacking = self._lacking(clause.body, self._tree_terms(clause.body, tree_terms), clause.source)
             if lacking is None:
@@ -122,13 +124,13 @@ class Locality:
             if places and places[0] not in about:
                 about[places[0]] = lacking.subject
             else:
-                self._mark_further(head.signature, lacking.further)
+                self._mark_nonlocal(head.signature, lacking.nonlocality)
         return changed
 
-    def _mark_further(self, signature: Signature, further: Further) -> bool:
-        if signature in self._further:
+    def _mark_nonlocal(self, signature: Signature, nonlocality: Nonlocality) -> bool:
+        if signature in self._nonlocal:
             return False
-        self._further[signature] = further
+        self._nonlocal[signature] = nonlocality
         return True
 
     def _tree_terms(
@@ -141,14 +143,14 @@ class Locality:
         while changed:
             changed = False
             for literal in positive:
-                for position, subject in self._led(literal, tree_terms):
+                for position, subject in self._led_arguments(literal, tree_terms):
                     term = literal.arguments[position]
-                    if _simple(term) and subject not in tree_terms.setdefault(str(term), set()):
+                    if _has_one_value(term) and subject not in tree_terms.setdefault(str(term), set()):
                         tree_terms[str(term)].add(subject)
                         changed = True
         return tree_terms
 
-    def _led(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
+    def _led_arguments(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
         """Return the arguments of a literal that are in the tree because others are, with their subjects."""
         if literal.signature in self._leads_to:
             leads = self._leads_to[literal.signature]
@@ -192,27 +194,29 @@ class Locality:
                     return lacking
         if isinstance(conjunct, Strange):
             return _Lacking(
-                "", Subject.UNIT, Further(f"{conjunct.text} is nothing that is looked into", source)
+                "", Subject.UNIT, Nonlocality(f"{conjunct.text} is nothing that is looked into", source)
             )
         return None
 
     def _lacking_of(self, literal: Literal, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
         """Return what one literal lacks to be local, ``None`` where it is."""
         signature = literal.signature
-        if signature in self._further:
-            return _Lacking("", Subject.UNIT, self._further[signature])
+        if signature in self._nonlocal:
+            return _Lacking("", Subject.UNIT, self._nonlocal[signature])
         if signature in self._about:
             about = self._about[signature]
         elif signature in _FACTS:
             about = _FACTS[signature].about
         else:
             doubt = self._dependence.doubt((literal,))
-            return _Lacking("", Subject.UNIT, Further(doubt.reason, source)) if doubt else None
+            return _Lacking("", Subject.UNIT, Nonlocality(doubt.reason, source)) if doubt else None
         for position, subject in about.items():
             term = literal.arguments[position]
             if subject not in tree_terms.get(str(term), ()):
                 reason = f"{_atom(literal)} is about {_ARTICLES[subject]} that the tree need not have"
-                return _Lacking(str(term) if _simple(term) else "", subject, Further(reason, source))
+                return _Lacking(
+                    str(term) if _has_one_value(term) else "", subject, Nonlocality(reason, source)
+                )
         return None
 
 
@@ -224,13 +228,13 @@ class _Lacking(NamedTuple):
 
     term: str
     subject: Subject
-    further: Further
+    nonlocality: Nonlocality
 
 
 _ARTICLES = {Subject.UNIT: "a unit", Subject.OBJECT: "an object node", Subject.LABEL: "a label"}
 
 
-def _simple(term: AST) -> bool:
+def _has_one_value(term: AST) -> bool:
     """Whether a term has the same value throughout a rule: a constant, or a variable other than ``_``."""
     return term.ast_type == ASTType.SymbolicTerm or (term.ast_type == ASTType.Variable and term.name != "_")
 

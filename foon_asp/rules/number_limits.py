@@ -16,10 +16,10 @@ from clingo.ast import (
 )
 from clingo.symbol import SymbolType
 
-from foon_asp.encoding.facts import quote
-from foon_asp.grounding.exact import LARGEST, is_beyond
-from foon_asp.grounding.number_checks import BEYOND
-from foon_asp.grounding.parsing import nodes
+from foon_asp.encoding.exact import LARGEST, is_beyond
+from foon_asp.encoding.fact_writer import quote
+from foon_asp.encoding.number_checks import BEYOND
+from foon_asp.encoding.parsing import nodes
 from foon_asp.rules.clause import variables
 
 _BINARY = {
@@ -109,7 +109,7 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 
 
 def _safe_magnitude(term: AST) -> int:
-    """Return a magnitude up to which values in a term cannot make it overflow, -1 where there is none."""
+    """Return a magnitude up to which values in a term cannot make it overflow, -1 if it may always."""
     return next((limit for limit in (LARGEST >> n for n in range(32)) if _size(term, limit) <= LARGEST), -1)
 
 

@@ -74,24 +74,25 @@ class Rule(NamedTuple):
     """A rule of one question, with its kind and locality.
 
     ``reason`` says why its kind is ``OTHER``, or why it has no effect, at ``reason_source``; else empty.
-    ``further`` says what it reads beyond the tree, at ``further_source``. If it is empty, the rule is local:
-    its truth for a tree stays the same without the facts of units outside the tree and of object nodes that
-    only those have. A ``HELPER`` is always local: its facts count for the rules that use it. ``one_of`` says
-    that a requiring rule is an at-least-one constraint over one or several sets, known without clingo.
+    ``nonlocality`` says what it reads beyond the tree, at ``nonlocality_source``. If it is empty, the rule is
+    local: its truth for a tree stays the same without the facts of units outside the tree and of object
+    nodes that only those have. A ``HELPER`` is always local: its facts count for the rules that use it.
+    ``one_of`` says that a requiring rule is an at-least-one constraint over one or several sets, known
+    without clingo.
     """
 
     source: Source
     kind: Kind
     reason: str = ""
     reason_source: Source | None = None
-    further: str = ""
-    further_source: Source | None = None
+    nonlocality: str = ""
+    nonlocality_source: Source | None = None
     one_of: bool = False
 
     @property
     def local(self) -> bool:
         """Whether it reads facts about the tree alone."""
-        return not self.further
+        return not self.nonlocality
 
     @property
     def without_effect(self) -> bool:
@@ -215,20 +216,20 @@ class Analysis:
             kind = Kind.FACT if any(clause.constraint for clause in idle) else Kind.HELPER
             return Rule(source, kind, f"{off}, so it has no effect", source)
         kinds = [self.kind(clause) for clause in live]
-        kind = _together(kind for kind, _ in kinds)
+        kind = _conjunction_kind(kind for kind, _ in kinds)
         doubt = next((doubt for _, doubt in kinds if doubt), None)
         if kind is Kind.OTHER and doubt is None:
             doubt = Doubt("read in one way it rules units out, in another it requires some", source)
-        further = None
+        nonlocality = None
         for clause in live if kind is not Kind.HELPER else ():
-            further = further or self._locality.further(clause)
+            nonlocality = nonlocality or self._locality.nonlocality(clause)
         return Rule(
             source,
             kind,
             doubt.reason if doubt else "",
             (doubt.source or source) if doubt else None,
-            further.reason if further else "",
-            further.source if further else None,
+            nonlocality.reason if nonlocality else "",
+            nonlocality.source if nonlocality else None,
         )
 
     def _understood(self, number: int, rule: Rule) -> Rule:
@@ -252,8 +253,8 @@ class Analysis:
         return rule
 
 
-def _together(kinds: Iterable[Kind]) -> Kind:
-    """Return the kind of a conjunction of rules of these kinds."""
+def _conjunction_kind(kinds: Iterable[Kind]) -> Kind:
+    """Return the kind of a conjunction of rules, from their kinds."""
     distinct = set(kinds)
     if len(distinct) > 1:
         distinct.discard(Kind.FACT)

@@ -9,9 +9,9 @@ from typing import NamedTuple
 from clingo.ast import AST, ASTType
 
 from foon_asp.encoding.encoding import Encoding, read_encoding
-from foon_asp.encoding.facts import hundredths
+from foon_asp.encoding.fact_writer import hundredths
+from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
 from foon_asp.problem import Contradiction, Having, Problem, Restriction, Trait, Wanted, reach
 from foon_asp.rules.clause import Signature, literals, written
@@ -41,7 +41,7 @@ class ShownRule(NamedTuple):
     source: Source
     use: str
     reason_source: Source | None
-    further_source: Source | None
+    nonlocality_source: Source | None
 
 
 class Together(StrEnum):
@@ -94,7 +94,7 @@ class Rules:
             if isinstance(rules, Stated) and rules.file is not None:
                 uses[rules.place] = rules
                 file, originals = rules.file, read_encoding(rules.file).statements
-            pairs = zip(_saying(encoding.statements), _saying(originals), strict=True)
+            pairs = zip(_rule_statements(encoding.statements), _rule_statements(originals), strict=True)
             texts.update((id(statement), written(original, file)) for statement, original in pairs)
 
         def source_in_file(source: Source | None) -> Source | None:
@@ -108,7 +108,7 @@ class Rules:
                 source_in_file(rule.source) or rule.source,
                 uses[rule.source.file].written if rule.source.file in uses else "",
                 source_in_file(rule.reason_source),
-                source_in_file(rule.further_source),
+                source_in_file(rule.nonlocality_source),
             )
             for rule, statement in zip(self.rules, self._analysis.statements, strict=True)
         )
@@ -287,7 +287,7 @@ def _named(facts: Iterable[Fact], predicates: Collection[str]) -> list[str]:
     return [word for fact in facts if fact.signature[0] in predicates for word in _text(fact.terms[-1])]
 
 
-def _saying(statements: Iterable[AST]) -> list[AST]:
+def _rule_statements(statements: Iterable[AST]) -> list[AST]:
     """Return statements without comments and ``#program``, which are lost when constants are renamed."""
     return [
         statement for statement in statements if statement.ast_type not in {ASTType.Program, ASTType.Comment}

@@ -25,7 +25,7 @@ from foon_asp.store.columns import (
 )
 from foon_asp.store.digests import content_digests
 from foon_asp.store.label_search import write_trigrams
-from foon_asp.store.schema import OUTLINE, UNITS_OF_FILE, create_indexes, create_tables
+from foon_asp.store.store_tables import OUTLINE, UNITS_OF_FILE, create_indexes, create_tables
 from foon_asp.text.assumed_goals import as_entry, wanted_outputs
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode
@@ -47,7 +47,7 @@ class StoreBuilder:
         self._database = database
         create_tables(database)
         self.copies = 0  # of units, added so far
-        self._written_units = self._sources = 0  # rows of these tables
+        self._written_units = self._sources = 0  # rows of the tables unit and source
         self.matched = [False] * len(kitchen or ())
         self._kitchen = kitchen
         self._entries: dict[LookupKey, list[int]] = {}

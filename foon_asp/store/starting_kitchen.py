@@ -4,9 +4,9 @@ from collections.abc import Iterable, Sequence
 
 from foon_asp.network.starting import StartingKitchen
 from foon_asp.store.columns import ids_of
-from foon_asp.store.schema import UNITS_OF_FILE
 from foon_asp.store.store import Store
 from foon_asp.store.store_file import reporting_damage
+from foon_asp.store.store_tables import UNITS_OF_FILE
 from foon_asp.store.stored_ids import StoredIds
 
 
@@ -30,7 +30,7 @@ class StoredStartingKitchen(StartingKitchen[int]):
         return [unit for unit, inputs in rows if o not in ids_of(inputs)]
 
     @reporting_damage
-    def granting(self, o: int) -> Iterable[int]:
+    def granting_files(self, o: int) -> Iterable[int]:
         """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
         rows = self.file.database.execute("SELECT file FROM granted WHERE node = ?", (o,))
         return [file for (file,) in rows]

@@ -94,7 +94,7 @@ def find_data(
     unit_prices: Path | None = None,
     unit_amounts: Path | None = None,
 ) -> DataFiles:
-    """Find the files of a question: those given on their own, and the folder's for all others.
+    """Find the files of a question: a file that is named precedes the folder's file of the same kind.
 
     Without folder and network it is the bundled kitchen. A network of its own does not get the bundled
     kitchen and rates, which are made for another one.

@@ -158,7 +158,7 @@ def is_none(name: str) -> bool:
 
 
 def number(value: dict[str, object], key: str) -> str:
-    """Return the digits of a number, which may be written as text; empty if there is none."""
+    """Return the digits of a number, which may be written as text; empty if the key has no value."""
     field = value.get(key)
     if field is None or (isinstance(field, str) and is_none(field)):
         return ""

@@ -120,12 +120,12 @@ class _LineBuilder(Transformer[Token, object]):
 
     def note_related(self, tokens: list[Token]) -> str | Relation | Contents:
         word, bracket = tokens
-        return _noted(unquoted(word), bracket.strip("\t "))
+        return _bracketed_part(unquoted(word), bracket.strip("\t "))
 
     note_holding = note_related
 
 
-def _noted(word: str, bracket: str) -> str | Relation | Contents:
+def _bracketed_part(word: str, bracket: str) -> str | Relation | Contents:
     """Return the relation, contents or state of a bracket; quoted names are taken literally."""
     written = [item.strip(" ") for item in _ITEM.findall(bracket[1:-1])]
     if not any(item.startswith('"') for item in written):

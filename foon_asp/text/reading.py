@@ -63,7 +63,7 @@ class Reading:
 
 
 @contextlib.contextmanager
-def telling(report: Report) -> Iterator[None]:
+def reporting_to(report: Report) -> Iterator[None]:
     """Report progress to a function while networks are read in a ``with`` block."""
     token = _report.set(report)
     try:

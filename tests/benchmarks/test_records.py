@@ -1,8 +1,10 @@
 """Public instances: e-graphs as questions, what the gym's greedy finds, and what cannot be right of a row."""
 
 import itertools
+import json
 import random
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -45,6 +47,22 @@ def extractions(of: EGraph) -> list[Fraction]:
         if made.issuperset(of.roots):
             costs.append(of.cost(chosen))
     return costs
+
+
+def test_a_node_without_a_cost_costs_one_and_roots_are_what_no_node_uses(tmp_path: Path) -> None:
+    file = tmp_path / "graph.json"
+    nodes = {
+        "a": {"eclass": "0", "children": ["b", "c"]},
+        "b": {"eclass": "1"},
+        "c": {"eclass": "2", "children": [], "cost": 2.5},
+        "d": {"eclass": "3", "children": ["b"]},
+    }
+    file.write_text(json.dumps({"nodes": nodes}))
+    of = EGraph.read(file)
+    assert of.roots == ("0", "3")
+    task, offset = of.task()
+    assert offset == 0
+    assert solved(task, Deadline(60)).cost == Fraction("5.5")
 
 
 @pytest.mark.parametrize("seed", range(6))

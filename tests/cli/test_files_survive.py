@@ -297,7 +297,7 @@ def test_files_that_are_written_together_are_as_they_were_after_ctrl_c(
 # --- no command writes over what it reads
 
 
-SUFFIXES = {"view": ".html", "diff": ".html"}
+SUFFIXES = {"align": ".txt", "view": ".html", "diff": ".html"}
 WEIGHTED = {"soft", "weights"}
 WRITERS = {
     verb: command

@@ -92,6 +92,7 @@ ASKED: dict[str, list[tuple[str, ...]]] = {
         ("--goal", "ice", "--beside", "front", *FORBID),
         ("--goal", "ice", "--items", "used-up"),
     ],
+    "align": [("TORN", "--to", "TWO")],
     "stats": [(), ("--unit", "3", "--explain-items")],
     "facts": [("--goal", "ice", *SOFT[:2])],
     "constraints": [(), ("--explain", "before", *RULE), ("--explain", "require_motion:required_motion=cut")],
@@ -176,7 +177,8 @@ def answers() -> dict[str, click.Command]:
 def test_every_verb_that_answers_has_a_schema() -> None:
     assert answers().keys() == ASKED.keys() == VERBS.keys() - OTHERS
     alone = {"batch-row", "compare-row", "diff-network", "durations", "each", "lint-baseline", "merge"}
-    alone |= {"optima", "pddl-map", "refused", "rules", "search", "state", "steps", "unit-union", "units"}
+    alone |= {"optima", "pddl-map", "refused", "repair", "rules", "search", "state", "steps"}
+    alone |= {"unit-union", "units"}
     assert {*schema_kinds()} == {"answer" if verb == "solve" else verb for verb in ASKED} | alone
 
 
@@ -243,6 +245,7 @@ def test_steps_without_utensils_say_that_tools_are_not_known(cli: Cli, tmp_path:
 
 
 WITHOUT_GOALS = {
+    "align",
     *("batch", "stats", "constraints", "lint", "relax", "verify", "read-plan"),
     "view",  # the answer of which has them
 }
@@ -311,7 +314,7 @@ def test_the_verb_prints_them(cli: Cli) -> None:
         assert json.loads(cli("schema", named).out) == schema("answer")
     ran = cli("schema", "sovle")
     assert (ran.code, ran.out) == (2, "")
-    assert "found 'sovle', expected a verb that has a schema: alternatives, answer, " in ran.err
+    assert "found 'sovle', expected a verb that has a schema: align, alternatives, " in ran.err
 
 
 # What may have other keys, or lack one: what is by objective, phase, motion or code, and what only some have.

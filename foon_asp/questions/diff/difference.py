@@ -79,7 +79,7 @@ class Difference(Result, frozen=True, kw_only=True):
         )
 
 
-def compared(a: Mapping[FunctionalUnit, Unit], b: Mapping[FunctionalUnit, Unit]) -> dict[str, Any]:
+def difference_fields(a: Mapping[FunctionalUnit, Unit], b: Mapping[FunctionalUnit, Unit]) -> dict[str, Any]:
     """Return the fields of a :class:`Difference` by name, for the units of two trees or networks.
 
     ``a`` and ``b`` have the value of each unit in the result.

@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import Self
 
 from foon_asp.network import LEVELS, Network, network_at_level
-from foon_asp.questions.diff.difference import Difference, compared
+from foon_asp.questions.diff.difference import Difference, difference_fields
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Value
 from foon_asp.results.values_of import unit_of
@@ -100,4 +100,6 @@ def compare_networks(names: Sequence[str], networks: Sequence[Network], level: i
         LevelAgreement(detail, Agreement.of([[*n] for n in both]), Agreement.of([n.objects for n in both]))
         for detail, both in at_level.items()
     )
-    return NetworkDifference(a=names[0], b=names[1], level=level, agreement=agreement, **compared(a, b))
+    return NetworkDifference(
+        a=names[0], b=names[1], level=level, agreement=agreement, **difference_fields(a, b)
+    )

@@ -8,7 +8,7 @@ from msgspec import UNSET, UnsetType
 
 from foon_asp.network import FunctionalUnit, ObjectNode, counted
 from foon_asp.problem import ContainerRule, Costs, Objective, given_outputs, needed_inputs
-from foon_asp.questions.diff.difference import Difference, compared
+from foon_asp.questions.diff.difference import Difference, difference_fields
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.results.document import Unserialized
@@ -138,7 +138,7 @@ def compare_trees(names: Sequence[str], trees: tuple[Tree, Tree]) -> TreeDiffere
             for node, origin in origins_a.items()
             if origins_b.get(node, origin) != origin
         ),
-        **compared(units_a, units_b),
+        **difference_fields(units_a, units_b),
     )
     return difference.knowing(trees=trees)
 

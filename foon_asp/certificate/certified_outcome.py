@@ -1,0 +1,184 @@
+"""From the solver's answer to one that a certificate proves."""
+
+import time
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from operator import sub
+from typing import Any
+
+from foon_asp.asp import Outcome, Proof, Settings, Status
+from foon_asp.certificate.arrays import Arrays
+from foon_asp.certificate.certificate import Certificate, NotBestError, certify, certify_infeasible
+from foon_asp.certificate.coverage import Coverage, coverage
+from foon_asp.certificate.plan import certify_no_plan, certify_plan, covered_for_plans
+from foon_asp.errors import BugError
+from foon_asp.hypergraph.lexicographic import Vector
+from foon_asp.problem import Problem, levels, multiplies
+from foon_asp.proof.verifier import Subject, trusted
+
+_WRITTEN = 13_000  # bits of a number that is printed; Python writes at most 4,300 digits
+
+
+def certify_outcome(
+    outcome: Outcome,
+    settings: Settings,
+    expired: Callable[[], bool] = lambda: False,
+    subject: Subject | None = None,
+) -> tuple[Outcome, Certificate | None]:
+    """Return an answer marked as certified, and the certificate; ``None`` where no certificate is found.
+
+    The status ``certificate`` needs a certificate of the whole claim; a plan found at a limit becomes
+    optimal with one. A certificate of only the first objectives marks these. The answer stays unchanged
+    where more than a bound is proved only with trusted claims about user rules. Raises :class:`BugError`
+    when a tree that the solver called optimal is not, and when answer and certificate cannot both be true.
+    ``subject`` is the whole network, of which that of the answer is a part, as for
+    :func:`~foon_asp.certificate.certify`.
+    """
+    began = time.perf_counter()
+    covered = coverage(settings)
+    plans = outcome.problem.items is not None
+    if plans:
+        covered = covered_for_plans(covered)
+    certificate = _certified(outcome, settings, covered, expired, subject)
+    if (
+        not plans
+        and covered.not_covered
+        and (certificate is None or certificate.claim == "bound")
+        and outcome.proof is not None
+    ):
+        from foon_asp.certificate.own_rules import with_own_rules  # noqa: PLC0415 - it loads clingo
+
+        with_own = with_own_rules(covered, outcome.problem, settings)
+        trusting = None if with_own is None else _certified(outcome, settings, with_own, expired)
+        if with_own is not None and trusting is not None and trusting.claim != "bound":
+            covered, certificate = with_own, trusting
+    outcome.seconds["certificate"] = time.perf_counter() - began
+    if certificate is not None:
+        why = _at_odds(outcome, certificate, covered)
+        if why is not None:
+            raise _contradiction(outcome, settings, why)
+    if certificate is None or certificate.claim == "bound" or trusted(certificate.content):
+        return outcome, certificate
+    complete = certificate.claim == "infeasible" or certificate.certified == levels(outcome.objectives)
+    if complete and outcome.status is Status.FEASIBLE and outcome.costs is not None:
+        bounds = {objective: outcome.costs.measure(objective) for objective in certificate.certified}
+        outcome = outcome._replace(status=Status.OPTIMAL, bounds=bounds, stopped=None)
+    proof = Proof.CERTIFICATE if complete else outcome.proof
+    return outcome._replace(proof=proof, certified=certificate.certified), certificate
+
+
+def _certified(
+    outcome: Outcome,
+    settings: Settings,
+    covered: Coverage,
+    expired: Callable[[], bool],
+    subject: Subject | None = None,
+) -> Certificate | None:
+    """Return a certificate about the trees that keep to the covered rules; ``None`` where none is found."""
+    if outcome.problem.items is not None:
+        return _certified_plan(outcome, covered, expired)
+    if outcome.status is Status.INFEASIBLE:
+        return certify_infeasible(outcome.problem, covered, expired, subject)
+    if outcome.status is not Status.OPTIMAL or outcome.units is None:
+        return None
+    wanted = levels(outcome.objectives)
+    try:
+        return certify(
+            outcome.problem, wanted, outcome.units, covered, expired, outcome.cuts, subject, outcome.cases
+        )
+    except NotBestError as better:
+        why = f"there is a better tree, {_tree(outcome, better.units)}"
+        raise _contradiction(outcome, settings, why) from None
+
+
+def _certified_plan(outcome: Outcome, covered: Coverage, expired: Callable[[], bool]) -> Certificate | None:
+    """Return a certificate about the plans that keep to the covered rules, also of a plan at a limit."""
+    if outcome.status is Status.INFEASIBLE:
+        return certify_no_plan(outcome.problem, covered, expired)
+    if outcome.units is None:
+        return None
+    return certify_plan(outcome.problem, levels(outcome.objectives), outcome.units, covered, expired)
+
+
+def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
+    """Return why an answer and a certificate cannot both be true; ``None`` where they can.
+
+    The verifier has accepted the certificate, but does not know the answer: here its goals, rules and claim
+    are compared with those of the answer.
+    """
+    problem, content = outcome.problem, certificate.content
+    goals = tuple(goal["id"] for goal in content["goals"])
+    goals_asked = tuple(map(problem.network.object_number, problem.goals))
+    if (goals, content["containers"]) != (goals_asked, str(problem.containers)):
+        return f"the certificate speaks of the goals {list(goals)} under {content['containers']} containers"
+    if outcome.units is None:
+        return None if certificate.claim == "infeasible" else f"the certificate claims {certificate.claim}"
+    if certificate.claim == "infeasible":
+        return "the certificate proves that there is no tree"
+    if problem.items is not None:  # it has the plan itself, whose costs were held against what is proved
+        return None
+    return _costs_at_odds(outcome, outcome.units, certificate, covered)
+
+
+def _costs_at_odds(
+    outcome: Outcome, units: Sequence[int], certificate: Certificate, covered: Coverage
+) -> str | None:
+    """Return why a tree cannot cost what a certificate proves; ``None`` where it can."""
+    problem, content = outcome.problem, certificate.content
+    arrays = Arrays(problem, certificate.certified, covered)
+    cost = arrays.order.total(arrays.costs[a] for a in arrays.actions(units))
+    if certificate.claim == "bound":
+        least = _read(arrays, content["bound"])
+        if arrays.order.sign([*map(sub, cost, least)]) < 0:
+            return f"the certificate proves the bound {content['bound']}, and the tree costs less"
+        return None
+    tree = [unit for u in content["tree"] if (unit := problem.network.unit_of_number(u)) is not None]
+    proved = arrays.order.total(arrays.costs[a] for a in arrays.actions(tree))
+    if arrays.order.sign([*map(sub, cost, proved)]) != 0:
+        return f"the certificate proves another tree optimal, {_tree(outcome, tree)}"
+    return None
+
+
+def _read(arrays: Arrays, stated: Sequence[Any]) -> Vector:
+    """Return a cost from a bound as certificates write it."""
+    vector: list[Fraction] = []
+    for objective, stated_part in zip(arrays.objectives, stated, strict=True):
+        if multiplies(objective):
+            vector += [Fraction(stated_part.get(str(rate), 0)) for rate in arrays.rates]
+        else:
+            vector.append(Fraction(stated_part))
+    return tuple(vector)
+
+
+def _contradiction(outcome: Outcome, settings: Settings, why: str) -> BugError:
+    """Return an error for a wrong answer of the solver, with the question but without the data."""
+    problem = outcome.problem
+    question = [
+        f"goals: {' | '.join(str(problem.network.objects[goal]) for goal in problem.goals)}",
+        f"containers: {problem.containers}, level {problem.network.level}",
+        f"objectives: {', '.join(levels(outcome.objectives))}",
+        f"network: {len(problem.network)} units, {len(problem.network.objects)} object nodes",
+        f"kitchen: {len(problem.kitchen)} items",
+    ]
+    question += [f"constraint: {file}" for file in settings.constraints]
+    question += [f"constant: {constant}" for constant in settings.constants]
+    if settings.replaced is not None:
+        question.append(f"encodings: {settings.replaced}")
+    answer = "no tree" if outcome.units is None else _tree(outcome, outcome.units)
+    return BugError(f"the answer is {outcome.status}, {answer}, but {why}\n" + "\n".join(question))
+
+
+def _tree(outcome: Outcome, units: Sequence[int]) -> str:
+    """Return a text that describes a tree and its costs."""
+    return f"the units {list(units)} ({_figures(outcome.problem, units)})"
+
+
+def _figures(problem: Problem, units: Sequence[int]) -> str:
+    """Return the costs of a tree in words, for the message about a contradiction."""
+    costs = problem.costs(units)
+    figures = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
+    figures.append(f"{costs.kitchen} kitchen items")
+    if costs.success is not None:
+        long = costs.success.denominator.bit_length() > _WRITTEN
+        figures.append(f"success {'of too many digits to print' if long else costs.success}")
+    return ", ".join(figures)

@@ -1,0 +1,123 @@
+"""``foon-asp completion``: scripts for shells, which ask click for the completions of a line."""
+
+import os
+import re
+
+import click
+from click.shell_completion import (
+    CompletionItem,
+    ShellComplete,
+    add_completion_class,
+    shell_complete,
+    split_arg_string,
+)
+
+from foon_asp.cli import shared_options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.verbs import SHELL_REQUEST
+from foon_asp.errors import UserError
+from foon_asp.escapes import escaped
+
+_MAX_WORDS = 200  # of a completion: a shell cannot list more in a readable way
+_LINE_VARIABLE = "FOON_ASP_LINE"  # in the environment: the line up to the cursor
+
+
+class _Shell(ShellComplete):
+    """A shell that receives completions, one a line; without any, it completes names of files itself.
+
+    The scripts of click split completions at commas or blanks, which names of object nodes have.
+    """
+
+    def get_completion_args(self) -> tuple[list[str], str]:
+        """Return the words after the name of the program, and the incomplete word at the cursor."""
+        *words, typed = split_arg_string(
+            f"{os.environ[_LINE_VARIABLE]}x"
+        )  # x: the last word is begun even if empty
+        return words[1:], typed[:-1]
+
+    def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
+        """Return the completions; none where the data that the line names cannot be read."""
+        option, equals, _ = incomplete.partition("=") if incomplete.startswith("-") else ("", "", "")
+        try:
+            items = super().get_completions(args, incomplete)
+        except (UserError, OSError, click.ClickException):
+            return []
+        words = dict.fromkeys(
+            f"{option * bool(equals)}{equals}{item.value}" for item in items if item.type == "plain"
+        )
+        return [CompletionItem(word) for word in [*words][:_MAX_WORDS]]
+
+    def format_completion(self, item: CompletionItem[str]) -> str:
+        """Return a completion as the line that is printed."""
+        return escaped(item.value)
+
+
+@add_completion_class
+class _Bash(_Shell):
+    """Bash, which completes the text after ``:`` or ``=`` as a word of its own, unless a quote is open."""
+
+    name = "bash"
+    source_template = """_foon_asp() {
+    local word
+    COMPREPLY=()
+    while IFS= read -r word; do
+        [[ -n $word ]] && COMPREPLY+=("$word")
+    done < <(
+        FOON_ASP_LINE="${COMP_LINE:0:COMP_POINT}" %(complete_var)s=bash_complete %(prog_name)s 2>/dev/null
+    )
+}
+complete -o default -o filenames -F _foon_asp %(prog_name)s
+"""
+
+    def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
+        """Return the completions without the text up to the last ``:`` or ``=``."""
+        is_quoted = os.environ[_LINE_VARIABLE].removesuffix(incomplete).endswith(("'", '"'))
+        completed = None if is_quoted else re.match(r".*[:=]", incomplete)
+        items = super().get_completions(args, incomplete)
+        return [CompletionItem(item.value[completed.end() :]) for item in items] if completed else items
+
+
+@add_completion_class
+class _Zsh(_Shell):
+    name = "zsh"
+    source_template = """#compdef %(prog_name)s
+_foon_asp() {
+    local -a found
+    found=(${(f)"$(FOON_ASP_LINE="$LBUFFER" %(complete_var)s=zsh_complete %(prog_name)s 2>/dev/null)"})
+    if (( $#found )); then compadd -a found; else _files; fi
+}
+compdef _foon_asp %(prog_name)s
+"""
+
+
+@add_completion_class
+class _Fish(_Shell):
+    name = "fish"
+    source_template = """function __foon_asp
+    FOON_ASP_LINE=(commandline -cp | string collect) %(complete_var)s=fish_complete %(prog_name)s 2>/dev/null
+end
+complete -c %(prog_name)s -a '(__foon_asp)'
+"""
+
+
+def answer_shell(program: click.Command, request: str) -> ExitCode:
+    """Print the script of a shell (``bash_source``), or the completions of a line (``bash_complete``)."""
+    return ExitCode(shell_complete(program, {}, "foon-asp", SHELL_REQUEST, request))
+
+
+@click.command("completion")
+@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+@shared_options.debug_option
+@click.pass_context
+def command(context: click.Context, shell: str) -> ExitCode:
+    """Print a script by which a shell completes verbs, options, goals, objects, motions and constraints.
+
+    \b
+    foon-asp completion bash > ~/.local/share/bash-completion/completions/foon-asp
+    foon-asp completion fish > ~/.config/fish/completions/foon-asp.fish
+    source <(foon-asp completion zsh)            in ~/.zshrc, behind compinit
+
+    Names come from the data that the line names; for a large network, a store (foon-asp merge --store) is
+    quicker.
+    """
+    return answer_shell(context.find_root().command, f"{shell}_source")

@@ -1,0 +1,137 @@
+"""``foon-asp rename``: renaming of an object, a state or a motion in all files."""
+
+import difflib
+from codecs import BOM_UTF8
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import click
+
+from foon_asp.cli import shared_options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.shown_diff import show_diff
+from foon_asp.errors import UserError
+from foon_asp.network import counted
+from foon_asp.text.diagnostics import InputError, Rename
+from foon_asp.text.folder_files import foon_files
+from foon_asp.text.formats import format_of
+from foon_asp.text.line import NameKind
+from foon_asp.text.plain_file import read_content, read_plain_text
+from foon_asp.text.renaming import Renaming, is_name
+from foon_asp.text.side_table import TABLES
+from foon_asp.whole_file import utf_8, write_all_whole
+
+_WITH_ARTICLE = {NameKind.OBJECT: "an object", NameKind.WORD: "a word of relations"}
+
+
+@click.command("rename")
+@click.argument("old")
+@click.argument("new")
+@shared_options.files_argument
+@click.option(
+    "--kind",
+    type=click.Choice([str(kind) for kind in NameKind]),
+    help="What is renamed, if the name is that of several things.",
+)
+@click.option("-y", "--write", is_flag=True, help="Write the change; without it, it is only shown.")
+@shared_options.debug_option
+def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write: bool) -> ExitCode:
+    """Rename an object, a state or a motion everywhere, and show the change first.
+
+    \b
+    foon-asp rename cinammon cinnamon recipes/          show what would change
+    foon-asp rename cinammon cinnamon recipes/ -y       change it
+    foon-asp rename cut chopped a.txt --kind state      where cut is a motion, too
+
+    An object is renamed on object lines, in relations ([bowl]) and in contents ({salt}); a state, a motion
+    and the word of a relation where they stand. Where NEW has an id already, the lines of OLD get it. Of a
+    folder, networks, kitchens, goals and the tables (motion.txt, utensils.txt, unit_prices.txt,
+    unit_amounts.txt, tools.txt, durations.txt) are changed together. Everything else in the files stays as it
+    is, comments included.
+
+    Where one file cannot be written, all stay as they were, as after ctrl-C. If the process is killed while
+    it writes, each file is the old one or the new one, and the same command again writes the others. Exits
+    with 0, or with 2, and nothing written, if there is no such name, if it is that of several kinds of
+    things, or if a line with it is not understood.
+    """
+    texts = {file: read_plain_text(file) for file in _files(paths)}
+    renaming = Renaming(Rename(_kind(old, kind, texts), old, new))
+    if old == new:
+        raise UserError("the new name is the old one")
+    if not is_name(renaming.rename.kind, new):
+        raise UserError(f"{new!r} cannot be the name of {_with_article(renaming.rename.kind)} in FOON text")
+    errors = []
+    for file, text in texts.items():
+        format_ = format_of(text, str(file))
+        renaming.learn(format_.names(text, str(file)))
+        try:
+            format_.normalised(text, str(file))
+        except InputError as error:
+            errors += [each for each in error.diagnostics if old in each.excerpt]
+    if errors:
+        raise InputError(errors)
+    changed = {}
+    for file, text in texts.items():
+        after = format_of(text, str(file)).renamed(text, str(file), renaming)
+        if after != text:
+            changed[file] = text, after
+    for file, (before, after) in changed.items():
+        show_diff(str(file), before, after)
+    if write:
+        write_all_whole({file: _byte_order_mark(file) + utf_8(after) for file, (_, after) in changed.items()})
+    click.echo(_summary(renaming, len(changed), write), err=True)
+    return ExitCode.DONE
+
+
+def _files(paths: Sequence[Path]) -> list[Path]:
+    """Return the FOON files of paths, and the tables in their folders."""
+    files = [file for file, _ in foon_files(paths)]
+    for folder in (path for path in paths if path.is_dir()):
+        files += sorted(file for name in TABLES for file in folder.rglob(name) if file.is_file())
+    return list(dict.fromkeys(files))
+
+
+def _byte_order_mark(file: Path) -> bytes:
+    """Return the byte order mark of a file, or nothing; a renaming keeps it."""
+    return BOM_UTF8 if read_content(file).startswith(BOM_UTF8) else b""
+
+
+def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
+    """Return the kind of the old name; raises :class:`UserError` if it is no name, or of several kinds."""
+    counts: Counter[tuple[str, str]] = Counter()
+    for file, text in texts.items():
+        counts.update(
+            (str(kind), name) for kind, name, _ in format_of(text, str(file)).names(text, str(file))
+        )
+    kinds = [possible for possible in NameKind if counts[possible, old]]
+    if kind is not None and kind in kinds:
+        return kind
+    if kinds and kind is not None:
+        raise UserError(f"{old!r} is no {kind}; it is {_with_article(kinds[0])}")
+    if len(kinds) > 1:
+        listed = " and ".join(f"{_with_article(kind)} ({counts[kind, old]} times)" for kind in kinds)
+        raise UserError(f"{old!r} is {listed}: choose one with --kind")
+    if not kinds:
+        similar = difflib.get_close_matches(old, sorted({name for _, name in counts}), n=3, cutoff=0.7)
+        hint = f"; there is {', '.join(map(repr, similar))}" if similar else ""
+        raise UserError(
+            f"no object, state, relation or motion is called {old!r} in {counted(len(texts), 'file')}{hint}"
+        )
+    return kinds[0]
+
+
+def _with_article(kind: str) -> str:
+    return _WITH_ARTICLE.get(NameKind(kind), f"a {kind}")
+
+
+def _summary(renaming: Renaming, files: int, written: bool) -> str:
+    """Return a summary of a renaming in words: the mentions, the files, and what to do next."""
+    kind, old, new = renaming.rename
+    mentions = f"{counted(renaming.mentions, 'mention')} in {counted(files, 'file')}"
+    text = f"the {kind} {old!r} becomes {new!r}: {mentions}"
+    if renaming.already:
+        text += (
+            f"; {new!r} stood there {counted(renaming.already, 'time')} already, and both are one name now"
+        )
+    return f"{text}; written" if written else f"{text}; -y writes it"

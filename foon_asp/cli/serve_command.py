@@ -1,0 +1,71 @@
+"""``view --serve``: the interactive page, until ctrl-C."""
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from foon_asp.asp.assembly import assemble
+from foon_asp.cli import shared_options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.dataset.item_options import items_of
+from foon_asp.deadline import Deadline
+from foon_asp.errors import UserError
+from foon_asp.foon import Foon
+from foon_asp.problem import parse_objectives
+from foon_asp.questions.common_options import settings_of
+from foon_asp.questions.contract import Question
+
+_FILE_OPTIONS = {"output": "-o", "format_": "--format"}
+
+
+def with_serve_option(command: Callable[..., ExitCode], question: Question) -> Callable[..., ExitCode]:
+    """Return the command of ``view`` with the option ``--serve``."""
+    option_names = {option.name for option in question.options}
+
+    @functools.wraps(command)
+    def answer_or_serve(serve: bool, **values: Any) -> ExitCode:
+        if not serve:
+            return command(**values)
+        for name, flag in _FILE_OPTIONS.items():
+            if values.pop(name, None):
+                raise UserError(f"found {flag} beside --serve: what the page shows is written into no file")
+        deadline: Deadline | None = values.pop("deadline", None)
+        question_options = {name: values.pop(name) for name in option_names & values.keys()}
+        return _serve(question_options, values, deadline or Deadline())
+
+    help_ = "Serve a page on this machine that asks again, until ctrl-C; needs foon-asp[view]."
+    return click.option("--serve", is_flag=True, help=help_)(answer_or_serve)
+
+
+def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> ExitCode:
+    """Serve the page until ctrl-C, with the options of a question and of data."""
+    try:
+        from foon_asp.serve.desk import Desk
+        from foon_asp.serve.form import Form
+        from foon_asp.serve.server import serve
+    except ImportError as error:
+        raise UserError(f"--serve needs more packages ({error}): pip install 'foon-asp[view]'") from None
+    dataset = shared_options.read_dataset(**data)
+    first = Form(
+        goals=tuple(question["goals_named"]),
+        objectives=tuple(map(str, parse_objectives(question["objectives"], dataset.measures))),
+        containers=question["containers"],
+        items=question["items"],
+        beside=tuple(question["beside"]),
+    )
+    rules = settings_of(
+        {
+            "constraints": question["constraints"],
+            "constants": question["constants"],
+            "encodings": question["encodings"],
+        }
+    )
+    example = dataset.problem((0,), first.containers)
+    # to report errors in files of rules before the page is opened
+    assemble(rules, functools.partial(click.echo, err=True), problem=example)
+    used_up = items_of(dataset, question["items"], question["stock"], question["stays"])
+    desk = Desk(Foon(dataset, "the data"), first, deadline.seconds, deadline.memory, rules, used_up)
+    serve(desk, lambda address: click.echo(f"{address}\nopen this in a browser; ctrl-C ends it"))
+    return ExitCode.DONE

@@ -1,0 +1,134 @@
+"""Sources of data: a network in memory, or a store."""
+
+from collections.abc import Collection, Container, Iterable, Mapping, Sequence
+from fractions import Fraction
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from foon_asp.dataset.named_ids import NamesAndUnits
+from foon_asp.dataset.prices import DataPrices
+from foon_asp.network import (
+    NO_AMOUNTS,
+    DataAmounts,
+    FunctionalUnit,
+    Network,
+    StartingKitchen,
+    UnitPrices,
+    starting_kitchen,
+)
+from foon_asp.network import Source as Place
+from foon_asp.problem import ContainerRule, Objective, Unpriced, count_unpriced, first_places
+from foon_asp.text.object_list import ListedObject
+from foon_asp.text.repeated_node import RepeatedNode
+
+if TYPE_CHECKING:  # text does without SQLite
+    from foon_asp.store.cone import Cone
+    from foon_asp.store.unit_distances import UnitDistances
+
+
+class Source:
+    """A network in memory; the subclass :class:`~foon_asp.dataset.store_source.StoreSource` is a store.
+
+    Ids are those of the whole network. ``names`` has its nodes and units, ``unit_count`` counts these.
+    ``seconds`` are those that reading took so far, ``left_out`` counts lines that were not understood.
+    ``repeated`` are nodes that a unit lists twice, and ``amounts`` those of units. A store has the
+    ``kitchen`` and the ``prices`` that were imported, and states ``digests`` of them and of the network.
+    """
+
+    kitchen: Collection[int] | None = None
+    prices: DataPrices | None = None
+    names: NamesAndUnits
+
+    def __init__(
+        self,
+        network: Network,
+        seconds: float,
+        left_out: int = 0,
+        repeated: tuple[RepeatedNode, ...] = (),
+        amounts: DataAmounts = NO_AMOUNTS,
+    ) -> None:
+        self.names = self._network = network
+        self.unit_count, self.seconds = len(network), seconds
+        self.left_out, self.repeated, self._amounts = left_out, repeated, amounts
+
+    @property
+    def amounts(self) -> DataAmounts:
+        """The amounts of units."""
+        return self._amounts
+
+    @property
+    def digests(self) -> Mapping[str, str]:
+        """The digests of network, kitchen and prices that are stated and not computed."""
+        return MappingProxyType({})
+
+    @property
+    def starting(self) -> StartingKitchen[Any]:
+        """The starting kitchen."""
+        return starting_kitchen(self._network)
+
+    @property
+    def motions(self) -> Collection[str]:
+        """The motions of the network, each once."""
+        return self._network.different_motions
+
+    def motion_places(self) -> Iterable[tuple[str, Place]]:
+        """Return motions with sources of their units, among them the first source of each motion."""
+        return first_places(self._network)
+
+    def whole(self) -> Network:
+        """Return the whole network."""
+        return self._network
+
+    def touched(self) -> Network:
+        """Return the whole network, which a store reads on access."""
+        return self._network
+
+    def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
+        """Return a network that has at least these units and object nodes."""
+        return self._network
+
+    def cone(
+        self,
+        goals: Sequence[int],
+        containers: ContainerRule,
+        utensils: frozenset[str],
+        available: Container[int],
+        max_units: int | None,
+    ) -> "Cone | None":
+        """Return the cone of goals, or about ``max_units`` units of it; ``None`` for a network in memory."""
+        return None
+
+    def unit_distances(
+        self,
+        kitchen: Collection[int],
+        utensils: Collection[str],
+        rates: Mapping[str, Fraction] | None,
+        objective: Objective,
+    ) -> "UnitDistances | None":
+        """Return the distance of each unit: a lower bound on the cost of trees with it.
+
+        Units do not need the ``utensils``. ``None`` if the network is in memory.
+        """
+        return None
+
+    def true_digests(self) -> dict[str, str]:
+        """Compute the digests that are stated; raises :class:`UserError` if one is not true."""
+        return {}
+
+    def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
+        """Return the prices that a store has of single units of a network; ``None`` where it has none."""
+        return None
+
+    def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
+        """Return the units that have no price, by motion."""
+        network = self._network
+        unit_prices = UnitPrices(prices.motions or {}, prices.units).of_units(network)
+        unpriced = (unit for unit, price in enumerate(unit_prices) if price is None)
+        return count_unpriced((network.motions[unit], network.sources[unit]) for unit in unpriced)
+
+    def kitchen_items(self) -> tuple[ListedObject, ...]:
+        """Return the entries of the kitchen that was imported."""
+        return ()
+
+    def close(self) -> None:
+        """Close the store, if the source is one."""

@@ -1,0 +1,80 @@
+"""One run of clingo over encodings and facts, within limits."""
+
+import time
+from collections.abc import Callable, Sequence
+
+from clingo import Control
+
+from foon_asp.deadline import Deadline
+from foon_asp.encoding.grounded import Grounded
+from foon_asp.encoding.messages import listener, refusing
+from foon_asp.encoding.run import ProgramError, Run
+from foon_asp.encoding.stated import Loaded
+from foon_asp.errors import UserError
+
+
+def check(arguments: Sequence[str]) -> None:
+    """Raise :class:`UserError` for options that clingo refuses."""
+    messages: list[str] = []
+    try:
+        with refusing(messages):
+            Control(list(arguments), logger=listener(messages))
+    except ProgramError as error:
+        raise refused(error) from None
+
+
+def run(
+    files: Sequence[Loaded],
+    facts: str,
+    arguments: Sequence[str],
+    deadline: Deadline,
+    opt_mode: str = "opt",
+    on_tree: Callable[[frozenset[int]], None] | None = None,
+    on_bound: Callable[[list[int]], None] | None = None,
+    predicates: Sequence[tuple[str, int]] = (),
+    products: int = 0,
+    endless: bool = False,
+) -> Run:
+    """Ground the files and facts and search for the best answer.
+
+    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
+    ``predicates``, by name and arity, are those whose atoms are returned besides ``use``; these begin with a
+    number. ``products`` is the number of products of rates in the facts, ``endless`` says that grounding may
+    not terminate. At a limit or ctrl-C, the run has the last answer. Raises the error of
+    :func:`foon_asp.encoding.encoding.fault` where clingo refuses the program.
+    """
+    began = time.perf_counter()
+    try:
+        program = ground(files, facts, arguments, deadline, products, endless)
+    except KeyboardInterrupt:
+        deadline.interrupt()
+        return Run(ground_seconds=time.perf_counter() - began)
+    grounded = time.perf_counter()
+    try:
+        result = program.search(deadline, opt_mode, on_tree, on_bound, predicates)
+    finally:
+        program.close()
+    result.ground_seconds = grounded - began
+    return result
+
+
+def ground(
+    files: Sequence[Loaded],
+    facts: str,
+    arguments: Sequence[str],
+    deadline: Deadline,
+    products: int = 0,
+    endless: bool = False,
+) -> Grounded:
+    """Return the ground program of files and facts; raises like :func:`run`, and ``KeyboardInterrupt``."""
+    try:
+        return Grounded(files, facts, arguments, products, deadline, endless)
+    except ProgramError as error:
+        raise refused(error, files) from None
+
+
+def refused(error: ProgramError, files: Sequence[Loaded] = ()) -> UserError:
+    """Return clingo's messages as one error with places and source lines."""
+    from foon_asp.encoding.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
+
+    return fault(error.messages, error.otherwise, files)

@@ -1,0 +1,546 @@
+"""Writer of facts for clingo, as text."""
+
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import cache, lru_cache
+from pathlib import PurePath
+
+from foon_asp.encoding.exact import LARGEST
+from foon_asp.encoding.scales import Scales
+from foon_asp.errors import UserError
+from foon_asp.escapes import encodable
+from foon_asp.network import ObjectNode, Source
+from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.text.exact_number import decimal_text
+
+# Predicates of the facts of every question, with arity; encodings/README.md has the meanings. Encodings of
+# questions list further ones in their headers.
+FACT_PREDICATES = {
+    "unit": 1,
+    "motion": 2,
+    "input": 2,
+    "output": 2,
+    "needs": 2,
+    "gives": 2,
+    "object": 1,
+    "label": 2,
+    "state": 2,
+    "ingredient": 2,
+    "located": 3,
+    "kitchen": 1,
+    "goal": 1,
+    "utensil": 1,
+    "source": 2,
+    "video": 2,
+    "inputs": 2,
+    "ingredients": 2,
+    "rate": 2,
+    "price": 2,
+    "risk": 2,
+    "cost": 3,
+    "optimize": 2,
+    "stays": 2,
+    "uses_up": 2,
+    "stock": 2,
+}
+
+# Predicates that built-in encodings read, including those of questions.
+READ_BY_OURS = frozenset(
+    (name, FACT_PREDICATES[name])
+    for name in (
+        "unit",
+        "needs",
+        "gives",
+        "kitchen",
+        "goal",
+        "inputs",
+        "ingredients",
+        "risk",
+        "cost",
+        "optimize",
+    )
+)
+
+OBJECT_FACTS = frozenset(("object", "label", "state", "ingredient", "located"))  # each about one object node
+
+_Atom = tuple[str, str]  # predicate, and arguments as text
+
+_MAX_NUMBER = 2**31 - 1  # clingo's numbers wrap silently above
+_PRICE = ("price", 2)
+_OF_RULES = frozenset({("source", 2), ("video", 2), _PRICE})
+
+
+def write_facts(
+    problem: Problem,
+    units: Sequence[int],
+    scales: Scales | None = None,
+    looked_at: Collection[tuple[str, int]] | None = None,
+) -> str:
+    """Return the facts about units of a problem, their object nodes, the kitchen and the goals.
+
+    One line per unit and per object node, with public numbers. ``scales`` have the weights of ``risk/2`` and
+    ``cost/3``; without them these facts are omitted. ``looked_at`` are the predicates that user rules read:
+    unless it is ``None``, sources, videos and prices of units are added. Raises :class:`UserError` where a
+    price that they read is no whole number of hundredths.
+    """
+    name = problem.network.object_number
+    nodes = described(problem, units)
+    prices = None if looked_at is None else hundredths(problem, units, looked_at)
+    kitchen = problem.kitchen_seen
+    lines = []
+    for unit in units:
+        atoms = _unit_atoms(problem, unit, scales, prices)
+        lines.append(". ".join([_unit_atom(problem, unit), *map(_written, atoms)]) + ".")
+    for o in nodes:
+        atoms = _object_atoms(problem, o)
+        if o in kitchen:
+            atoms.append(("kitchen", f"{name(o)}"))
+            copies = problem.stock_of(o)
+            atoms += [] if copies is None else [("stock", f"{name(o)},{_check(copies)}")]
+        lines.append(". ".join([_object_atom(problem, o), *map(_written, atoms)]) + ".")
+    return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
+
+
+def write_facts_read(
+    problem: Problem, units: Sequence[int], read: Collection[tuple[str, int]], scales: Scales | None = None
+) -> str:
+    """Return the facts of :func:`write_facts` restricted to the predicates in ``read``.
+
+    Without ``scales``, predicates that depend on them are omitted. Raises :class:`UserError` as that does.
+    """
+    seen = problem.as_seen or problem
+    name = problem.network.object_number
+    nodes = described(problem, units)
+    kitchen = problem.kitchen_seen
+    lines: list[str] = []
+    prices = hundredths(problem, units, read) if _OF_RULES & {*read} else None
+    of_objects = {name for name in OBJECT_FACTS if (name, FACT_PREDICATES[name]) in read}
+
+    def add(atoms: Iterable[_Atom]) -> None:
+        wanted = [_written(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
+        if wanted:
+            lines.append(". ".join(wanted) + ".")
+
+    for unit in units:
+        atoms = [("unit", f"{_check(problem.network.unit_number(unit))}")]
+        atoms += _unit_atoms(problem, unit, scales, prices)
+        if problem.rates is not None and not (scales and scales.rates):
+            number = problem.network.unit_number(unit)
+            atoms.append(("rate", f"{number},{millionths(seen.rate(unit))}"))
+        add(atoms)
+    for o in nodes:
+        atoms = [("object", f"{_check(name(o))}")]
+        atoms += [
+            (predicate, f"{name(o)},{arguments}")
+            for predicate, arguments in object_facts(problem.network.objects[o], of_objects)
+        ]
+        if o in kitchen:
+            atoms.append(("kitchen", f"{name(o)}"))
+        add(atoms)
+    return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
+
+
+def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
+    """Yield the facts of utensils and goals, and of available object nodes that user rules do not see."""
+    name = problem.network.object_number
+    labels = {problem.network.objects[o].label for o in nodes}
+    yield from (f"utensil({quote(label)})." for label in sorted(labels & problem.utensils))
+    yield from (f"goal({name(o)})." for o in problem.goals)
+    assumed = problem.kitchen - problem.kitchen_seen
+    yield from (f"available({name(o)})." for o in nodes if o in assumed)
+
+
+def write_worlds(
+    problem: Problem, units: Iterable[int], predicates: Collection[str], world: str
+) -> Iterator[str]:
+    """Yield facts about units and their object nodes by predicates, each unit in a world of its own.
+
+    So rules see each unit separately; ``world`` is the predicate of worlds.
+    """
+    network = problem.network
+    sees_nodes = not OBJECT_FACTS.isdisjoint(predicates)
+    prices: dict[int, int] | None = {} if {"source", "video"} & set(predicates) else None
+
+    @cache
+    def of_object(o: int) -> list[_Atom]:
+        number = network.object_number(o)
+        atoms = [
+            (name, f"{number},{arguments}")
+            for name, arguments in object_facts(network.objects[o], predicates)
+        ]
+        return [*atoms, ("object", f"{_check(number)}")] if "object" in predicates else atoms
+
+    for unit in units:
+        number = network.unit_number(unit)
+        atoms = [("unit", f"{_check(number)}"), *_unit_atoms(problem, unit, None, prices)]
+        atoms = [atom for atom in atoms if atom[0] in predicates]
+        if "rate" in predicates:
+            atoms.append(("rate", f"{number},{millionths((problem.as_seen or problem).rate(unit))}"))
+        if sees_nodes:
+            for o in dict.fromkeys((*network.inputs[unit], *network.outputs[unit])):
+                atoms += of_object(o)
+        yield f"{world}({number})." + "".join(
+            [f"_{name}({number},{arguments})." for name, arguments in atoms]
+        )
+
+
+def _written(atom: _Atom) -> str:
+    return f"{atom[0]}({atom[1]})"
+
+
+def _unit_atom(problem: Problem, unit: int) -> str:
+    return f"unit({_check(problem.network.unit_number(unit))})"
+
+
+def _unit_atoms(
+    problem: Problem, unit: int, scales: Scales | None, prices: Mapping[int, int] | None
+) -> list[_Atom]:
+    """Return the facts about a unit without ``unit/1``.
+
+    With ``prices``, also facts that only user rules read.
+    """
+    network = problem.network
+    inputs, name = network.inputs[unit], network.object_number
+    ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
+    u = network.unit_number(unit)
+    atoms = [("motion", f"{u},{quote(network.motions[unit])}")]
+    atoms += [("input", f"{u},{name(o)}") for o in inputs]
+    atoms += [("needs", f"{u},{name(o)}") for o in problem.needs[unit]]
+    atoms += [("output", f"{u},{name(o)}") for o in network.outputs[unit]]
+    atoms += [("gives", f"{u},{name(o)}") for o in problem.gives[unit]]
+    if problem.items is not None:
+        gone = problem.flows[unit].uses
+        atoms += [("uses_up" if o in gone else "stays", f"{u},{name(o)}") for o in problem.needs[unit]]
+    atoms += [("inputs", f"{u},{len(inputs)}"), ("ingredients", f"{u},{_check(ingredients)}")]
+    if scales and scales.rates:
+        weight = scales.rates.weights[problem.rate(unit)]
+        seen = (problem.as_seen or problem).rate(unit)
+        atoms += [("rate", f"{u},{millionths(seen)}"), ("risk", f"{u},{_check(weight)}")]
+    if scales:
+        weights = ((objective.row.term, scales.weight(objective, [unit])) for objective in scales.facts)
+        atoms += [("cost", f"{term},{u},{_check(weight)}") for term, weight in weights]
+    if prices is not None:
+        sources = network.sources[unit]
+        atoms += [("source", f"{u},{quote(text)}") for text in source_names(sources)]
+        videos = dict.fromkeys(video for source in sources for video in source.videos)
+        atoms += [("video", f"{u},{quote(encodable(video))}") for video in videos]
+        atoms += [("price", f"{u},{prices[unit]}")] if unit in prices else []
+    return atoms
+
+
+def hundredths(
+    problem: Problem, units: Iterable[int], looked_at: Collection[tuple[str, int]]
+) -> dict[int, int]:
+    """Return the price of each unit that has one, in hundredths.
+
+    Empty where a price is no whole number of hundredths, or their sum overflows; raises :class:`UserError`
+    instead if rules read prices.
+    """
+    if problem.unit_prices is None:
+        if _PRICE in looked_at:
+            raise UserError(
+                "a rule looks at price/2, and no prices of units are known: "
+                "give a file of prices, with --unit-prices FILE or in Python load(..., unit_prices=FILE)"
+            )
+        return {}
+    prices = [(unit, price) for unit in units if (price := problem.prices[unit]) is not None]
+    by_unit = {unit: price.numerator * 100 // price.denominator for unit, price in prices}
+    broken = next((pair for pair in prices if pair[1].numerator * 100 % pair[1].denominator), None)
+    if broken is None and sum(by_unit.values()) <= LARGEST:
+        return by_unit
+    if _PRICE not in looked_at:
+        return {}
+    if broken is None:
+        raise UserError(
+            f"a rule looks at price/2, and the prices of all units together are more than {LARGEST // 100}, "
+            "which is more than clingo's numbers of 32 bits can tell in hundredths: divide all prices by 10"
+        )
+    unit, price = broken
+    text = decimal_text(price) if 10**18 % price.denominator == 0 else f"{price}"
+    raise UserError(
+        f"a rule looks at price/2, and the price {text} of the unit "
+        f"{problem.network.motions[unit]!r} is not a whole number of hundredths: round it, or multiply all "
+        "prices by 10"
+    )
+
+
+def _object_atom(problem: Problem, o: int) -> str:
+    return f"object({_check(problem.network.object_number(o))})"
+
+
+def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
+    """Return the facts about an object node without ``object/1`` and ``kitchen/1``."""
+    number = problem.network.object_number(o)
+    return [(name, f"{number},{arguments}") for name, arguments in object_facts(problem.network.objects[o])]
+
+
+def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -> list[_Atom]:
+    """Return facts about an object node by predicates, without its number as first argument."""
+    atoms = [("label", quote(node.label))] if "label" in predicates else []
+    if "state" in predicates:
+        atoms += [("state", quote(state)) for state in sorted(node.states)]
+    if "located" in predicates:
+        atoms += [("located", f"{quote(word)},{quote(related)}") for word, related in sorted(node.relations)]
+    if "ingredient" in predicates:
+        atoms += [("ingredient", quote(item)) for item in dict.fromkeys(node.ingredients)]
+    return atoms
+
+
+def described(problem: Problem, units: Iterable[int]) -> list[int]:
+    """Return the object nodes in the facts about some units, including the goals, in order."""
+    network = problem.network
+    touched = {
+        o for unit in units for objects_of in (network.inputs, network.outputs) for o in objects_of[unit]
+    }
+    return sorted(touched.union(problem.goals))
+
+
+def write_times(times: Mapping[int, tuple[int, int]]) -> str:
+    """Return facts for the least and greatest number of executions of units, by number."""
+    return "".join(
+        f"_least({unit},{least}). _most({unit},{_check(greatest)}).\n"
+        for unit, (least, greatest) in times.items()
+    )
+
+
+def write_objectives(objectives: Sequence[Objective]) -> str:
+    """Return facts that switch objectives on, the first with the highest priority."""
+    return "".join(
+        f"optimize({objective.row.term},{len(objectives) - position}).\n"
+        for position, objective in enumerate(objectives)
+    )
+
+
+def write_exponents(problem: Problem, scales: Scales) -> str:
+    """Return facts of the vector of every unit by the rounded objective; see :meth:`Scales.vector`."""
+    return "".join(
+        f"_exponent({problem.network.unit_number(unit)},{factor},{_check(number)}).\n"
+        for unit, vector in scales.unit_vectors().items()
+        for factor, number in vector.items()
+    )
+
+
+def write_product(number: int, exponents: Mapping[int, int]) -> str:
+    """Return facts of a product of rates, by its exponents."""
+    return "".join(f"_product({number},{factor},{_check(e)}).\n" for factor, e in exponents.items())
+
+
+def write_seen(numbers: Iterable[int]) -> str:
+    """Return facts that exclude products of rates, by number."""
+    return "".join(f"_seen({number}).\n" for number in numbers)
+
+
+def write_fewer(units: Mapping[int, int]) -> str:
+    """Return facts that allow excluded products of rates, by number, to trees of fewer units."""
+    return "".join(f"_fewer({number},{count}).\n" for number, count in units.items())
+
+
+def write_wanted(number: int) -> str:
+    """Return the fact that requires the product of rates of a number."""
+    return f"_wanted({number}).\n"
+
+
+def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
+    """Return facts of object nodes for sale, with integer prices, and which are bought only if necessary."""
+    facts = [f"_for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
+    return "".join([*facts, *(f"_second_choice({o}).\n" for o in second_choices)])
+
+
+def write_list(number: int, items: Iterable[int]) -> str:
+    """Return facts of a shopping list that was found before, so that it is not found again."""
+    return f"_found_list({number}).\n" + "".join(f"_on_list({number},{o}).\n" for o in items)
+
+
+def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
+    """Return facts of the cost of dropping each constraint, by number, and of constraints kept."""
+    facts = [f"_constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
+    return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])
+
+
+def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
+    """Return facts of correction sets: constraints, by number, without which there is a tree."""
+    return "".join(
+        f"_correction({index},{number}).\n"
+        for index, correction in enumerate(corrections)
+        for number in correction
+    )
+
+
+def write_soft(weights: Mapping[int, int]) -> str:
+    """Return facts of the weight of each soft constraint, by number."""
+    return "".join(f"_soft({number},{_check(weight)}).\n" for number, weight in weights.items())
+
+
+def write_least_penalty(priority: int) -> str:
+    """Return the fact that minimizes the weights of broken constraints, at a priority."""
+    return f"optimize(_soft,{priority}).\n"
+
+
+def write_greatest_penalty(penalty: int) -> str:
+    """Return the fact that bounds the weights of broken constraints."""
+    return f"_greatest_penalty({_check(penalty)}).\n"
+
+
+def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
+    """Return facts of a set of upper bounds by objective, of which at least one has to hold.
+
+    Raises ``ValueError`` for ``success``, which is no sum.
+    """
+    if any(map(multiplies, bounds)):
+        raise ValueError("success is a product, and no sum that a bound could be put on")
+    return "".join(
+        f"_at_most({number},{objective.row.term},{_check(bound)}).\n" for objective, bound in bounds.items()
+    )
+
+
+def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Scales) -> str:
+    """Return facts of sets of strict upper bounds, of each of which at least one has to hold.
+
+    Raises :class:`UserError` for an objective that is rounded.
+    """
+    return "".join(
+        write_at_most(number, {o: scales.cost_weight(o, cost) - 1 for o, cost in costs.items()})
+        for number, costs in enumerate(below)
+    )
+
+
+def write_assisted(twins: Mapping[int, int], max_assisted: int) -> str:
+    """Return facts that pair each unit of a person with that of the robot, and bound a person's units."""
+    facts = [f"_takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
+    return "".join([*facts, f"_at_most_assisted({_check(max_assisted)}).\n"])
+
+
+def write_required(sets: Sequence[Iterable[int]]) -> str:
+    """Return facts of sets of units, by number, of each of which a tree has to have one."""
+    return "".join(
+        "".join([f"_required({index}).\n", *(f"_one_of({index},{_check(number)}).\n" for number in numbers)])
+        for index, numbers in enumerate(sets)
+    )
+
+
+def write_known(numbers: Iterable[int]) -> str:
+    """Return facts of the units, by number, whose achievers are all present; other units may lack inputs."""
+    return "".join(f"_known({_check(number)}).\n" for number in numbers)
+
+
+def write_tree(units: Collection[int]) -> str:
+    """Return facts that require the tree of exactly these units."""
+    return f"_tree_size({len(units)}).\n" + "".join(f"_in_tree({unit}).\n" for unit in units)
+
+
+def write_avoided(number: int, units: Iterable[int]) -> str:
+    """Return facts that exclude a tree, by the numbers of its units, and all trees that contain it."""
+    return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
+
+
+def write_unseen(units: Iterable[int]) -> str:
+    """Return facts that ask for a tree with one of some units, by their numbers."""
+    return "".join(f"_unseen({_check(unit)}).\n" for unit in units)
+
+
+def write_in_all(units: Iterable[int]) -> str:
+    """Return facts that ask for a tree without one of some units, by their numbers."""
+    return "".join(f"_in_all({_check(unit)}).\n" for unit in units)
+
+
+def write_beside(plans: Sequence[Mapping[int, int]]) -> str:
+    """Return facts that exclude plans with at least the executions of a known plan, by unit number."""
+    return "".join(
+        f"_avoid({number},{_check(unit)},{count}).\n"
+        for number, plan in enumerate(plans)
+        for unit, count in plan.items()
+    )
+
+
+def write_given(numbers: Collection[int]) -> str:
+    """Return facts of the units, by number, that are to be checked as a tree."""
+    return f"_given_units({len(numbers)}).\n" + "".join(f"_given({number}).\n" for number in numbers)
+
+
+def write_same_rates(classes: Sequence[Iterable[int]]) -> str:
+    """Return facts of the units of each success rate, by number."""
+    return "".join(
+        f"_same_rate({rate},{number}).\n" for rate, numbers in enumerate(classes) for number in numbers
+    )
+
+
+def write_most_alike(limits: Sequence[int]) -> str:
+    """Return facts that bound the number of units of each success rate."""
+    return "".join(f"_most_alike({rate},{_check(number)}).\n" for rate, number in enumerate(limits))
+
+
+def write_exactly_alike(numbers: Sequence[int]) -> str:
+    """Return facts that fix the number of units of each success rate."""
+    return "".join(f"_exactly_alike({rate},{_check(number)}).\n" for rate, number in enumerate(numbers))
+
+
+def write_distances(trees: Sequence[Collection[Hashable]], chosen: int) -> str:
+    """Return facts of the distances between trees, of which ``chosen`` are to be chosen.
+
+    The trees are sets of units or of executions.
+    """
+    sets = list(map(frozenset, trees))
+    facts = [f"_chosen_trees({chosen}).", *(f"_tree({number})." for number in range(len(sets)))]
+    for number, one in enumerate(sets):
+        facts += [
+            f"_distance({number},{other},{len(one ^ sets[other])})." for other in range(number + 1, len(sets))
+        ]
+    return "\n".join(facts) + "\n"
+
+
+def write_tool_order(
+    tools: Sequence[int],
+    uses: Iterable[tuple[int, Iterable[int]]],
+    after: Iterable[Iterable[int]],
+    may_lack: bool,
+) -> str:
+    """Return facts of the tools of each kind, their uses by steps, and the order of steps."""
+    facts = [f"_tools({kind},{_check(count)}).\n" for kind, count in enumerate(tools)]
+    facts += [f"_may_lack({kind}).\n" for kind in range(len(tools)) if may_lack]
+    for use, (kind, steps) in enumerate(uses):
+        facts += [f"_tool_use({use},{kind}).\n", *(f"_in_use({use},{step}).\n" for step in steps)]
+    facts += [
+        f"_waits({step},{earlier_step}).\n"
+        for step, earlier in enumerate(after)
+        for earlier_step in sorted(earlier)
+    ]
+    return "".join(facts)
+
+
+def quote(text: str) -> str:
+    """Return a text as a string of clingo; raises :class:`UserError` for a text that clingo cannot take."""
+    if not text.isascii() or "\0" in text:
+        if "\0" in text:
+            raise UserError(f"the name {text!r} has a zero character, which the solver cannot be given")
+        try:
+            text.encode()
+        except UnicodeEncodeError:
+            raise UserError(
+                f"the name {text!r} has half a character, which the solver cannot be given"
+            ) from None
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+
+
+def source_names(sources: Iterable[Source]) -> dict[str, None]:
+    """Return the names of the sources of a unit: files, with folders and without, and videos."""
+    names: dict[str, None] = {}
+    for source in sources:
+        names.update(_file_names(source.file))
+        names.update(dict.fromkeys(map(encodable, source.videos)))
+    return names
+
+
+@lru_cache(maxsize=1000)  # most units are from the file of the one before
+def _file_names(file: str) -> dict[str, None]:
+    return dict.fromkeys(map(encodable, (file, PurePath(file).name)))
+
+
+def millionths(rate: Fraction) -> int:
+    """Return a success rate in millionths, rounded down, as rules read it."""
+    return rate.numerator * 1_000_000 // rate.denominator
+
+
+def _check(number: int) -> int:
+    if not -_MAX_NUMBER <= number <= _MAX_NUMBER:
+        raise UserError(f"the number {number} is too large for clingo, whose numbers have 32 bits")
+    return number

@@ -1,0 +1,95 @@
+"""A ground program under limits, in this process or in a worker."""
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from foon_asp.deadline import Deadline, LimitError
+from foon_asp.encoding.ground_program import GroundProgram
+from foon_asp.encoding.run import FoundAnswer, Run
+from foon_asp.encoding.stated import Loaded
+
+if TYPE_CHECKING:
+    from foon_asp.encoding.worker_process import WorkerProgram
+
+_MAX_LETTERS_HERE = 1_500_000  # of facts: the built-in encodings ground them in a fraction of a second
+
+
+class Grounded:
+    """Ground program of files and text.
+
+    With ``endless``, for rules whose grounding may not terminate, it is in a worker process, which is killed
+    at the limits and at ctrl-C; also with much text or limited memory. ``doing`` names the phase in messages
+    about limits. Raises :class:`foon_asp.encoding.run.ProgramError` where clingo refuses the program, and
+    :class:`LimitError`.
+    """
+
+    def __init__(
+        self,
+        files: Sequence[Loaded],
+        text: str,
+        arguments: Sequence[str],
+        products: int,
+        deadline: Deadline,
+        endless: bool,
+        doing: str = "grounding",
+    ) -> None:
+        deadline.doing = doing
+        deadline.check()
+        names = [str(file) if isinstance(file, Path) else file for file in files]
+        self._program: GroundProgram | WorkerProgram
+        if endless or len(text) > _MAX_LETTERS_HERE or deadline.memory is not None:
+            from foon_asp.encoding import worker_process  # noqa: PLC0415 (often not needed)
+
+            self._program = worker_process.WorkerProgram(names, text, arguments, products, deadline)
+        else:
+            self._program = GroundProgram(names, text, arguments, products)
+
+    def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
+        """Return the arguments of all atoms of each predicate; raises as the class does."""
+        return self._program.consequences(predicates)
+
+    def search(
+        self,
+        deadline: Deadline,
+        opt_mode: str,
+        on_tree: Callable[[frozenset[int]], None] | None = None,
+        on_bound: Callable[[list[int]], None] | None = None,
+        predicates: Sequence[tuple[str, int]] = (),
+    ) -> Run:
+        """Return the run of a search for the best answer; at a limit or ctrl-C, with the last answer.
+
+        ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
+        ``predicates``, by name and arity, are those whose atoms are returned besides ``use``; these begin
+        with a number. Raises whatever ``on_tree`` raises, and :class:`UserError` for invalid answers.
+        """
+        result = Run()
+        began = time.perf_counter()
+
+        def tree(answer: FoundAnswer) -> None:
+            result.units, result.cost, result.atoms, result.rows = answer
+            if on_tree:
+                on_tree(answer.units)
+
+        def bound(lower: list[int]) -> None:
+            result.lower = max(result.lower, lower)  # a lesser bound may arrive later; all are valid
+            if on_bound:
+                on_bound(result.lower)
+
+        try:
+            self._begin("searching", deadline)
+            result.exhausted, result.statistics = self._program.search(opt_mode, predicates, tree, bound)
+        except LimitError:  # the last answer remains
+            pass
+        result.solve_seconds = time.perf_counter() - began
+        return result
+
+    def close(self) -> None:
+        """Release the program; dropping the last reference does so, too."""
+        self._program.close()
+
+    def _begin(self, doing: str, deadline: Deadline) -> None:
+        deadline.doing = doing
+        deadline.check()
+        self._program.deadline = deadline

@@ -1,0 +1,39 @@
+"""Messages of clingo about statements or instances that it drops."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from clingo import MessageCode
+
+from foon_asp.encoding.number_checks import CHECKS_FILE
+from foon_asp.encoding.run import ProgramError
+
+# Undefined atoms have a check of their own; a file may be included twice; and a global variable may stand in
+# an aggregate. With any other message clingo drops an instance, or stops.
+_HARMLESS = (MessageCode.AtomUndefined, MessageCode.FileIncluded, MessageCode.GlobalVariable)
+
+NO_LIMIT = 2**31 - 1  # clingo's limit of messages: beyond a lower one, a relevant message might be lost
+_MAX_MESSAGES = 1000  # limit of kept messages about dropped instances
+
+
+def listener(messages: list[str]) -> Callable[[MessageCode, str], None]:
+    """Return a logger for clingo that collects messages about dropped statements or instances."""
+
+    def hear(code: MessageCode, text: str) -> None:
+        if text.startswith(f"{CHECKS_FILE}:") and code is MessageCode.OperationUndefined:
+            return  # the checked rule causes the same message
+        if code not in _HARMLESS and (code is MessageCode.RuntimeError or len(messages) < _MAX_MESSAGES):
+            messages.append(text)
+
+    return hear
+
+
+@contextmanager
+def refusing(messages: list[str]) -> Iterator[None]:
+    """Raise :class:`ProgramError` where clingo stops, and where there are messages in the end."""
+    try:
+        yield
+    except RuntimeError as error:
+        raise ProgramError(messages, str(error)) from None
+    if messages:
+        raise ProgramError(messages, "")

@@ -1,0 +1,44 @@
+"""Overflow checks: rules that find arithmetic beyond clingo's numbers, which wraps silently.
+
+They derive ``_beyond(File,Line,Column,Term)``, and call ``@_exact(Text,...)`` with a term in the notation of
+:func:`foon_asp.encoding.exact.is_beyond`, and its values.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import Final
+
+from clingo import Control
+from clingo.symbol import Number, Symbol, SymbolType
+
+from foon_asp.encoding.exact import LARGEST, is_beyond
+
+CHECKS_FILE: Final = "_numbers"  # the name of these rules in place of a file
+BEYOND: Final = "_beyond", 4
+
+
+class Exact:
+    """The functions that rules may call: ``@_exact`` alone."""
+
+    def __getattribute__(self, name: str) -> Callable[..., Symbol]:
+        if name != "_exact":
+            raise RuntimeError(
+                f"no function is called, and {name!r} is one"
+            )  # the text has been checked for calls
+        return _exact
+
+
+def _exact(text: Symbol, *values: Symbol) -> Symbol:
+    if any(value.type is not SymbolType.Number for value in values):
+        return Number(0)  # reported by clingo
+    return Number(is_beyond(text.string, [value.number for value in values]))
+
+
+def numbers_beyond(control: Control) -> Iterator[str]:
+    """Return messages in clingo's format about each overflow in a ground program."""
+    for atom in control.symbolic_atoms.by_signature(*BEYOND):
+        file, line, column, term = atom.symbol.arguments
+        yield (
+            f"{file.string}:{line.number}:{column.number}: error: {term.string} leaves the whole numbers "
+            f"that clingo has, from -{LARGEST} to {LARGEST}; clingo would go on with another number "
+            "silently: calculate with smaller ones"
+        )

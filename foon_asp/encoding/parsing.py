@@ -1,0 +1,50 @@
+"""Parser of statements of files and of rules without a file, with their places."""
+
+from collections.abc import Callable, Iterator
+
+from clingo import Control, MessageCode
+from clingo.ast import AST, ASTSequence, Location, ProgramBuilder, parse_files, parse_string
+
+from foon_asp.encoding.stated import Loaded, Stated
+
+_TEXT = "<string>"  # the file name that clingo uses for a text
+
+
+def parse(rules: Loaded, add: Callable[[AST], None], logger: Callable[[MessageCode, str], None]) -> None:
+    """Parse rules and call ``add`` with each statement; raises ``RuntimeError`` as clingo does."""
+    if not isinstance(rules, Stated):
+        parse_files([str(rules)], add, logger=logger)
+        return
+    place = rules.place
+
+    def placed(statement: AST) -> None:
+        _set_place(statement, place)
+        add(statement)
+
+    def logged(code: MessageCode, message: str) -> None:
+        logger(code, place + message.removeprefix(_TEXT) if message.startswith(_TEXT) else message)
+
+    parse_string(rules.text, placed, logger=logged)
+
+
+def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], None]) -> None:
+    """Add rules without a file to a program, under their name in messages."""
+    with ProgramBuilder(control) as builder:
+        parse(rules, builder.add, logger)
+
+
+def nodes(piece: AST) -> Iterator[AST]:
+    """Return a node of the syntax tree and all its descendants."""
+    yield piece
+    for key in piece.child_keys:
+        child = getattr(piece, key)
+        for node in child if isinstance(child, ASTSequence) else [child]:
+            if isinstance(node, AST):
+                yield from nodes(node)
+
+
+def _set_place(statement: AST, place: str) -> None:
+    for node in nodes(statement):
+        if "location" in node.keys():  # noqa: SIM118 (it is no mapping)
+            begin, end = node.location
+            node.location = Location(begin._replace(filename=place), end._replace(filename=place))

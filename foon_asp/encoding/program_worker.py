@@ -1,0 +1,74 @@
+"""Main loop of the worker process: it executes commands about one program until its input ends."""
+
+import contextlib
+import errno
+import os
+import traceback
+from typing import Any
+
+from foon_asp.encoding.derived import derive
+from foon_asp.encoding.ground_program import GroundProgram
+from foon_asp.encoding.run import ProgramError
+from foon_asp.errors import UserError
+from foon_asp.processes.pipe import OUT_OF_MEMORY, receive, requests, send
+
+
+def serve() -> None:
+    """Execute the commands on standard input and answer on the original standard output."""
+    commands, answers = requests(receive)
+    program: GroundProgram | None = None
+
+    def obey(command: str, *parameters: Any) -> object:
+        nonlocal program
+        if command == "ground":
+            program = None  # frees the memory before the next one
+            folder, *described, memory = parameters
+            if folder is not None:
+                os.chdir(folder)
+            _bound_memory(memory)
+            program = GroundProgram(*described)
+            return None
+        if command == "derive":
+            *described, memory = parameters
+            _bound_memory(memory)
+            return derive(*described)
+        assert program is not None
+        if command == "consequences":
+            return program.consequences(*parameters)
+        assert command == "search"
+        opt_mode, predicates = parameters
+        tree, bound = (lambda value, kind=kind: send(answers, (kind, value)) for kind in ("tree", "bound"))
+        return tuple(program.search(opt_mode, predicates, tree, bound))
+
+    while True:
+        command = commands.get()
+        if command == ("forget",):  # without an answer
+            program = None
+            continue
+        try:
+            answer: tuple[str, object] = "done", obey(*command)
+        except ProgramError as error:
+            answer = "refused", (error.messages, error.otherwise)
+        except UserError as error:
+            answer = "fault", str(error)
+        except MemoryError:
+            os._exit(OUT_OF_MEMORY)
+        except Exception as error:
+            if str(error) == os.strerror(errno.EAGAIN):  # no memory for the stack of a thread of clingo's
+                os._exit(OUT_OF_MEMORY)
+            answer = "bug", traceback.format_exc()
+        try:
+            send(answers, answer)
+        except OSError:
+            return
+
+
+def _bound_memory(size: int | None) -> None:
+    """Limit the data segment to ``size`` bytes where the system can, since the parent only polls memory."""
+    try:
+        import resource  # noqa: PLC0415 (not on every system)
+    except ImportError:
+        return
+    hard_limit = resource.getrlimit(resource.RLIMIT_DATA)[1]
+    with contextlib.suppress(ValueError, OSError):  # not supported, or above the limit of the user
+        resource.setrlimit(resource.RLIMIT_DATA, (hard_limit if size is None else size, hard_limit))

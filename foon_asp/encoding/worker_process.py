@@ -1,0 +1,145 @@
+"""Client of a worker process, which can be killed: clingo cannot be interrupted while it grounds."""
+
+import os
+import signal
+import subprocess
+import sys
+import weakref
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from foon_asp.deadline import Deadline, LimitError
+from foon_asp.encoding.derived import Value
+from foon_asp.encoding.run import Ended, FoundAnswer, ProgramError
+from foon_asp.encoding.stated import Stated
+from foon_asp.errors import BugError, UserError
+from foon_asp.processes.pipe import OUT_OF_MEMORY, packed
+from foon_asp.processes.worker import DiedError, Worker, give_back, take
+
+_KEY = "foon_asp.encoding.program_worker"
+_OF_MEMORY = {OUT_OF_MEMORY, -signal.SIGABRT, -9}
+_Handlers = Mapping[str, Callable[[Any], None]]
+
+
+class WorkerProgram:
+    """A :class:`foon_asp.encoding.ground_program.GroundProgram` in another process.
+
+    At a limit or ctrl-C, the process is killed, :class:`LimitError` is raised, and the program cannot be used
+    any more.
+    """
+
+    def __init__(
+        self,
+        files: Sequence[str | Stated],
+        text: str,
+        arguments: Sequence[str],
+        products: int,
+        deadline: Deadline,
+    ) -> None:
+        self._worker = take(_KEY, _start)
+        self._give_back = weakref.finalize(self, _forget, self._worker)
+        command = "ground", _folder(), list(files), text, list(arguments), products, _memory(deadline)
+        self.deadline = deadline
+        _ask(self._worker, deadline, *command)
+
+    def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
+        """Return the arguments of all atoms of each predicate, given by name and arity."""
+        numbers: list[list[tuple[int, ...]]] = _ask(
+            self._worker, self.deadline, "consequences", list(predicates)
+        )
+        return numbers
+
+    def search(
+        self,
+        opt_mode: str,
+        predicates: Sequence[tuple[str, int]],
+        on_tree: Callable[[FoundAnswer], None],
+        on_bound: Callable[[list[int]], None],
+    ) -> Ended:
+        """Search for the best answer, and return how the search ended; trees are reported in this process."""
+        handlers: _Handlers = {"tree": on_tree, "bound": on_bound}
+        return Ended(
+            *_ask(self._worker, self.deadline, "search", opt_mode, list(predicates), handlers=handlers)
+        )
+
+    def close(self) -> None:
+        """Release the process for another program."""
+        self._give_back()
+
+
+def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[Value, ...]]:
+    """Run :func:`foon_asp.encoding.derived.derive` in another process, which is killed at the limits."""
+    worker = take(_KEY, _start)
+    try:
+        rows: list[tuple[Value, ...]] = _ask(worker, deadline, "derive", text, name, arity, _memory(deadline))
+        return rows
+    finally:
+        _forget(worker)
+
+
+def _memory(deadline: Deadline) -> int | None:
+    """Return the number of bytes that another process may use, ``None`` without a limit."""
+    return None if deadline.memory is None else max(1, deadline.memory - deadline.memory_in_use())
+
+
+def _folder() -> str | None:
+    """Return the current folder, which may change between programs; ``None`` if it was removed."""
+    try:
+        return os.getcwd()
+    except OSError:  # it was removed
+        return None
+
+
+def prepare() -> None:
+    """Start a process in advance, if none waits."""
+    give_back(_KEY, take(_KEY, _start))
+
+
+def _start() -> Worker:
+    return Worker(_KEY, "rules of yours are grounded", "-S", stderr=subprocess.DEVNULL)
+
+
+def _forget(worker: Worker) -> None:
+    """Make the process drop its program, and return it to the pool."""
+    if worker.ready:
+        worker.tell(packed(("forget",)))
+    give_back(_KEY, worker)
+
+
+def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handlers | None = None) -> Any:
+    """Send a command, and return the answer.
+
+    Raises :class:`ProgramError` and :class:`UserError` as the program does, and :class:`LimitError`.
+    """
+    try:
+        kind, value = worker.ask(packed(command), deadline, handlers)
+    except DiedError as died:
+        raise _cause(died.code, worker.has_spoken, deadline) from None
+    if kind == "refused":
+        raise ProgramError(*value)
+    if kind == "fault":
+        raise UserError(value)
+    if kind == "bug":
+        raise BugError(f"in the process of clingo: {value}")
+    return value
+
+
+def _cause(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
+    """Return the error for a process that died: mostly out of memory, else rules beyond clingo."""
+    if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
+        deadline.out_of_memory()
+        return LimitError(deadline)
+    if code == -signal.SIGFPE:
+        return UserError(
+            "clingo broke down at a division in the rules that were added: -2147483648 / -1 is none of "
+            "its numbers; calculate with smaller ones"
+        )
+    if not has_spoken:
+        return UserError(
+            f"{sys.executable} does not start as another process (it ended with {code}), "
+            "where rules that were added are grounded"
+        )
+    return UserError(
+        f"clingo broke down while {deadline.doing} (its process ended with {code}); check the rules that "
+        "were added: terms nested too deeply, for example, are more than it can take"
+    )

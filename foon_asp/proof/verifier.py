@@ -1,0 +1,1095 @@
+"""Is a certificate right? Checked from the network alone: no solver, no linear program, no floats.
+
+docs/dev/certificates.md describes certificates and proves that what passes here is true. In short: take a set
+T of object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node
+of T, so every tree uses one of the units that make a node of T and need none: the *members* of T. Positive
+weights on cuts that overload no unit (those of its cuts add up to at most its cost) therefore add up to a
+lower bound on every tree's cost. A cut without members shows that there is no tree.
+
+Weights and costs have one part for each objective and are compared objective by objective, like words. The
+part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``; its sign is found by bounds of the
+logarithms, and where these are too close, by comparing the product of ``rate ** e`` with 1 in whole
+numbers. This module imports the standard library and the plain network, and nothing of the rest of the
+package.
+"""
+
+import hashlib
+import json
+import math
+import re
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from decimal import Context, Decimal
+from fractions import Fraction
+from functools import cache
+from itertools import accumulate
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple, TypeAlias
+
+from foon_asp.network import STAND_IN, Amounts, Network, StandInTable, UnitPrices, node_at_level
+from foon_asp.proof.rule_meaning import LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
+from foon_asp.proof.ruled import Limit, Ruled
+from foon_asp.proof.stand_ins import Claim as StandInClaim
+from foon_asp.proof.stand_ins import Makes, price_of, stand_in_fault, stand_in_prices
+
+_UNMEASURED = "nothing"  # what a tree that is not there is measured by
+OBJECTIVES = (
+    "units",
+    "inputs",
+    "inputs+ingredients",
+    "success",
+    "kitchen",
+    "attempts",
+    "price",
+    "dissimilarity",
+)
+
+CERTIFICATE_KEYS = frozenset(
+    (
+        *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "rules"),
+        *("measures", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
+    )
+)
+_MEASURE_NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
+_RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
+_SURROGATE = re.compile("[\ud800-\udfff]")
+_LOGARITHM_DIGITS = 50  # of a logarithm
+_NINES = 400  # additional digits for a rate close to 1, at most
+
+# A certificate may come from a stranger: beyond these limits it is refused rather than checked.
+_MAX_LETTERS = 16_000_000  # characters of the file
+_BRACKETS = 1_000_000  # lists and objects in it
+_MAX_STEPS = 5_000_000  # a look at a unit is one; adding and comparing numbers takes more
+_STEPS_EACH = 200  # additional steps for each unit and object node of the network
+_MAX_RULES = 100  # rules of a claim
+_STEPS_RULE = 10  # for each unit and object node that a rule is checked against
+_DIGITS_READ = 2_000  # of a fraction that is read
+_LONG = 40_000  # bits of a sum of fractions
+_MAX_PRODUCT_BITS = 250_000  # bits of a product of rates
+_WRITTEN = 13_000  # bits of a success rate: Python writes numbers of up to 4,300 digits
+
+# A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
+Amount: TypeAlias = dict[tuple[int, Fraction | None], Fraction]
+
+
+class Form(NamedTuple):
+    """A form of certificates: its name, its version, and the keys that each of them has."""
+
+    name: str
+    version: int
+    keys: frozenset[str]
+
+
+TREE_FORM = Form("foon-asp certificate", 5, CERTIFICATE_KEYS)
+
+
+class Subject(NamedTuple):
+    """The data that a certificate is about; ``kitchen`` are object node ids.
+
+    ``stated`` are digests by name that are not computed from the other fields; those named in ``trusted``
+    were never computed. ``stand_ins`` is the table of the stand-ins that the network has, ``None`` without.
+    ``amounts`` count in plans, whose certificates state them.
+    """
+
+    network: Network
+    kitchen: Collection[int]
+    rates: Mapping[str, Fraction] | None
+    utensils: frozenset[str]
+    prices: UnitPrices | None = None
+    stated: Mapping[str, str] = MappingProxyType({})
+    trusted: tuple[str, ...] = ()
+    amounts: Amounts = MappingProxyType({})
+    stand_ins: StandInTable | None = None
+
+    def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
+        """Return the SHA-256 digests that a certificate of it names; ids mean nothing without the network's.
+
+        Digests in ``stated`` are not computed. The digest of sources covers only the places that the rules
+        look at.
+        """
+        return {
+            name: self.stated.get(name) or _digest(value()) for name, value in self._described(rules).items()
+        }
+
+    def described(self, rules: Iterable[Rule] = (), goals: Iterable[int] = ()) -> str:
+        """Return all that a certificate with these goals depends on, as canonical JSON.
+
+        These are the values of the digests by name and, as ``goals``, the text of each goal with its id.
+        """
+        values = {name: value() for name, value in self._described(rules).items()}
+        return canonical({**values, "goals": [(goal, str(self.network.objects[goal])) for goal in goals]})
+
+    def _described(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
+        network, rates, prices = self.network, self.rates, self.prices
+        places = [looked for rule in rules if (looked := looked_at(rule, network)) is not None]
+        table = self.stand_ins
+        return {
+            **({} if table is None else {"stand-ins": lambda: stand_in_prices(table)}),
+            "network": lambda: _described(network),
+            "kitchen": lambda: sorted(self.kitchen),
+            "rates": lambda: rates and sorted([motion, str(rate)] for motion, rate in rates.items()),
+            "utensils": lambda: sorted(self.utensils),
+            "prices": lambda: prices and _stated(prices, network.detailed or network),
+            "sources": lambda: places or None,
+        }
+
+
+class RefusedError(Exception):
+    """The certificate is wrong; the message says where.
+
+    Example:
+        >>> import pathlib, tempfile
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "proof.json"
+        >>> _ = file.write_text("{}")
+        >>> foon_asp.verify(foon_asp.load(), file)
+        Traceback (most recent call last):
+        foon_asp.proof.verifier.RefusedError: expected the format 'foon-asp certificate'
+    """
+
+
+class LimitError(RefusedError):
+    """The certificate may be right, but to check it takes more than is reasonable."""
+
+
+class Trusted(NamedTuple):
+    """A statement taken on trust: the costs of units by a user measure.
+
+    The ``rules`` are stated to give these ``costs`` of units, by id, and no negative cost of any unit;
+    ``sha256`` is the digest of the rules.
+    """
+
+    name: str
+    rules: str
+    sha256: str
+    costs: Mapping[int, Fraction]
+
+
+class UsedUp(NamedTuple):
+    """The statements about consumable items in a claim about plans.
+
+    ``stock`` maps consumable kitchen items, by id, to their copies. ``stays`` maps labels, and object nodes
+    by id, to whether they stay when used, which overrides the rule. ``wanted`` maps goals to the copies that
+    are wanted, where that is not one.
+    """
+
+    stock: Mapping[int, int]
+    stays: Mapping[str | int, bool]
+    wanted: Mapping[int, int] = MappingProxyType({})
+
+
+class Verified(NamedTuple):
+    """What a certificate proves about the data it was checked with.
+
+    ``claim`` is ``optimal``: no tree is better than ``tree`` by the ``objectives``, most important first;
+    ``bound``: no tree costs less than the certificate's bound; or ``infeasible``: there is no tree.
+    All trees are meant that keep to the ``rules``: ready-made constraints, each by its name (``rule``) and
+    its values. ``costs`` are those of the tree, one for each objective. ``trusted`` is what the claim rests
+    on that the data do not say. Where items are used up, a plan is meant in place of a tree, and ``used_up``
+    is what the claim says of items.
+    """
+
+    claim: str
+    goals: tuple[int, ...]
+    containers: str
+    level: int
+    objectives: tuple[str, ...]
+    rules: tuple[Rule, ...]
+    not_covered: tuple[str, ...]
+    tree: tuple[int, ...] | None
+    costs: tuple[int | Fraction, ...] | None
+    cuts: int
+    trusted: tuple[Trusted, ...] = ()
+    used_up: UsedUp | None = None
+
+
+def load_certificate(file: Path) -> Any:
+    """Return the content of a certificate file, reading no more than a certificate may have.
+
+    Raises ``OSError`` and ``UnicodeDecodeError`` where it cannot be read, and else as
+    :func:`read_certificate`.
+    """
+    with file.open("rb") as stream:
+        raw = stream.read(_MAX_LETTERS)
+        if stream.peek():
+            raise LimitError(f"it has more than {_MAX_LETTERS:,} letters")
+    return read_certificate(raw.decode("utf-8"))
+
+
+def read_certificate(text: str) -> Any:
+    """Return the parsed JSON of a certificate; raises :class:`RefusedError` if invalid or a key is double."""
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        content = dict(pairs)
+        require(len(content) == len(pairs), "a key stands twice in one object")
+        return content
+
+    def no_float(number: str) -> None:
+        raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
+
+    if len(text) > _MAX_LETTERS or text.count("[") + text.count("{") > _BRACKETS:
+        raise LimitError(f"it has more than {_MAX_LETTERS:,} letters or {_BRACKETS:,} brackets")
+    try:
+        return json.loads(text, object_pairs_hook=once, parse_float=no_float, parse_constant=no_float)
+    except (ValueError, RecursionError) as error:
+        raise RefusedError(f"not JSON: {error}") from None
+
+
+def seal(certificate: Mapping[str, Any]) -> str:
+    """Return the seal of a certificate: the digest of all other content."""
+    return _digest({key: value for key, value in certificate.items() if key != "seal"})
+
+
+def trusted(certificate: Mapping[str, Any]) -> Rule | None:
+    """Return the statements about user rules that a certificate takes on trust, ``None`` without any."""
+    return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
+
+
+@contextmanager
+def refusing_depth() -> Iterator[None]:
+    """Refuse a certificate that is nested too deeply."""
+    try:
+        yield
+    except RecursionError:
+        raise RefusedError("branches nested too deeply") from None
+
+
+@refusing_depth()
+def verify(certificate: Any, subject: Subject) -> Verified:
+    """Check a certificate of a tree against the data it speaks about.
+
+    Takes time linear in cuts times network, and where that is a few seconds more than the digest of the
+    network takes, raises :class:`LimitError`. Raises :class:`RefusedError` with the first fault that is
+    found.
+    """
+    rules = read_frame(certificate, TREE_FORM, subject)
+    return Check(certificate, rules, subject).claim()
+
+
+def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
+    """Check that a certificate has a form, was not changed and is about the data; return its rules."""
+    require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
+    require(certificate.get("format") == form.name, f"expected the format {form.name!r}")
+    version = certificate.get("version")
+    same = type(version) is int and version == form.version
+    require(same, f"expected version {form.version} of the format")
+    require(certificate.keys() == form.keys, f"expected the keys {', '.join(sorted(form.keys))}")
+    require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
+    level, network = certificate["level"], subject.network
+    require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
+    rules = read_rules(certificate["rules"], len(network))
+    digests = subject.digests(rules)
+    named = read_object(certificate["digests"], tuple(digests))
+    for name, digest in digests.items():
+        require(named[name] == digest, f"{name}: not the one that the certificate is about")
+    return rules
+
+
+class Check:
+    """One certificate, checked against its network.
+
+    A *member* is a unit, by its id, a kitchen item ``k``, by the number of units plus ``k``, or a step of a
+    constraint, numbered from the number of units and nodes on. Items are members only where the objective
+    ``kitchen`` counts them.
+    """
+
+    def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
+        network, kitchen, rates, utensils, prices = subject[:5]
+        self.allowed = _MAX_STEPS + _STEPS_EACH * (len(network) + len(network.objects))
+        self.steps = self.allowed  # that are left
+        self.minus_log = cache(self._minus_log)  # of a rate
+        self.all_multiples = cache(self._all_multiples)  # of a number, by an objective
+        self.looked_at: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
+        self.certificate, self.network, self.kitchen = certificate, network, kitchen
+        self.utensils = utensils
+        self.containers = certificate["containers"]
+        require(self.containers in ("strict", "implied"), "expected the containers strict or implied")
+        self.objectives = tuple(read_list(certificate["objective"]))
+        measures = read_object(certificate.get("measures", {}))
+        self.measures = {name: self._measure(name, stated) for name, stated in measures.items()}
+        require(
+            all(objective in (*OBJECTIVES, *self.measures) for objective in self.objectives),
+            "an objective is unknown",
+        )
+        require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
+        by_rates = {"success", "attempts"} & set(self.objectives)
+        self.rates = self._rates(rates) if by_rates else {}
+        self.costly = frozenset(self.rates.values()) - {0, 1}
+        self.prices = self._prices(prices) if "price" in self.objectives else []
+        self.goals = tuple(_goal(goal, network) for goal in read_list(certificate["goals"]))
+        require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
+        self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
+        self.stand_ins = subject.stand_ins
+        self.rules, self.claimed = rules, 0
+        each_price = cache(lambda: self._each_price(prices))
+        question = Question(
+            network,
+            kitchen,
+            self.goals,
+            utensils,
+            lambda unit: (rates or {}).get(network.motions[unit]),
+            lambda unit: each_price()[unit],
+            self.needs,
+            self.gives,
+        )
+        self.ruled = Ruled(
+            [self._meaning(rule, question) for rule in rules],
+            len(network.objects),
+            len(network) + len(network.objects),
+        )
+        self.not_covered = _names(certificate["not_covered"])
+        # these are nobody's labels, and could say anything in lines of their own
+        require(all(name.isprintable() for name in self.not_covered), "a constraint has no printable name")
+        nodes = len(network.objects) + len(self.ruled.makers)
+        self.cuts = [frozenset(read_numbers(cut, nodes)) for cut in read_list(certificate["cuts"])]
+        self.members = [frozenset(self._members(cut)) for cut in self.cuts]
+        self.met: set[int] = set()  # the cuts that the proof uses
+
+    def _check_stand_ins(self, least: Fraction | None) -> None:
+        """Check the stand-ins of the network against their table.
+
+        ``least`` is the dissimilarity that no tree is claimed to fall below, ``None`` where no tree exists.
+        """
+        if self.stand_ins is None:
+            return
+        by_dissimilarity = self.objectives[:1] in {(), ("dissimilarity",)} and not self.rules
+        claim = StandInClaim(by_dissimilarity, least if by_dissimilarity else None)
+        makes = Makes(self.kitchen, self.needs, self.gives)
+        wrong = stand_in_fault(self.network, self.stand_ins, makes, self.goals, claim)
+        require(wrong is None, f"{wrong}")
+
+    def _measure(self, name: str, stated: Any) -> Trusted:
+        """Read the stated costs of units by a measure."""
+        require(
+            bool(_MEASURE_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own"
+        )
+        measure = read_object(stated, ("rules", "sha256", "costs"))
+        rules = measure["rules"]
+        require(isinstance(rules, str), "expected the text of rules")
+        digest = hashlib.sha256(rules.encode(errors="backslashreplace")).hexdigest()
+        require(measure["sha256"] == digest, "the digest of a measure is not that of its rules")
+        costs: dict[int, Fraction] = {}
+        for text, units in read_object(measure["costs"]).items():
+            cost = _rational(text)
+            require(cost >= 0, "a unit costs less than 0 by a measure")
+            for unit in read_numbers(units, len(self.network)):
+                require(unit not in costs, "a unit has two costs by a measure")
+                costs[unit] = cost
+        self.looked_at[name] = {}
+        return Trusted(name, rules, digest, costs)
+
+    def _measured(self, name: str, unit: int) -> Fraction:
+        """Return the stated cost of a unit by a measure, and note that it is taken on trust."""
+        costs = self.measures[name].costs
+        require(unit in costs, "the cost of a unit by a measure is not stated")
+        self.looked_at[name][unit] = costs[unit]
+        return costs[unit]
+
+    def _rates(self, given_rates: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
+        """Return the success rate of each motion."""
+        motions = self.network.different_motions
+        rates = {
+            motion: given_rates[motion]
+            for motion in motions
+            if given_rates is not None and motion in given_rates
+        }
+        values = None if given_rates is None else [*rates.values()]
+        values_found = self._complete(values, len(motions), "success rates")
+        require(all(rate <= 1 for rate in values_found), "a rate is above 1")
+        require(
+            "attempts" not in self.objectives or 0 not in values_found,
+            "a unit that never succeeds is repeated forever",
+        )
+        return rates
+
+    def rate(self, unit: int) -> Fraction:
+        """Return the success rate of a unit."""
+        return self.rates[self.network.motions[unit]]
+
+    def _prices(self, unit_prices: UnitPrices | None) -> list[Fraction]:
+        """Return the price of each unit."""
+        prices = None if unit_prices is None else self._each_price(unit_prices)
+        return self._complete(prices, len(self.network), "prices")
+
+    def _each_price(self, unit_prices: UnitPrices | None) -> Sequence[Fraction | None]:
+        """Return the prices of units, their own or those of their motions; below level 3 the least."""
+        network = self.network
+        if unit_prices is None:
+            return [None] * len(network)
+        whole = network.detailed or network
+        own = {whole.unit_id(unit): price for unit, price in unit_prices.units.items()}
+        prices = [own.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(whole.motions)]
+        if network.detailed is not None:
+            details_prices = [[prices[detail] for detail in details] for details in network.stands_for]
+            known_prices = [
+                [price for price in detail_prices if price is not None] for detail_prices in details_prices
+            ]
+            prices = [
+                min(k) if len(k) == len(e) else None
+                for k, e in zip(known_prices, details_prices, strict=True)
+            ]
+        return prices
+
+    def _complete(self, values: Sequence[Fraction | None] | None, count: int, what: str) -> list[Fraction]:
+        """Return the values, after checking that none is missing or below 0."""
+        require(values is not None, f"a claim needs {what}, but none are given")
+        present = [value for value in values or () if value is not None]
+        require(len(present) == count, f"a unit has none of the {what} that a claim needs")
+        require(all(value >= 0 for value in present), f"one of the {what} is below 0")
+        return present
+
+    def claim(self) -> Verified:
+        """Check tree, costs and proof."""
+        claim, listed, proof = (self.certificate[key] for key in ("claim", "tree", "proof"))
+        costs: list[int | Fraction] | None = None
+        amount: Amount = {}
+        if listed is not None:
+            require(bool(self.objectives), "a tree is given, but no objective")
+            amount, costs = self._tree(read_list(listed))
+            computed = json.dumps([str(c) if isinstance(c, Fraction) else c for c in costs])
+            stated = json.dumps(self.certificate["costs"])  # which tells 1 from True and from 1.0
+            require(stated == computed, f"the tree costs {computed}, not what is stated")
+        else:
+            require(self.certificate["costs"] is None, "costs are given, but no tree")
+        if claim == "infeasible":
+            require(listed is None and not self.objectives, "there cannot be a tree")
+            require(self.certificate["bound"] is None, "a bound is given where there is nothing to bound")
+        elif claim == "optimal":
+            require(listed is not None, "expected the tree that is optimal")
+            require(self.certificate["bound"] is None, "the bound of an optimal tree is what it costs")
+        elif claim == "bound":
+            require(bool(self.objectives), "expected objectives")
+            bound = self._read(self.certificate["bound"])
+            require(
+                listed is None or self.sign(self.sum([amount, negative(bound)])) >= 0, "the bound is false"
+            )
+            amount = bound
+        else:
+            raise RefusedError("expected the claim optimal, bound or infeasible")
+        self._check_stand_ins(None if claim == "infeasible" else amount.get((0, None), Fraction(0)))
+        self._prove(proof, None if claim == "infeasible" else amount)
+        require(len(self.met) == len(self.cuts), "a cut is not used by the proof")
+        return Verified(
+            claim,
+            self.goals,
+            self.containers,
+            self.network.level,
+            self.objectives,
+            self.rules,
+            self.not_covered,
+            None if listed is None else tuple(listed),
+            None if costs is None else tuple(costs),
+            len(self.cuts),
+            tuple(
+                measure._replace(costs=self.looked_at[name])
+                for name, measure in self.measures.items()
+                if name in self.objectives
+            ),
+        )
+
+    def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
+        """Execute the tree as listed; return its cost as an amount and as figures."""
+        made: set[int | None] = set()
+        for unit in read_numbers(units, len(self.network), ascending=False):
+            lacking = (o for o in self.needs(unit) if o not in made and o not in self.kitchen)
+            require(
+                not any(True for _ in lacking), f"unit {unit} of the tree lacks an input when it is its turn"
+            )
+            made.update(self.gives(unit))
+        unmade = [goal for goal in self.goals if goal not in made and goal not in self.kitchen]
+        require(not unmade, "the tree does not make every goal")
+        self._keep(frozenset(units))
+        items = {o for unit in units for o in self.needs(unit) if o is not None and o in self.kitchen}
+        members = [*units, *(len(self.network) + o for o in sorted(items))]
+        total = self.sum(map(self._cost, members))
+        return total, self._figures(units, total)
+
+    def _figures(self, units: list[int], total: Amount) -> list[int | Fraction]:
+        """Return the costs of a tree of these units by each objective, as figures."""
+        costs: list[int | Fraction] = []
+        for level, objective in enumerate(self.objectives):
+            if objective == "success":
+                rates = [self.rate(u) for u in units]
+                require(0 not in rates, "a tree that never succeeds is no better than another")
+                if sum(rate.denominator.bit_length() for rate in rates) > _WRITTEN:
+                    raise LimitError("the success rate of the tree is too long a number to be written")
+                costs.append(math.prod(rates, start=Fraction(1)))
+            else:
+                figure = total.get((level, None), Fraction(0))
+                if max(figure.numerator, figure.denominator).bit_length() > _WRITTEN:
+                    raise LimitError("what the tree costs is too long a number to be written")
+                sums = {"attempts", "price", "dissimilarity", *self.measures}
+                costs.append(figure if objective in sums else int(figure))
+        return costs
+
+    def _keep(self, units: frozenset[int]) -> None:
+        """Check a tree against the rules."""
+        self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
+        self._spend(len(units) * len(self.ruled.limits))
+        others = frozenset(range(len(self.network))) - units if self.rules else frozenset[int]()
+        fault = self.ruled.fault(units, others)
+        require(fault is None, f"the tree {fault}")
+
+    def _barred(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
+        """Return the units that a rule excludes from trees with the used members and none of ``without``."""
+        self._spend(len(self.network) + 5 * self.claimed)
+        units = frozenset(member for member in used if member < len(self.network))
+        return self.ruled.barred[number](units, without)
+
+    def _prove(self, proof: Any, least: Amount | None) -> None:
+        """Check a proof, with its branches, that every tree costs at least ``least``.
+
+        ``None`` stands for a proof that no tree exists: all costs are 0 then, so weights that add up to
+        more than 0 are a contradiction.
+        """
+        nobody: frozenset[int] = frozenset()
+        waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, nobody, self.ruled.removed)]
+        while waiting:
+            node, used, without = waiting.pop()
+            self._spend(1 + len(used) + len(without))
+            keys = set(read_object(node))
+            if keys == {"branch", "without", "using"}:
+                member = self._branch(node["branch"])
+                require(member not in used | without, "a branch is taken twice")
+                waiting.append((node["without"], used, without | {member}))
+                waiting.append((node["using"], used | {member}, without))
+                continue
+            if keys == {"broken"}:
+                number = read_number(node["broken"], range(len(self.rules)), "the number of a rule")
+                never, barring = number in self.ruled.never, number in self.ruled.barred
+                broken = never or (barring and not used.isdisjoint(self._barred(number, used, without)))
+                require(broken, "a rule called broken is kept")
+                continue
+            barred = without.union(*(self._barred(number, used, without) for number in self.ruled.barred))
+            if keys == {"hopeless"}:
+                crossing = self._crossing(node["hopeless"], used, barred)
+                require(not crossing, "a cut called hopeless is crossed")
+                continue
+            above_cutoff: list[int] | None = None
+            if "dear" in keys:
+                above_cutoff = self._above_cutoff(node["dear"], used | without)
+                require("others" in keys, "expected a proof for what is without the dear")
+                waiting.append((node["others"], used, without.union(above_cutoff)))
+                keys -= {"dear", "others"}
+            require(
+                {"weights"} <= keys <= {"weights", "limits", "multiples"},
+                "expected weights, a hopeless cut, a broken rule or a branch",
+            )
+            packed, reduced_cost = self._packed(node["weights"], node.get("limits", []), used, barred)
+            paid = self.sum(map(self._cost, used))
+            for addition in [{}] if above_cutoff is None else map(reduced_cost, above_cutoff):
+                total = self._rounded(self.sum([packed, addition]), node.get("multiples", {}))
+                require(self._enough([total, paid], least), "the weights do not add up to enough")
+
+    def _above_cutoff(self, choices: Any, decided: frozenset[int]) -> list[int]:
+        """Read the members of a reduced-cost fixing, which are claimed to be above the cutoff."""
+        actions = [self._branch(choice) for choice in read_list(choices)]
+        require(len(actions) > 0, "nothing is too dear")
+        require(
+            decided.isdisjoint(actions) and len(set(actions)) == len(actions), "what is dear is decided twice"
+        )
+        return actions
+
+    def _enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
+        """Return whether a bound is at least ``least``; ``None`` asks for a bound above 0."""
+        if least is None:
+            return self.sign(self.sum(bound)) > 0
+        return self.sign(self.sum([*bound, negative(least)])) >= 0
+
+    def _packed(
+        self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]
+    ) -> tuple[Amount, Callable[[int], Amount]]:
+        """Return the sum of a cost partition, after checking it, and the reduced cost of each member.
+
+        A member that consumes from a limit may carry the weight of the limit for each unit it consumes; the
+        weight of the whole limit, less the amounts of used members, is then taken from the bound. Trees with
+        a member cost at least the sum and the reduced cost of the member.
+        """
+        total: Amount = {}
+        loads: dict[int, Amount] = {}
+        carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
+        for (limit_number,), weight in self.read_weights("limits", limits, self._read):
+            limit = self.limit_at(limit_number)
+            self._spend(len(used))
+            self._add(total, self.times(weight, -limit.remaining(used)))
+            carried.append((weight, limit.amounts))
+        for (number,), weight in self.read_weights("weights", weights, self._read):
+            self._add(total, weight)
+            for member in self._crossing(number, used, without):
+                self._add(loads.setdefault(member, {}), weight)
+
+        def allowed(member: int) -> Amount:
+            # a member that is used anyway was paid for, and can carry nothing more
+            capacity = {} if member in used else self._cost(member)
+            if carried and member not in used:
+                extra = (self.times(w, amounts[member]) for w, amounts in carried if member in amounts)
+                capacity = self.sum([capacity, *extra])
+            return capacity
+
+        def reduced_cost(member: int) -> Amount:
+            return self.sum([allowed(member), negative(loads.get(member, {}))])
+
+        for member, load in loads.items():
+            if allowed(member) != load:
+                require(
+                    self.sign(reduced_cost(member)) >= 0, f"unit or item {member} carries more than it costs"
+                )
+        return total, reduced_cost
+
+    def _rounded(self, amount: Amount, stated: Any) -> Amount:
+        """Round up a bound to a stated common divisor of all costs.
+
+        It is rounded at the first objective with a stated multiple that the bound is not a multiple of. A
+        tree that costs as much as the bound by the objectives before it costs at least 0 by those after it.
+        """
+        multiples = {name: _rational(multiple) for name, multiple in read_object(stated).items()}
+        require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
+        for level, objective in enumerate(self.objectives):
+            if objective in multiples:
+                multiple = multiples[objective]
+                require(multiple > 0, "a multiple is not above zero")
+                require(self.all_multiples(level, multiple), "a cost is not a multiple of what is stated")
+                times = amount.get((level, None), Fraction(0)) / multiple
+                if times.denominator > 1:
+                    before = {key: value for key, value in amount.items() if key[0] < level}
+                    return {**before, (level, None): math.ceil(times) * multiple}
+        return amount
+
+    def _all_multiples(self, level: int, multiple: Fraction) -> bool:
+        """Return whether the costs of all units and items by an objective are multiples of a number."""
+        if self.objectives[level] == "success":
+            return False
+        for member in (*range(len(self.network)), *(len(self.network) + o for o in self.kitchen)):
+            cost = self._cost_by(level, member) or Fraction(0)
+            self._spend_on(_bits(cost) + _bits(multiple))
+            if cost % multiple:
+                return False
+        return True
+
+    def _crossing(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
+        """Return the members of a cut that are not excluded, after checking that the cut is a landmark."""
+        index = read_number(number, range(len(self.cuts)), "the number of a cut")
+        self._spend(1 + len(self.goals) + len(used) + len(self.members[index]))
+        self.met.add(index)
+        cut = self.cuts[index]
+        before = (
+            any(goal in cut and goal not in self.kitchen for goal in self.goals)
+            or not cut.isdisjoint(self.ruled.goals)
+            or any(not cut.isdisjoint(self._preconditions(member)) for member in used)
+        )
+        require(before, f"cut {number} holds neither a goal nor what a used unit needs")
+        return self.members[index] - without
+
+    def _members(self, cut: frozenset[int]) -> Iterator[int]:
+        """Yield the landmark of a cut: the units that make one of its nodes and need none, and its items."""
+        network, own = self.network, self.ruled.makers
+        self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
+        for o in cut:
+            if o in self.kitchen:
+                require("kitchen" in self.objectives, "a cut holds a kitchen item")
+                yield len(network) + o
+            elif o in own:
+                yield from (member for member in own[o] if cut.isdisjoint(self._preconditions(member)))
+            else:
+                for unit in network.producers[o]:
+                    if o in self.gives(unit) and cut.isdisjoint(self._preconditions(unit)):
+                        yield unit
+
+    def _preconditions(self, member: int) -> frozenset[int | None]:
+        """Return the preconditions of a unit or a step, with those by rules; an item has none."""
+        if member in self.ruled.steps:
+            return frozenset(self.ruled.steps[member][0])
+        if member >= len(self.network):
+            return frozenset()
+        own = self.ruled.needs.get(member)
+        return self.needs(member).union(own) if own else self.needs(member)
+
+    def _needs(self, unit: int) -> frozenset[int | None]:
+        """Return the preconditions of a unit; below level 3, those common to all units that it stands for."""
+        return frozenset.intersection(*(needed for needed, _ in self._details(unit)))
+
+    def _gives(self, unit: int) -> frozenset[int | None]:
+        """Return the add effects of a unit; below level 3 those of any unit that it stands for."""
+        return frozenset.union(*(made for _, made in self._details(unit)))
+
+    def _details(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
+        """Yield preconditions and add effects of each unit that a unit stands for, at level 3 of itself.
+
+        Containers that a unit may skip are neither.
+        """
+        network = self.network
+        whole = network.detailed or network
+        for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
+            inputs = set(whole.inputs[detail])
+            skipped = self._skipped(whole, inputs) if self.containers == "implied" else set()
+            yield self._at_level(inputs - skipped), self._at_level(set(whole.outputs[detail]) - skipped)
+
+    def _skipped(self, whole: Network, inputs: set[int]) -> set[int]:
+        """Return the inputs of a unit that the rule ``implied`` takes as given.
+
+        These are utensils with exactly one ingredient that, located in the utensil, is another input.
+        """
+        nodes = [(o, whole.objects[o]) for o in inputs]
+        return {
+            o
+            for o, vessel in nodes
+            if vessel.label in self.utensils
+            and len(vessel.ingredients) == 1
+            and any(
+                other != o and node.label == vessel.ingredients[0] and node.is_in(vessel.label)
+                for other, node in nodes
+            )
+        }
+
+    def _at_level(self, nodes: set[int]) -> frozenset[int | None]:
+        """Return the ids at the network's level of nodes of level 3."""
+        network = self.network
+        if network.detailed is None:
+            return frozenset(nodes)
+        nodes_at_level = (node_at_level(network.detailed.objects[o], network.level) for o in nodes)
+        return frozenset(map(network.object_id, nodes_at_level))
+
+    def _meaning(self, rule: Rule, question: Question) -> Meaning:
+        """Return the meaning of a rule for the network."""
+        self._spend(_STEPS_RULE * (len(self.network) + len(self.network.objects)))
+        self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
+        return meaning(rule, question)
+
+    def _cost(self, member: int) -> Amount:
+        """Return the cost of a unit or an item, one part for each objective."""
+        cost: Amount = {}
+        if member in self.ruled.steps:
+            return cost
+        for level, objective in enumerate(self.objectives):
+            figure = self._cost_by(level, member)
+            if figure is not None:
+                cost[level, self.rate(member) if objective == "success" else None] = figure
+        return cost
+
+    def _cost_by(self, level: int, member: int) -> Fraction | None:
+        """Return the cost of a unit or an item by an objective, ``None`` if it is not counted.
+
+        By ``success`` it is the exponent of a unit's rate.
+        """
+        network, objective = self.network, self.objectives[level]
+        item = member >= len(network)
+        if item or objective == "kitchen":
+            return Fraction(1) if item and objective == "kitchen" else None
+        if objective in {"units", "success"}:
+            return Fraction(1)
+        if objective == "attempts":
+            return 1 / self.rate(member)
+        if objective in {"price", "dissimilarity"}:
+            return self.prices[member] if objective == "price" else self._dissimilarity(member)
+        if objective in self.measures:
+            return self._measured(objective, member)
+        require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
+        inputs = network.inputs[member]
+        count = len(inputs)
+        if objective == "inputs+ingredients":
+            count += sum(len(network.objects[o].ingredients) for o in inputs)
+        return Fraction(count)
+
+    def _dissimilarity(self, unit: int) -> Fraction:
+        """Return what a stand-in costs by the table, 0 for other units."""
+        network = self.network
+        if self.stand_ins is None or network.motions[unit] != STAND_IN:
+            return Fraction(0)
+        (serving,), (served,) = network.inputs[unit], network.outputs[unit]
+        # each has a price: they were held against the table
+        return price_of(self.stand_ins, network.objects[serving], network.objects[served]) or Fraction(0)
+
+    def sign(self, amount: Amount) -> Fraction | int:
+        """Return a number with the sign of an amount; the first objective that is not 0 decides."""
+        for level, objective in enumerate(self.objectives or (_UNMEASURED,)):
+            if objective == "success":
+                sign = self._minus_log_sign({r: e for (_, r), e in amount.items() if r is not None})
+            else:
+                sign = amount.get((level, None), 0)
+            if sign:
+                return sign
+        return 0
+
+    def _branch(self, choice: Any) -> int:
+        """Read the member that a branch is about: a unit, an item or a step."""
+        network, kinds = self.network, [*read_object(choice)]
+        kind = kinds[0] if kinds in (["item"], ["step"]) else "unit"
+        number = read_object(choice, (kind,))[kind]
+        if kind == "unit":
+            return read_number(number, range(len(network)), "the id of a unit")
+        if kind == "item":
+            require("kitchen" in self.objectives, "a branch on an item where items cost nothing")
+            return len(network) + read_number(number, self.kitchen, "the id of a kitchen item")
+        steps = range(len(self.ruled.steps))
+        first = len(network) + len(network.objects)
+        return first + read_number(number, steps, "the number of a step")
+
+    def read_weights(
+        self, key: str, stated: Any, read: Callable[[Any], Amount], numbers: int = 1
+    ) -> Iterator[tuple[list[int], Amount]]:
+        """Read the weights under a key of a proof.
+
+        The first ``numbers`` entries of each list name what is weighted.
+        """
+        rows = [read_list(row) for row in read_list(stated)]
+        names = [row[:numbers] for row in rows]
+        require(
+            all(len(row) == numbers + 1 for row in rows)
+            and all(type(number) is int for name in names for number in name),
+            f"{key}: expected what has a weight by its number, and the weight",
+        )
+        in_order = names == sorted(map(list, {*map(tuple, names)}))
+        require(in_order, f"{key}: expected weights in order, each once")
+        for name, row in zip(names, rows, strict=True):
+            weight = read(row[numbers])
+            require(self.sign(weight) > 0, f"{key}: a weight is not above zero")
+            yield name, weight
+
+    def limit_at(self, number: int) -> Limit:
+        """Return the limit that a weight is for, by the limit's number."""
+        require(number in self.ruled.limits, "a rule that limits nothing is given a weight")
+        return self.ruled.limits[number]
+
+    def _read(self, stated: Any) -> Amount:
+        """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
+        amount: Amount = {}
+        parts = read_list(stated)
+        objectives = self.objectives or (_UNMEASURED,)
+        require(len(parts) == len(objectives), "expected one part of a weight for each objective")
+        for level, objective in enumerate(objectives):
+            if objective == "success":
+                for name, exponent in read_object(parts[level]).items():
+                    rate = _rational(name)
+                    require(rate in self.costly, "expected rates of motions in a weight, and none of 0 or 1")
+                    amount[level, rate] = _rational(exponent)
+            else:
+                amount[level, None] = _rational(parts[level])
+        return amount
+
+    def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> Fraction | int:
+        """Return a number with the sign of the sum of ``e * -log(rate)``: is the product below or above 1?
+
+        Bounds of the logarithms decide where they can. Otherwise, with the exponents over one denominator,
+        the product of ``rate ** e`` is below 1 exactly when its power by that denominator is, and that one is
+        a quotient of whole numbers. A rate of 0 costs more than any weight.
+        """
+        if never := exponents.get(Fraction(0)):
+            return never
+        exponents = {rate: e for rate, e in exponents.items() if e and rate != 1}
+        for size in accumulate(map(_bits, exponents.values())):
+            self._spend_on(4000 + size)  # bounds of logarithms have hundreds of bits themselves
+        bounds = [[e * bound for bound in self.minus_log(rate)] for rate, e in exponents.items()]
+        low, high = sum(map(min, bounds)), sum(map(max, bounds))
+        if low > 0 or high < 0:
+            return low
+        common = math.lcm(*(e.denominator for e in exponents.values()))
+        powers = {rate: int(e * common) for rate, e in exponents.items()}
+        bits = sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items())
+        if bits > _MAX_PRODUCT_BITS:
+            raise LimitError("products of rates are too close to be told apart in reasonable time")
+        self._spend(bits * math.isqrt(bits) // 64)
+        above, below = 1, 1
+        for rate, power in powers.items():
+            up, down = max(power, 0), max(-power, 0)
+            above *= rate.numerator**up * rate.denominator**down
+            below *= rate.denominator**up * rate.numerator**down
+        return below - above
+
+    def _minus_log(self, rate: Fraction) -> tuple[Fraction, Fraction]:
+        """Return bounds of ``-log(rate)`` from below and above.
+
+        Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
+        Those of the denominator and of the numerator of a rate next to 1 share their first digits, and more
+        are computed (one for three bits).
+        """
+        shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
+        precise = Context(prec=_LOGARITHM_DIGITS + min(shared, _NINES))
+        self._spend((precise.prec // 10) ** 3)
+        low = high = Fraction(0)
+        for sign, number in ((1, rate.denominator), (-1, rate.numerator)):
+            logarithm = precise.ln(Decimal(number))
+            unit = Fraction(10) ** (logarithm.adjusted() + 1 - precise.prec) if logarithm else Fraction(0)
+            low += sign * Fraction(logarithm) - unit
+            high += sign * Fraction(logarithm) + unit
+        return low, high
+
+    def _add(self, total: Amount, amount: Amount) -> None:
+        for key, value in amount.items():
+            total[key] = total[key] + value if key in total else value
+            self._spend_on(_bits(total[key]))
+
+    def times(self, amount: Amount, factor: Fraction) -> Amount:
+        """Return an amount times a factor."""
+        return self.sum([{key: value * factor for key, value in amount.items()}])
+
+    def sum(self, amounts: Iterable[Amount]) -> Amount:
+        """Return the sum of amounts."""
+        total: Amount = {}
+        for amount in amounts:
+            self._add(total, amount)
+        return total
+
+    def _spend_on(self, bits: int) -> None:
+        """Count the steps of an operation on fractions of ``bits`` bits, whose time grows with the square."""
+        if bits > _LONG:
+            raise LimitError("its fractions add up to numbers that are too long")
+        self._spend(5 + (bits // 512) ** 2)
+
+    def _spend(self, steps: int) -> None:
+        self.steps -= steps
+        if self.steps < 0:
+            raise LimitError(f"to check it takes more than {self.allowed:,} steps")
+
+
+def _bits(value: Fraction) -> int:
+    return value.numerator.bit_length() + value.denominator.bit_length()
+
+
+def negative(amount: Amount) -> Amount:
+    """Return an amount with the opposite sign."""
+    return {key: -value for key, value in amount.items()}
+
+
+def _described(network: Network) -> list[Any]:
+    """Return all that a claim about a network can depend on; below level 3 with the network of level 3."""
+    nodes = [
+        (label, sorted(states), sorted(relations), contents)
+        for label, states, relations, contents in network.objects
+    ]
+    below = [] if network.detailed is None else [_described(network.detailed), network.stands_for]
+    return [network.level, nodes, network.motions, network.inputs, network.outputs, *below]
+
+
+def _stated(prices: UnitPrices, network: Network) -> list[list[Any]]:
+    """Return the prices by motion, and those of single units by their id at level 3."""
+    ids = ((network.unit_id(unit), price) for unit, price in prices.units.items())
+    single = sorted([unit, str(price)] for unit, price in ids if unit is not None)
+    return [sorted([motion, str(price)] for motion, price in prices.motions.items()), single]
+
+
+def _digest(value: object) -> str:
+    return hashlib.sha256(canonical(value).encode()).hexdigest()
+
+
+def canonical(value: object) -> str:
+    """Return plain values as canonical JSON, for digests."""
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
+
+
+def require(holds: bool, otherwise: str) -> None:
+    """Raise :class:`RefusedError` with a message unless something holds."""
+    if not holds:
+        raise RefusedError(otherwise)
+
+
+def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
+    """Read a JSON object; with ``keys``, it must have exactly these keys."""
+    require(isinstance(value, dict), "expected an object")
+    content: dict[str, Any] = value
+    require(keys is None or set(content) == set(keys), f"expected the keys {', '.join(keys or ())}")
+    return content
+
+
+def read_list(value: Any) -> list[Any]:
+    """Read a JSON list."""
+    require(isinstance(value, list), "expected a list")
+    items: list[Any] = value
+    return items
+
+
+def read_pair(value: Any, what: str) -> tuple[Any, Any]:
+    """Read a list of two entries; ``what`` names it in the error."""
+    require(isinstance(value, list) and len(value) == 2, f"expected {what}")
+    first, second = value
+    return first, second
+
+
+def read_number(value: Any, allowed: Container[int], what: str) -> int:
+    """Read an id or number from the allowed ones, for ``what`` in errors; JSON's true is no number."""
+    require(type(value) is int and value in allowed, f"expected {what}")
+    return int(value)
+
+
+def _names(value: Any) -> tuple[str, ...]:
+    names = read_list(value)
+    require(all(isinstance(name, str) for name in names), "expected names")
+    require(names == sorted(set(names)), "expected names in order, each of them once")
+    require(not any(map(_SURROGATE.search, names)), "a name has half of a letter (a surrogate)")
+    return tuple(names)
+
+
+def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
+    """Read distinct ids; with ``ascending``, at least one, in ascending order."""
+    numbers = read_list(value)
+    require(all(type(n) is int and 0 <= n < below for n in numbers), "expected ids of the network")
+    require(len(set(numbers)) == len(numbers), "an id stands twice")
+    require(not ascending or (numbers == sorted(numbers) and len(numbers) > 0), "expected ids in order")
+    return numbers
+
+
+def _goal(value: Any, network: Network) -> int:
+    goal = read_object(value, ("id", "node"))
+    (node,) = read_numbers([goal["id"]], len(network.objects))
+    require(str(network.objects[node]) == goal["node"], "a goal is not the node of its id")
+    return node
+
+
+def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
+    """Read the constraints of a claim, and its statements about user rules that are taken on trust."""
+    rules = [read_object(rule) for rule in read_list(value)]
+    if len(rules) > _MAX_RULES:
+        raise LimitError(f"it has more than {_MAX_RULES} rules")
+    for rule in rules:
+        name = rule.get("rule")
+        if name == OWN:
+            _own(rule, units)
+            continue
+        require(isinstance(name, str) and name in LIBRARY, "a rule is unknown")
+        values = LIBRARY[rule["rule"]].values
+        read_object(rule, ("rule", *values))
+        for key, kind in values.items():
+            require(type(rule[key]) is kind, "a value of a rule is of another kind")
+            _names(rule[key] if kind is list else [rule[key]] if kind is str else [])
+    require(sum(rule["rule"] == OWN for rule in rules) <= 1, "rules of the user's own stand twice")
+    texts = [canonical(rule) for rule in rules]
+    require(texts == sorted(set(texts)), "expected rules in order, each of them once")
+    return tuple(rules)
+
+
+def _own(rule: Rule, units: int) -> None:
+    """Check the form of claims about user rules; the claims themselves are taken on trust.
+
+    A claim has the texts of the rules, their digests, and sets of units.
+    """
+    read_object(rule, ("rule", "claims", "constants", "files", "library", "limits"))
+    for key in ("constants", "library"):
+        _names(rule[key])
+    for file in read_list(rule["files"]):
+        read_object(file, ("name", "sha256", "text"))
+        _names([file["name"]])
+        _names([file["text"]])
+        require(file["name"].isprintable(), "a file of rules has no printable name")
+        sha = hashlib.sha256(file["text"].encode()).hexdigest()
+        require(file["sha256"] == sha, "a text of rules does not have its digest")
+    for claim in read_list(rule["claims"]):
+        for unit_set in read_pair(claim, "two sets of units in a claim"):
+            read_numbers(unit_set, units, ascending=unit_set != [])
+    for limit in read_list(rule["limits"]):
+        amounts, max_sum = read_pair(limit, "amounts and their limit")
+        require(type(max_sum) is int, "a limit is no whole number")
+        counted: list[int] = []
+        for amount, counted_units in read_object(amounts).items():
+            number = _rational(amount)
+            whole = number > 0 and number.denominator == 1
+            require(whole, "a limit counts what is no whole number above zero")
+            counted += read_numbers(counted_units, units)
+        require(len(set(counted)) == len(counted), "a limit counts a unit twice")
+
+
+def _rational(value: Any) -> Fraction:
+    require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
+    if len(value) > _DIGITS_READ:
+        raise LimitError(f"a fraction has more than {_DIGITS_READ:,} digits")
+    number = Fraction(value)
+    require(str(number) == value, "expected a fraction in lowest terms")
+    return number

@@ -1,0 +1,157 @@
+"""Constraints as they are passed: a file, a rule as text, a ready-made one with constants of its own."""
+
+import re
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.errors import UserError
+from foon_asp.resources import encodings_folder
+
+_SUFFIX = ".lp"
+_QUOTED = re.compile(r'"(?:\\.|[^"\\])*"', re.DOTALL)
+
+
+class RuleText(NamedTuple):
+    """Rules given as text."""
+
+    text: str
+
+    @property
+    def name(self) -> str:
+        """The name of the rules in messages, in place of a file's name."""
+        return "rule"
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class LibraryUse(NamedTuple):
+    """A ready-made constraint with constants of its own.
+
+    ``file`` is its file, and ``written`` the text of its option.
+    """
+
+    file: Path
+    written: str
+
+    @property
+    def name(self) -> str:
+        """The name of the use in messages, in place of a file's name."""
+        return self.written
+
+    def __str__(self) -> str:
+        return self.written
+
+    @property
+    def constants(self) -> dict[str, str]:
+        """The constants with their values as written; raises :class:`UserError` for other texts."""
+        name, _, remaining = self.written.partition(":")
+        values: dict[str, str] = {}
+        while True:
+            constant, equals, remaining = remaining.partition("=")
+            if not equals or not constant.isidentifier():
+                raise UserError(
+                    f"found {constant[:40]!r} in {self.written!r}, expected {name}:CONSTANT=VALUE, and more "
+                    'of them after commas; a value with a comma is put in double quotes: "VALUE"'
+                )
+            if constant in values:
+                raise UserError(f"found two values of {constant} in {self.written!r}, expected one")
+            quoted = _QUOTED.match(remaining)
+            end = quoted.end() if quoted else (remaining + ",").index(",")
+            values[constant], after, remaining = (
+                remaining[:end],
+                remaining[end : end + 1],
+                remaining[end + 1 :],
+            )
+            if not after:
+                return values
+            if after != ",":
+                raise UserError(
+                    f"found {after}{remaining[:40]} after {values[constant]} in {self.written!r}, "
+                    "expected a comma"
+                )
+
+
+Constraint = Path | RuleText | LibraryUse
+"""A path (or the name of a ready-made constraint), rules as text, or a ready-made one with constants."""
+
+
+def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint:
+    """Return a constraint of a Python argument, which may be one already.
+
+    A text that has ``:-``, or ends in a full stop, is a rule, unless it is an existing path or the name of a
+    ready-made constraint; a path is always a path. Raises :class:`UserError` for an empty text.
+    """
+    if isinstance(constraint, RuleText | LibraryUse):
+        return constraint
+    if not isinstance(constraint, str):
+        return Path(constraint)
+    if not constraint.strip():
+        raise UserError(
+            "found an empty text for a constraint, expected a file, the name of a ready-made one, or a rule "
+            'such as :- use(U), motion(U,"fry").'
+        )
+    named = named_constraint(constraint)
+    if (
+        isinstance(named, Path)
+        and not exists(named)
+        and (":-" in constraint or constraint.rstrip().endswith("."))
+    ):
+        return RuleText(constraint)
+    return named
+
+
+def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
+    """Return a path, or a ready-made constraint by its name with constants of its own."""
+    name, colon, _ = text.partition(":")
+    if colon and not exists(Path(text)):
+        file = _bundled(Path(name))
+        if file is not None:
+            return LibraryUse(file, text)
+    return path(text)
+
+
+def find_constraint(constraint: Constraint) -> Constraint:
+    """Return a constraint with the path of its file, that of a ready-made one for its name.
+
+    Raises :class:`UserError` where neither exists.
+    """
+    if not isinstance(constraint, Path):
+        return constraint
+    if exists(constraint) and constraint.is_file():
+        return constraint
+    bundled = _bundled(constraint)
+    if bundled is not None:
+        return bundled
+    name = str(constraint).partition(":")[0]
+    if name != str(constraint) and exists(Path(name)) and Path(name).is_file():
+        raise UserError(
+            f"{constraint}: constants can follow the name of a ready-made constraint only; set those of a "
+            "file with -c CONSTANT=VALUE"
+        )
+    names = ", ".join(sorted(file.stem for file in _library().glob(f"*{_SUFFIX}")))
+    rule = "; a rule is given with --rule" if ":-" in str(constraint) else ""
+    raise UserError(
+        f"{constraint}: no such file; expected an encoding (.lp) or a ready-made one: {names}{rule}"
+    )
+
+
+def _library() -> Path:
+    return encodings_folder() / "constraints"
+
+
+def _bundled(path: Path) -> Path | None:
+    """Return the ready-made constraint of a name, with or without its suffix."""
+    if path.name != str(path):
+        return None
+    file = _library() / (path.name.removesuffix(_SUFFIX) + _SUFFIX)
+    return file if exists(file) else None
+
+
+def exists(path: Path) -> bool:
+    """Whether a path exists; a text that cannot be a path does not."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
