@@ -301,7 +301,7 @@ def test_the_verifier_loads_nothing_but_the_plain_network(tmp_path: Path) -> Non
     alone = f"""
 import importlib.util, sys
 sys.path.insert(0, {str(ROOT)!r})
-spec = importlib.util.spec_from_file_location("alone", {str(ROOT / "foon_asp" / "proof" / "verify.py")!r})
+spec = importlib.util.spec_from_file_location("alone", {str(ROOT / "foon_asp" / "proof" / "verifier.py")!r})
 module = importlib.util.module_from_spec(spec)
 sys.modules["alone"] = module
 spec.loader.exec_module(module)

@@ -19,14 +19,14 @@ from foon_asp.results.figure_text import success_text, success_texts
 from tests.conftest import STRUCK_WHILE_READING, Cli
 from tests.oracle import task_trees
 from tests.questions.test_alternatives import choosing
-from tests.support.random_problems import MOTIONS, NEAR_1, SERIES
+from tests.support.random_problems import MOTIONS, NEAR_1, SERIES, USUAL
 
 SVG = "{http://www.w3.org/2000/svg}"
 RULES = list(ContainerRule)
 SETS = [
     some
     for size in (2, 3)
-    for some in combinations(Objective, size)
+    for some in combinations(USUAL, size)
     if sum(not objective.row.whole for objective in some) <= 1  # only one that is rounded can be settled
 ]
 Point = tuple[Fraction, ...]

@@ -322,7 +322,7 @@ def test_a_measure_needs_its_rules_and_the_rates_that_it_reads() -> None:
         solve(problem, (MINE_OBJECTIVE,))
     with pytest.raises(
         UserError,
-        match=r"found the objective 'mine', expected one of units, .*, price, or a measure",
+        match=r"found the objective 'mine', expected one of units, .*, dissimilarity, or a measure",
     ):
         foon_asp.solve(problem, "mine")
     with pytest.raises(UserError, match=r"expected one of units, .*, price, mine, or a measure"):
