@@ -35,7 +35,7 @@ class NodePattern(NamedTuple):
 
     @property
     def lookup_key(self) -> LookupKey:
-        """The key that each node that matches has among its :func:`lookup_keys`."""
+        """The key of the entry: every matching node has it among its :func:`lookup_keys`."""
         related_object = self.container
         if related_object is None and self.relations:
             related_object = min(self.relations).object

@@ -46,7 +46,7 @@ def encoded_label(label: str) -> bytes:
 
 
 def decoded_label(name: bytes) -> str:
-    """Return the label of :func:`encoded_label`."""
+    """Return the label in a column, the inverse of :func:`encoded_label`."""
     return name.decode("utf-8", "surrogatepass")
 
 
@@ -117,7 +117,7 @@ def entry_column(entry: ListedObject) -> str:
 
 
 def entry_of(text: str) -> ListedObject:
-    """Return the entry of :func:`entry_column`."""
+    """Return the entry in a column, the inverse of :func:`entry_column`."""
     label, states, ingredients, container, relations, contents, file, line, column = decoded(text)
     pattern = NodePattern(
         _name(label),
