@@ -156,7 +156,7 @@ let read_rules data values =
         (Z.of_int (-(List.length values + i) - 1), C.Said_at_most (amounts a, natural n)) in
       let claims = List.map claim (list (get "claims" value)) in
       claims @ List.mapi said (list (get "limits" value))
-    | "require_intermediate" | "at_most_utensils" | "not_both_motions" | "before" as rule -> unknown ("the rule " ^ rule)
+    | "require_intermediate" | "at_most_utensils" | "not_both_motions" | "before" | "all_steps" as rule -> unknown ("the rule " ^ rule)
     | _ -> refuse "a rule is unknown" in
   let rules = List.concat (List.mapi read values) in
   (* limits are numbered after all nodes *)
