@@ -74,7 +74,7 @@ class Repair:
 
     @classmethod
     def over(cls, problem: Problem, steps: tuple[int, ...], table: StandInTable) -> "Repair":
-        """Make the problem of a repair of a tree whose ``steps`` are in the network, without stand-ins there."""
+        """Make the problem of a repair, for ``steps`` of a network that has no stand-ins."""
         network = problem.network
         first = len(network.objects)
         marked = replace(

@@ -105,8 +105,8 @@ def find_data(
     kitchen and rates, which are made for another one.
     A folder has its network in ``FOON.txt`` or else in its other ``*.txt``, ``*.json`` and ``*.jsonl``
     files, and may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
-    ``unit_prices.txt``, ``unit_amounts.txt``, ``stand_ins.txt``, and ``goal_nodes.json`` or ``goal_nodes.txt``. Raises
-    :class:`UserError` for a path that does not exist.
+    ``unit_prices.txt``, ``unit_amounts.txt``, ``stand_ins.txt``, and ``goal_nodes.json`` or
+    ``goal_nodes.txt``. Raises :class:`UserError` for a path that does not exist.
     """
     if folder is None and not network:
         folder = bundled_kitchen()
