@@ -169,7 +169,7 @@ def repair(
     base = whole(problem) if problem.stand_ins is None else problem
     if certificate is not None and any(base.network.unit_id(unit) is None for unit in listed.units):
         raise UserError(
-            "a certificate is about the network, and that lacks units of the tree: load both together"
+            "a certificate is about the network, and that lacks units of the tree: name the tree, too"
         )
     needed = Repair.of(base, listed.units, listed.places, table, _is_in_kitchen(problem))
     verdict = simulate_for(needed.shown, listed).verdict

@@ -136,7 +136,7 @@ def test_a_repair_is_verified_from_the_files(tmp_path: Path, cli: Cli) -> None:
 
 def test_a_certificate_needs_the_units_of_the_tree_in_the_network(tmp_path: Path) -> None:
     (tmp_path / "tree.txt").write_text(RECIPE)
-    with pytest.raises(foon_asp.UserError, match="load both together"):
+    with pytest.raises(foon_asp.UserError, match="name the tree, too"):
         foon_asp.repair(
             foon_asp.load().problem("ice"), tmp_path / "tree.txt", certificate=tmp_path / "proof.json"
         )
