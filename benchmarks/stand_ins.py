@@ -214,8 +214,9 @@ def priced(table: StandInTable, used: str, served: str) -> object:
 
 
 def repair_trees(corpus: Path, table: StandInTable, containers: str) -> None:
-    """Repair each tree of a language model."""
-    universal, counts, seconds = corpus / "universal", {"before": 0, "after": 0, "proved": 0, "read": 0}, []
+    """Repair each tree of a language model, and verify the certificate of the repair."""
+    universal, seconds = corpus / "universal", []
+    counts = {"before": 0, "after": 0, "proved": 0, "verified": 0, "read": 0}
     files = sorted((corpus / "llm-trees").glob("*.json"))
     for file in files:
         utensils = universal / "utensils.txt"
@@ -230,8 +231,12 @@ def repair_trees(corpus: Path, table: StandInTable, containers: str) -> None:
             continue
         counts["read"] += 1
         began = time.perf_counter()
-        repaired = foon_asp.repair(foon.problem(tree[-1].outputs[-1], containers=containers), tree)
+        problem = foon.problem(tree[-1].outputs[-1], containers=containers)
+        repaired = foon_asp.repair(problem, tree)
         seconds.append(time.perf_counter() - began)
+        certified = foon_asp.repair(problem, tree, certificate="/dev/null").certificate
+        if certified is not None:
+            counts["verified"] += foon_asp.verify(foon, certified).claim != "bound"
         counts["before"] += repaired.verdict is not Verdict.NEVER
         counts["after"] += repaired.units is not None
         counts["proved"] += repaired.proof is not None
@@ -242,7 +247,8 @@ def repair_trees(corpus: Path, table: StandInTable, containers: str) -> None:
         )
     sys.stdout.write(
         f"\n{len(files)} trees, {counts['read']} read; execute before {counts['before']}, "
-        f"after {counts['after']}; proved {counts['proved']}; median {statistics.median(seconds):.2f} s\n"
+        f"after {counts['after']}; proved {counts['proved']}; {counts['verified']} certificates verified; "
+        f"median {statistics.median(seconds):.2f} s\n"
     )
 
 

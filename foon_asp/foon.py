@@ -26,6 +26,7 @@ from foon_asp.network import (
 from foon_asp.problem import Changes, Names, Number, Problem, UnitPricesNamed
 from foon_asp.problem.progress import OnProgress, Progress
 from foon_asp.rules.measure import read_measures
+from foon_asp.standins.table_file import read_stand_ins
 from foon_asp.text.assumed_goals import LAST, as_entry, last_goals
 from foon_asp.text.data_folder import STARTING, Data, find_data
 from foon_asp.text.goal_name import GoalError
@@ -73,7 +74,7 @@ def load(
         unit_amounts: The file that says how many of an object node units take and make, likewise.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
         stand_ins: Whether available nodes may be used in place of those that cannot be made, by the usual
-            table of prices or another one.
+            table of prices, with the changes of ``stand_ins.txt`` in the folder, or by another table.
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by
             everything (3).
         lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
@@ -110,7 +111,8 @@ def load(
         with _counted(on_progress, size_of(named.network)) as tell, reporting_to(tell):
             dataset = read_dataset(named, lenient, level).measured(definitions)
             if stand_ins:
-                table = StandInTable.usual() if isinstance(stand_ins, bool) else stand_ins
+                beside = () if named.stand_ins is None else (named.stand_ins,)
+                table = read_stand_ins(beside) if isinstance(stand_ins, bool) else stand_ins
                 dataset = dataset.with_stand_in_table(table)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
     foon = Foon(dataset, name)

@@ -209,6 +209,7 @@ let read_rules data values =
       let claims = List.concat_map claim (list (get "claims")) in
       claims @ List.mapi said (list (get "limits"))
     | "require_intermediate" -> ignore (str "required_intermediate"); unknown_rule ()
+    | "all_steps" -> ignore (list (get "units")); unknown_rule ()
     | "before" -> ignore (str "earlier_motion", str "later_motion"); unknown_rule ()
     | "not_both_motions" -> ignore (str "one_motion", str "other_motion", limited number); unknown_rule ()
     | "at_most_utensils" -> ignore (num "max_utensils", limited number); unknown_rule ()

@@ -76,7 +76,8 @@ _STAND_IN_OPTIONS = (
         type=_PATH,
         multiple=True,
         metavar="FILE",
-        help="Prices of stand-ins that replace the usual ones; with this, --stand-ins is not needed.",
+        help="Prices of stand-ins that replace the usual ones, and those of stand_ins.txt in a data folder; "
+        "with this, --stand-ins is not needed.",
     ),
     click.option(
         "--similar",
@@ -248,7 +249,9 @@ def read_dataset(
         if stand_ins or stand_in_tables or similar:
             from foon_asp.standins.table_file import read_stand_ins
 
-            dataset = dataset.with_stand_in_table(read_stand_ins(stand_in_tables, similar, dataset.utensils))
+            beside = () if files.stand_ins is None else (files.stand_ins,)
+            table = read_stand_ins((*beside, *stand_in_tables), similar, dataset.utensils)
+            dataset = dataset.with_stand_in_table(table)
     context = click.get_current_context(
         silent=True
     )  # a worker of a batch has none, and never closes the data

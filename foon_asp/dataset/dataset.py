@@ -45,6 +45,7 @@ from foon_asp.problem import (
     unrated_text,
 )
 from foon_asp.standins import with_stand_ins
+from foon_asp.standins.repair import Repair
 from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning
 from foon_asp.text.goal_name import entry_names, find_goal, listed_goal, listed_nodes
 from foon_asp.text.object_list import ListedObject, read_object_list
@@ -420,11 +421,20 @@ class Dataset:
             source.amounts.units,
         )
 
-    def subject_with_stand_ins(self, goals: Sequence[int], containers: str, everything: bool) -> "Subject":
-        """Return the subject of a certificate about a network with the stand-ins for goals."""
+    def subject_with_stand_ins(
+        self, goals: Sequence[int], containers: str, everything: bool, steps: Sequence[int] = ()
+    ) -> "Subject":
+        """Return the subject of a certificate about a network with the stand-ins for goals.
+
+        With ``steps``, by id, they are those for the repair of a tree that has these units.
+        """
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
-        problem = self.problem(goals, containers, everything)
+        if steps and self.stand_ins is not None:
+            posed = ask(self.for_goals(goals).data, goals, containers, self)
+            problem = Repair.over(posed, tuple(steps), self.stand_ins).shown
+        else:
+            problem = self.problem(goals, containers, everything)
         values = problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
         return Subject(problem.network, *values, stand_ins=self.stand_ins)
 

@@ -96,15 +96,17 @@ class Constraint(NamedTuple):
 
 
 def meaning(rule: Rule, question: Question) -> Meaning:
-    """Return the meaning of a constraint with its values, or of the claims about user rules."""
+    """Return the meaning of a constraint with its values, of the claims about user rules, or of steps."""
     if rule["rule"] == OWN:
         return own(rule)
+    if rule["rule"] == ALL_STEPS:
+        return Meaning(wanted=[[[frozenset({unit})]] for unit in rule["units"]])
     return LIBRARY[rule["rule"]].meaning(question, **_values(rule))
 
 
 def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
     """Return the sources of each unit that a constraint reads; ``None`` where it reads no sources."""
-    places = None if rule["rule"] == OWN else LIBRARY[rule["rule"]].places
+    places = None if rule["rule"] in {OWN, ALL_STEPS} else LIBRARY[rule["rule"]].places
     if places is None:
         return None
     return [sorted(places(network, unit, **_values(rule))) for unit in range(len(network))]
@@ -269,6 +271,7 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
     return Meaning(barred=barred)
 
 
+ALL_STEPS = "all_steps"  # in place of a constraint's name: units that every tree has, by id
 OWN = "own"  # in place of a constraint's name: user rules
 
 

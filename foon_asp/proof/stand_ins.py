@@ -82,7 +82,7 @@ def stand_in_fault(
 
     Each has to have a price, and to serve a node that cannot be made without stand-ins. None may be missing,
     except, where ``claim`` is by dissimilarity, those that cost more than a free node in the same place, or
-    lead to more than ``claim.bound``.
+    lead to more than ``claim.bound``. ``goals`` are all nodes that every tree makes or takes.
     """
     objects = network.objects
     listed: set[tuple[int, int]] = set()

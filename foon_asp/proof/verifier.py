@@ -28,7 +28,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import STAND_IN, Amounts, Network, StandInTable, UnitPrices, node_at_level
-from foon_asp.proof.rule_meaning import LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
+from foon_asp.proof.rule_meaning import ALL_STEPS, LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
 from foon_asp.proof.ruled import Limit, Ruled
 from foon_asp.proof.stand_ins import Claim as StandInClaim
 from foon_asp.proof.stand_ins import Makes, price_of, stand_in_fault, stand_in_prices
@@ -352,10 +352,14 @@ class Check:
         """
         if self.stand_ins is None:
             return
-        by_dissimilarity = self.objectives[:1] in {(), ("dissimilarity",)} and not self.rules
+        steps = [unit for rule in self.rules if rule["rule"] == ALL_STEPS for unit in rule["units"]]
+        ruled = any(rule["rule"] != ALL_STEPS for rule in self.rules)
+        by_dissimilarity = self.objectives[:1] in {(), ("dissimilarity",)} and not ruled
         claim = StandInClaim(by_dissimilarity, least if by_dissimilarity else None)
         makes = Makes(self.kitchen, self.needs, self.gives)
-        wrong = stand_in_fault(self.network, self.stand_ins, makes, self.goals, claim)
+        inputs = (o for unit in steps for o in self.needs(unit) if o is not None)
+        wanted = [*dict.fromkeys((*self.goals, *inputs))]  # what every tree makes or takes
+        wrong = stand_in_fault(self.network, self.stand_ins, makes, wanted, claim)
         require(wrong is None, f"{wrong}")
 
     def _measure(self, name: str, stated: Any) -> Trusted:
@@ -1043,6 +1047,10 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
         name = rule.get("rule")
         if name == OWN:
             _own(rule, units)
+            continue
+        if name == ALL_STEPS:
+            read_object(rule, ("rule", "units"))
+            read_numbers(rule["units"], units)
             continue
         require(isinstance(name, str) and name in LIBRARY, "a rule is unknown")
         values = LIBRARY[rule["rule"]].values

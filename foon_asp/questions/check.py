@@ -184,11 +184,11 @@ def check_or_repair(
     """Check a tree as ``foon-asp check`` does, or repair it."""
     if not repair:
         return check(problem, tree, certificate=certificate, **options)
-    if certificate is not None or options.pop("objectives"):
-        raise UserError("a repair has no certificate, and objectives of its own: leave them out")
+    if options.pop("objectives"):
+        raise UserError("a repair has objectives of its own: leave --objective out")
     from foon_asp.questions.repair import repair as repaired  # noqa: PLC0415 (the solver)
 
-    return repaired(problem, tree, **options)
+    return repaired(problem, tree, certificate=certificate, **options)
 
 
 @question(
@@ -220,6 +220,8 @@ def check_or_repair(
     foon-asp check tree.txt --goal macaroni --certificate proof.json --objective success
     foon-asp check answer.json                              an answer knows its goal
     foon-asp check tree.json --network FOON.txt --kitchen kitchen.json --repair
+    foon-asp check tree.json --network FOON.txt --repair --certificate proof.json
+    foon-asp verify proof.json tree.json --network FOON.txt
 
     The tree is FOON text, units in the order of execution, or an answer in JSON. Where no data are named and
     the bundled kitchen has less than half of its units, it is the network itself.

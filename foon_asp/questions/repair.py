@@ -1,19 +1,26 @@
 """The cheapest repair of a tree that does not execute: ``foon-asp check --repair``."""
 
+import contextlib
 from collections.abc import Callable, Iterable, Iterator
 from os import PathLike
+from pathlib import Path
 from typing import Unpack
 
-from foon_asp.asp import Outcome, Proof, Status
+from foon_asp.asp import Outcome, Proof, Settings, Status
 from foon_asp.asp.optimum import solve as find
+from foon_asp.certificate import Certificate, NotBestError, certify, certify_infeasible
+from foon_asp.certificate.coverage import Coverage
 from foon_asp.dataset import Dataset
-from foon_asp.errors import UserError
+from foon_asp.dataset.paths import File
+from foon_asp.errors import BugError, UserError
 from foon_asp.network import FunctionalUnit, ObjectNode, StandInTable, counted
 from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.proof.rule_meaning import ALL_STEPS
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.answer import of_status
 from foon_asp.questions.arguments import whole
 from foon_asp.questions.caller import caller
+from foon_asp.questions.certificate_text import certificate_lines
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.contract import asked_in_python
 from foon_asp.questions.result import Ending, Result
@@ -26,6 +33,7 @@ from foon_asp.results.values_of import head_of, nodes_of, steps_of
 from foon_asp.standins.repair import Repair
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.writer import write_units
+from foon_asp.whole_file import write_whole
 
 _OBJECTIVES = Objective.DISSIMILARITY, Objective.UNITS
 
@@ -75,6 +83,16 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
     outcome = Unserialized[Outcome | None](None)
     """The outcome of the solver for the problem in which every step is a goal."""
 
+    certificate = Unserialized[Certificate | None](None)
+    """The certificate that proves the repair the cheapest, where one was asked for and found."""
+
+    notes = Unserialized[tuple[str, ...]](())
+    """What the certificate proves, where one was asked for."""
+
+    def remark(self, format_: str) -> str:
+        """Return the notes on the certificate."""
+        return "\n".join(self.notes)
+
     def foon(self) -> str:
         """Return the repaired tree as FOON text; empty without one."""
         if self.tree is None:
@@ -87,6 +105,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
         yield f"as it is: {self.verdict}"
         if self.units is None:
             yield from self._without_repair()
+            yield from self.notes
             return
         claim = "proved cheapest" if self.status is Status.OPTIMAL else "not proved cheapest"
         changes = [counted(len(self.stand_ins), "stand-in"), f"{counted(len(self.added), 'step')} added"]
@@ -99,6 +118,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
             yield from step.lines()
             if step.step in self.added:
                 yield "     (added)"
+        yield from self.notes
 
     def _without_repair(self) -> Iterator[str]:
         if self.status is not Status.INFEASIBLE:
@@ -112,7 +132,11 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
 
 @asked_in_python
 def repair(
-    problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit], **options: Unpack[CommonOptions]
+    problem: Problem,
+    tree: str | PathLike[str] | Iterable[FunctionalUnit],
+    *,
+    certificate: File | None = None,
+    **options: Unpack[CommonOptions],
 ) -> Repaired:
     """Find the cheapest repair of a tree: the least dissimilarity, then the fewest units.
 
@@ -121,12 +145,16 @@ def repair(
 
     Parameters:
         tree: The path of a file (FOON text, or an answer in JSON), or functional units in the order listed.
+        certificate: The path of a file to write a certificate to: a proof of the repair that
+            :func:`foon_asp.verify` checks without a solver. It is about the network of the problem, which has
+            to have all units of the tree.
 
     Returns:
         The repair, with its ``stand_ins``, ``added`` steps and the repaired ``tree``.
 
     Raises:
-        UserError: if the file cannot be read, or for a problem in which items are used up.
+        UserError: if the file cannot be read, for a problem in which items are used up, or for a certificate
+            about units that the network does not have.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -139,9 +167,20 @@ def repair(
     table = StandInTable.usual() if problem.stand_ins is None else problem.stand_ins.table
     listed = posed_tree(problem, tree)
     base = whole(problem) if problem.stand_ins is None else problem
+    if certificate is not None and any(base.network.unit_id(unit) is None for unit in listed.units):
+        raise UserError(
+            "a certificate is about the network, and that lacks units of the tree: name the tree, too"
+        )
     needed = Repair.of(base, listed.units, listed.places, table, _is_in_kitchen(problem))
     verdict = simulate_for(needed.shown, listed).verdict
     outcome = find(needed.posed, _OBJECTIVES, settings, caller().reporter)
+    proof: Certificate | None = None
+    notes: tuple[str, ...] = ()
+    if certificate is not None:
+        outcome, proof = _certified(needed, outcome, settings)
+        notes = tuple(certificate_lines(outcome, proof, str(certificate)))
+        if proof is not None:
+            write_whole(Path(certificate), proof.text().encode())
     shown, units = needed.shown, outcome.units
     if units is None:
         lacking = nodes_of(shown.network, needed.lacking()) if outcome.status is Status.INFEASIBLE else ()
@@ -160,7 +199,31 @@ def repair(
         lacking=lacking,
         units=None if units is None else steps_of(shown, units),
     )
-    return repaired.knowing(tree=None if units is None else Tree.of(shown, units), outcome=outcome)
+    return repaired.knowing(
+        tree=None if units is None else Tree.of(shown, units), outcome=outcome, certificate=proof, notes=notes
+    )
+
+
+def _certified(needed: Repair, outcome: Outcome, settings: Settings) -> tuple[Outcome, Certificate | None]:
+    """Return the outcome of a repair, and a certificate about the trees that have all of its steps.
+
+    The certificate is ``None`` where the repair is not proved, or none is found in time.
+    """
+    covered = Coverage(({"rule": ALL_STEPS, "units": sorted(needed.steps)},))
+    deadline, problem, found = settings.begun, needed.shown, None
+    with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
+        if outcome.status is Status.INFEASIBLE:
+            found = certify_infeasible(problem, covered, lambda: deadline.passed)
+        elif outcome.status is Status.OPTIMAL and outcome.units is not None:
+            try:
+                found = certify(problem, _OBJECTIVES, outcome.units, covered, lambda: deadline.passed)
+            except NotBestError as better:
+                raise BugError(f"a repair was called the cheapest: {better}") from None
+    if found is None or found.claim == "bound":
+        return outcome, found
+    complete = found.claim == "infeasible" or found.certified == _OBJECTIVES
+    proof = Proof.CERTIFICATE if complete else outcome.proof
+    return outcome._replace(proof=proof, certified=found.certified), found
 
 
 def _is_in_kitchen(problem: Problem) -> Callable[[ObjectNode], bool]:

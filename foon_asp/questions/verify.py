@@ -13,11 +13,11 @@ from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 from foon_asp.foon import Foon
-from foon_asp.network import Network, counted
+from foon_asp.network import Network, StandInTable, counted
 from foon_asp.problem import ContainerRule, Problem, kitchen_needed, parse_objectives
 from foon_asp.proof import proved_checker
 from foon_asp.proof import verifier as proof
-from foon_asp.proof.rule_meaning import OWN, Rule
+from foon_asp.proof.rule_meaning import ALL_STEPS, OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.certificate_text import bound_text, looked_at, trusted_text
 from foon_asp.questions.common_options import Limits, begin
@@ -398,7 +398,9 @@ def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool, proved: b
 
 def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:
     """Return the data that a certificate can be about, with the stand-ins for its goals."""
-    goals = _goal_ids(content)
+    goals, steps = _goal_ids(content), _step_ids(content)
+    if steps and dataset.stand_ins is None:  # a repair has them without being asked for
+        dataset = dataset.with_stand_in_table(StandInTable.usual())
     if dataset.stand_ins is None:
         return dataset.subject(full or _looks_at_all(content), goals)
     goals = [goal for goal in goals if 0 <= goal < len(dataset.data.network.objects)]
@@ -407,7 +409,8 @@ def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:
     rule = containers if containers in [*ContainerRule] else ContainerRule.STRICT
     if not goals:
         raise proof.RefusedError("expected goals of the network")
-    return dataset.subject_with_stand_ins(goals, rule, everything)
+    steps = [unit for unit in steps if 0 <= unit < len(dataset.data.network)]
+    return dataset.subject_with_stand_ins(goals, rule, everything, steps)
 
 
 def _other_part(content: Any, subject: proof.Subject) -> str | None:
@@ -434,6 +437,15 @@ def _goal_ids(content: Any) -> list[int]:
     goals = content.get("goals") if isinstance(content, dict) else None
     ids = [goal.get("id") for goal in goals if isinstance(goal, dict)] if isinstance(goals, list) else []
     return [o for o in ids if type(o) is int]
+
+
+def _step_ids(content: Any) -> list[int]:
+    """Return the steps of the tree that a certificate is about a repair of, likewise."""
+    rules = content.get("rules") if isinstance(content, dict) else None
+    if not isinstance(rules, list) or len(rules) != 1 or not isinstance(rules[0], dict):
+        return []
+    units = rules[0].get("units") if rules[0].get("rule") == ALL_STEPS else None
+    return [unit for unit in units if type(unit) is int] if isinstance(units, list) else []
 
 
 def _looks_at_all(content: Any) -> bool:

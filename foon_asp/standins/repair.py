@@ -70,14 +70,20 @@ class Repair:
             origin=None,
             stand_ins=None,
         )
+        return cls.over(merged, steps, table)
+
+    @classmethod
+    def over(cls, problem: Problem, steps: tuple[int, ...], table: StandInTable) -> "Repair":
+        """Make the problem of a repair, for ``steps`` of a network that has no stand-ins."""
+        network = problem.network
         first = len(network.objects)
         marked = replace(
-            merged,
+            problem,
             network=_marked(network, steps),
-            goals=(*merged.goals, *range(first, first + len(steps))),
+            goals=(*problem.goals, *range(first, first + len(steps))),
         )
         posed = with_stand_ins(marked, table)
-        shown = replace(posed, network=_unmarked(posed.network, network), goals=merged.goals)
+        shown = replace(posed, network=_unmarked(posed.network, network), goals=problem.goals)
         return cls(posed, shown, steps)
 
     def added(self, units: Sequence[int]) -> list[int]:
@@ -98,7 +104,8 @@ def _marked(network: Network, steps: Sequence[int]) -> Network:
     """Return a network in which each of some units has one more output, a node of its own."""
     first = len(network.objects)
     markers = {unit: o for o, unit in enumerate(steps, first)}
-    nodes = [ObjectNode(f"step {number}", frozenset({"done"})) for number in range(1, len(steps) + 1)]
+    # no file has a label with a line end, so nothing stands in for these
+    nodes = [ObjectNode(f"step\n{number}", frozenset({"done"})) for number in range(1, len(steps) + 1)]
     outputs = tuple(
         (*made, markers[unit]) if unit in markers else made for unit, made in enumerate(network.outputs)
     )

@@ -34,19 +34,23 @@ from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 from foon_asp.text.unit_price_list import UnitPriceList, read_unit_prices
 
 _RATES, _UTENSILS, _UNIT_PRICES = "motion.txt", "utensils.txt", "unit_prices.txt"
-_UNIT_AMOUNTS = "unit_amounts.txt"
+_UNIT_AMOUNTS, _STAND_INS = "unit_amounts.txt", "stand_ins.txt"
 # In JSON or as FOON text, the first that exists.
 _KITCHENS, _GOALS = ("kitchen.json", "kitchen.txt"), ("goal_nodes.json", "goal_nodes.txt")
 _OBJECT_KEY = re.compile(rb'"(?:input_nodes|functional_units|object_label|label)"\s*:')
 _FOR_SCHEDULES = {"durations.txt", "tools.txt"}
-_SIDE_TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, _UNIT_AMOUNTS, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
+_TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, _UNIT_AMOUNTS, _STAND_INS}
+_SIDE_TABLES = {*_TABLES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
 
 STARTING = Path("@starting")
 """In place of a kitchen file: the starting kitchen."""
 
 
 class DataFiles(NamedTuple):
-    """The files of the network and of the data beside it; ``None`` for a file that does not exist."""
+    """The files of the network and of the data beside it; ``None`` for a file that does not exist.
+
+    ``stand_ins`` is read only where stand-ins are asked for.
+    """
 
     network: tuple[Path, ...]
     kitchen: Path | None = None
@@ -55,6 +59,7 @@ class DataFiles(NamedTuple):
     goals: Path | None = None
     unit_prices: Path | None = None
     unit_amounts: Path | None = None
+    stand_ins: Path | None = None
 
 
 class Data(NamedTuple):
@@ -100,8 +105,8 @@ def find_data(
     kitchen and rates, which are made for another one.
     A folder has its network in ``FOON.txt`` or else in its other ``*.txt``, ``*.json`` and ``*.jsonl``
     files, and may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
-    ``unit_prices.txt``, ``unit_amounts.txt``, and ``goal_nodes.json`` or ``goal_nodes.txt``. Raises
-    :class:`UserError` for a path that does not exist.
+    ``unit_prices.txt``, ``unit_amounts.txt``, ``stand_ins.txt``, and ``goal_nodes.json`` or
+    ``goal_nodes.txt``. Raises :class:`UserError` for a path that does not exist.
     """
     if folder is None and not network:
         folder = bundled_kitchen()
@@ -135,6 +140,7 @@ def find_data(
         own_or_in_folder(goals, *_GOALS),
         own_or_in_folder(unit_prices, _UNIT_PRICES),
         own_or_in_folder(unit_amounts, _UNIT_AMOUNTS),
+        own_or_in_folder(None, _STAND_INS),
     )
 
 

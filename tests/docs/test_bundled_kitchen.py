@@ -53,7 +53,11 @@ def fewest_units(goal: str, rule: ContainerRule) -> int:
 def test_nothing_has_to_be_assumed_in_reading() -> None:
     assert [str(warning) for warning in data().warnings] == []
     assert data().left_out == 0
-    assert [name for name, file in FILES._asdict().items() if file is None] == ["unit_prices", "unit_amounts"]
+    assert [name for name, file in FILES._asdict().items() if file is None] == [
+        "unit_prices",
+        "unit_amounts",
+        "stand_ins",
+    ]
 
 
 # --- What there is to choose.

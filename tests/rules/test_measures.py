@@ -325,7 +325,7 @@ def test_a_measure_needs_its_rules_and_the_rates_that_it_reads() -> None:
         match=r"found the objective 'mine', expected one of units, .*, dissimilarity, or a measure",
     ):
         foon_asp.solve(problem, "mine")
-    with pytest.raises(UserError, match=r"expected one of units, .*, price, mine, or a measure"):
+    with pytest.raises(UserError, match=r"expected one of units, .*, dissimilarity, mine, or a measure"):
         foon_asp.solve(measured(problem, MINE), "yours")
     with pytest.raises(ValueError, match="no measure yours is known"):
         problem.measure("yours", 0)

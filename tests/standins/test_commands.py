@@ -1,8 +1,11 @@
 """Stand-ins on the command line: solve, its certificate, the next best, and align."""
 
 import json
+from fractions import Fraction
 from pathlib import Path
 
+import foon_asp
+from foon_asp.problem import Objective
 from tests.conftest import Cli
 
 RECIPE = """O\tegg\nS\twhole\nO\tpan\nS\thot\nM\tfry\nO\tegg\t!\nS\tfried\nS\ton\t[plate]\n//\n"""
@@ -58,6 +61,27 @@ def test_another_table_is_another_question(tmp_path: Path, cli: Cli) -> None:
     ]
     assert cli("verify", proof, *named, "--stand-in-table", str(table)).code == 0
     assert cli("verify", proof, *named, "--stand-ins").code == 2
+
+
+def test_a_table_in_the_data_folder_counts_with_stand_ins(tmp_path: Path, cli: Cli) -> None:
+    data(tmp_path)
+    (tmp_path / "FOON.txt").write_text(RECIPE + NETWORK + NODES)
+    (tmp_path / "stand_ins.txt").write_text("container\t9\nmore state: white\t0.5\n")
+    asked = ("solve", "--data", str(tmp_path), "--goal", "egg; fried; on [plate]")
+    assert cli(*asked).code == 1
+    ran = cli(*asked, "--stand-ins")
+    assert "stand-ins, with a dissimilarity of 9.5 in all:" in ran.out
+    (tmp_path / "mine.txt").write_text("container\t1\n")
+    over = cli(*asked, "--stand-in-table", str(tmp_path / "mine.txt"))
+    assert "stand-ins, with a dissimilarity of 1.5 in all:" in over.out
+    goal = "egg; fried; on [plate]"
+    answer = foon_asp.solve(foon_asp.load(tmp_path, stand_ins=True).problem(goal))
+    assert answer.costs is not None
+    assert answer.costs.measure(Objective.DISSIMILARITY) == Fraction(19, 2)
+    (tmp_path / "stand_ins.txt").write_text("container\tcheap\n")
+    assert cli(*asked).code == 1
+    wrong = cli(*asked, "--stand-ins")
+    assert (wrong.code, "stand_ins.txt:1:11" in wrong.err) == (2, True)
 
 
 def test_why_not_ends_with_stand_ins(tmp_path: Path, cli: Cli) -> None:
