@@ -33,7 +33,7 @@ from foon_asp.certificate import certify
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem, reach
-from foon_asp.proof.verify import read_certificate, verify
+from foon_asp.proof.verifier import read_certificate, verify
 
 T = TypeVar("T")
 _MINECRAFT = "1.21.9"

@@ -52,7 +52,7 @@ from foon_asp.errors import UserError
 from foon_asp.planning.strips_task import StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Problem, executable_order
-from foon_asp.proof import verify as proof
+from foon_asp.proof import verifier as proof
 from foon_asp.questions.relax import Relaxed, solved
 
 OURS, GREEDY = "foon-asp", "greedy"

@@ -29,7 +29,7 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.errors import UserError
 from foon_asp.network import Network, ObjectNode, StandInTable
 from foon_asp.problem import Objective, Problem
-from foon_asp.proof import verify
+from foon_asp.proof import verifier
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.standins.table_file import read_stand_ins
 from foon_asp.text.answer_file import read_listed_tree
@@ -180,7 +180,7 @@ def answer_recipes(corpus: Path, table: StandInTable) -> None:
         seconds.append(took)
         certified = foon_asp.solve(posed, certificate="/dev/null").certificate
         if certified is not None:
-            verify.verify(certified.content, subject_of(posed))
+            verifier.verify(certified.content, subject_of(posed))
             proved += certified.claim != "bound"
         pairs = [(str(s.used), str(s.stands_in_for)) for s in answer.stand_ins or ()]
         methods["stand-ins"].append(Replaced(bool(answer), bool(answer), pairs))

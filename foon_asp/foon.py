@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, Self
 
 from foon_asp.dataset import Dataset, read_dataset
-from foon_asp.dataset.items import Stays, Stock, items_of, wanted_of
-from foon_asp.dataset.names import in_python, node_ids
+from foon_asp.dataset.item_options import Stays, Stock, items_of, wanted_of
+from foon_asp.dataset.named_ids import in_python, node_ids
 from foon_asp.dataset.paths import File, Files, files
 from foon_asp.deadline import Cancel, seconds, stoppable
 from foon_asp.errors import UserError

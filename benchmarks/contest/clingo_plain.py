@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from contest.instance import Instance
 from foon_asp.deadline import Deadline
-from foon_asp.encoding.search import run
+from foon_asp.encoding.clingo_run import run
 from foon_asp.problem import Objective
 from foon_asp.resources import encodings_folder
 

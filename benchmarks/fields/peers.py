@@ -59,7 +59,7 @@ def ask_meneco(programs: Path, problem: Problem, folder: Path, limit: float) -> 
     for name, text in models.items():
         (folder / f"{name}.xml").write_text(text, encoding="utf-8")
         command += [f"--{name}", str(folder / f"{name}.xml")]
-    said, seconds = _run(command, programs, limit)
+    said, seconds = _run(command, programs, folder, limit)
     sizes = []
     for key in (
         "One minimal completion",
@@ -81,20 +81,21 @@ def ask_seed2lp(programs: Path, model: Path, problem: Problem, folder: Path, lim
         command += [f"--{name}-file", str(folder / f"{name}.txt")]
     command += ["--mode", "minimize", "--solve", "reasoning", "--number-solution", "1"]
     command += ["--targets-as-seeds", "--accumulation"]
-    said, seconds = _run(command, programs, limit)
-    found = re.search(r"Optimum found\D*(\d+)|Optimal solution size\D*(\d+)", said)
-    size = int(next(filter(None, found.groups()))) if found else None
+    said, seconds = _run(command, programs, folder, limit)
+    stated = re.search(r"Minimal size of seed set is (\d+)", said)  # those of the kitchen included
+    size = int(stated[1]) if stated else None
     return PeerAnswer(None if size is None else size - len(problem.kitchen), seconds)
 
 
-def _run(command: Sequence[str], programs: Path, limit: float) -> tuple[str, float]:
-    """Return what a command prints, empty where its time was up, and its seconds."""
+def _run(command: Sequence[str], programs: Path, folder: Path, limit: float) -> tuple[str, float]:
+    """Return what a command prints in a folder, empty where its time was up, and its seconds."""
     began = time.monotonic()
     process = subprocess.Popen(
         command,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         text=True,
+        cwd=folder,
         env={"PATH": f"{programs}:/usr/bin:/bin"},
         start_new_session=True,
     )

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.encoding.own_encodings import ENCODING_FILES, USED_UP, exact_success, is_own
+from foon_asp.encoding.stated import Loaded, Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.stated import Loaded, Stated
 from foon_asp.problem import Problem
 from foon_asp.resources import encodings_folder
-from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
+from foon_asp.rules.passed_constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.text.json_value import json_line
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
@@ -93,7 +93,7 @@ def assemble(
         from foon_asp.rules import stating  # noqa: PLC0415
 
         if endless:
-            from foon_asp.grounding.worker_process import prepare  # noqa: PLC0415
+            from foon_asp.encoding.worker_process import prepare  # noqa: PLC0415
 
             prepare()  # while files are parsed
 
@@ -116,7 +116,7 @@ def assemble(
     _warn_of_names(problem, settings, extra, constants[1::2], warn)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
     if settings.clingo_options:  # checked now, since clingo may not run
-        from foon_asp.encoding.search import check  # noqa: PLC0415
+        from foon_asp.encoding.clingo_run import check  # noqa: PLC0415
 
         check(arguments)
     return Program(
@@ -237,7 +237,7 @@ def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:
     """Return the overflow checks of user encodings."""
     if not encodings:
         return []
-    from foon_asp.grounding.number_checks import CHECKS_FILE  # noqa: PLC0415
+    from foon_asp.encoding.number_checks import CHECKS_FILE  # noqa: PLC0415
     from foon_asp.rules.number_limits import number_checks  # noqa: PLC0415
 
     checks = number_checks(statement for encoding in encodings for statement in encoding.statements)

@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.settings import Bounded, Settings
-from foon_asp.encoding.facts import write_assisted
+from foon_asp.encoding.fact_writer import write_assisted
 from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.stated import Stated
-from foon_asp.rules.constraint import Constraint, find_constraint
+from foon_asp.rules.passed_constraint import Constraint, find_constraint
 
 # The predicates that rules may read in this question are local as motion/2 is.
 _AS_FACTS = "_by_person(U) :- motion(U,_). _takes_over(P,U) :- motion(P,M), motion(U,M), P < U."

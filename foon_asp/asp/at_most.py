@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from foon_asp.asp.settings import Bounded
-from foon_asp.encoding.facts import write_at_most
+from foon_asp.encoding.fact_writer import write_at_most
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.problem import Costs, Objective
 

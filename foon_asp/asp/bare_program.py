@@ -10,14 +10,14 @@ from foon_asp.asp.outcome import Outcome
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
-from foon_asp.encoding.facts import write_facts, write_least_penalty, write_objectives, write_times
+from foon_asp.encoding.fact_writer import write_facts, write_least_penalty, write_objectives, write_times
+from foon_asp.encoding.number_checks import CHECKS_FILE
 from foon_asp.encoding.scales import Scales
+from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.number_checks import CHECKS_FILE
-from foon_asp.grounding.stated import Stated
 from foon_asp.plans.most_executions import executions_as_good, most_executions
 from foon_asp.problem import Objective, Problem, levels, reach, relevant
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 
 
 class BareProgram(NamedTuple):

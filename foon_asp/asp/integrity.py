@@ -9,19 +9,19 @@ from clingo.symbol import SymbolType
 
 from foon_asp.asp.settings import Relaxed
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.clingo_run import ground
 from foon_asp.encoding.encoding import located, read_encoding
 from foon_asp.encoding.own_encodings import question_encoding
-from foon_asp.encoding.search import ground
-from foon_asp.grounding.parsing import nodes, parse
-from foon_asp.grounding.stated import Loaded
+from foon_asp.encoding.parsing import nodes, parse
+from foon_asp.encoding.stated import Loaded
 from foon_asp.network import Source
 from foon_asp.results.values import ListedConstraint
 from foon_asp.rules.clause import source_of, variables, written
-from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
+from foon_asp.rules.passed_constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.rules.stating import loaded
 from foon_asp.text.diagnostics import Diagnostic, InputError
 
-_TEXT = "<block>"  # the file name that clingo uses for text without a file
+_BLOCK = "<block>"  # the file name that clingo uses for text without a file
 _PASSED_OVER = {ASTType.Program, ASTType.Comment}
 
 
@@ -108,7 +108,7 @@ def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
         diagnostics: list[Diagnostic] = []
         for diagnostic in error.diagnostics:
             file, line, *_ = diagnostic.source
-            source = relaxed.places.get(lines[line - 1]) if file == _TEXT and line <= len(lines) else None
+            source = relaxed.places.get(lines[line - 1]) if file == _BLOCK and line <= len(lines) else None
             diagnostics.append(
                 diagnostic
                 if source is None

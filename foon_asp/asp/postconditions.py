@@ -13,7 +13,7 @@ from foon_asp.hypergraph import ExactCosts, Reduced
 from foon_asp.problem import Costs, Objective, Problem, executable_order, multiplies
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.proof.used_up_run import used_up_run
-from foon_asp.rules.constraint import RuleText
+from foon_asp.rules.passed_constraint import RuleText
 
 
 class Postconditions:

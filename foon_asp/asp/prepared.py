@@ -26,8 +26,8 @@ from foon_asp.hypergraph import (
 from foon_asp.problem import Objective, Problem, Restriction, first_tree, levels, reach, relevant
 
 if TYPE_CHECKING:  # often clingo need not run
+    from foon_asp.encoding.run import Run
     from foon_asp.encoding.scales import Scales
-    from foon_asp.grounding.run import Run
     from foon_asp.rules.ready_made import ReadyMade
     from foon_asp.rules.rules import Rules
 
@@ -78,7 +78,7 @@ class Prepared:
 
         Raises ``KeyboardInterrupt`` at a limit.
         """
-        from foon_asp.encoding import facts as writing  # noqa: PLC0415
+        from foon_asp.encoding import fact_writer as writing  # noqa: PLC0415
 
         with self.deadline.watched("writing facts"):
             if self.full_program is not None:  # the predicates that rules read are known
@@ -103,7 +103,7 @@ class Prepared:
         program = self.full_program or self.program
         if program.ready_made is not None:
             return program.ready_made.keeps(self.problem, units)
-        from foon_asp.encoding.facts import write_given  # noqa: PLC0415
+        from foon_asp.encoding.fact_writer import write_given  # noqa: PLC0415
 
         tree = replace(self, units=tuple(sorted(units)), program=program)
         numbers = list(map(self.problem.network.unit_number, tree.units))
@@ -127,12 +127,12 @@ class Prepared:
         encodings: Sequence[Path] = (),
         predicates: Sequence[tuple[str, int]] = (),
     ) -> "Run":
-        """Run clingo with additional facts and encodings, as :func:`foon_asp.encoding.search.run` does.
+        """Run clingo with additional facts and encodings, as :func:`foon_asp.encoding.clingo_run.run` does.
 
         Returns an empty run where a limit comes first.
         """
-        from foon_asp.encoding.search import run  # noqa: PLC0415 (both take clingo along)
-        from foon_asp.grounding.run import Run  # noqa: PLC0415
+        from foon_asp.encoding.clingo_run import run  # noqa: PLC0415 (both take clingo along)
+        from foon_asp.encoding.run import Run  # noqa: PLC0415
 
         program, relaxed = self.program, self.settings.relaxed
         try:

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.encoding.stated import Loaded
 from foon_asp.errors import UserError
-from foon_asp.grounding.stated import Loaded
 from foon_asp.problem import Objective, Problem
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added

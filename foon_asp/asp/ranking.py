@@ -9,10 +9,10 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
-from foon_asp.encoding.facts import write_avoided, write_objectives
+from foon_asp.encoding.fact_writer import write_avoided, write_objectives
 from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.encoding.run import Run
 from foon_asp.errors import UserError
-from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem
 
 Rounded = tuple[int, ...]  # by level: costs rounded as in clingo

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.own_encodings import ENCODING_FILES, is_own
-from foon_asp.grounding.run import asks_for_statistics
-from foon_asp.grounding.stated import Loaded
+from foon_asp.encoding.run import asks_for_statistics
+from foon_asp.encoding.stated import Loaded
 from foon_asp.hypergraph.reductions import ALL, Reduction
 from foon_asp.network import Source
 from foon_asp.problem import Objective
 from foon_asp.resources import encodings_folder
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 
 
 class Relaxed(NamedTuple):

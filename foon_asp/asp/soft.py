@@ -10,11 +10,11 @@ from foon_asp.asp.prepared import prepare
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Relaxed, Settings
 from foon_asp.asp.solver import solve_prepared
-from foon_asp.encoding.facts import write_greatest_penalty, write_least_penalty, write_soft, write_tree
+from foon_asp.encoding.fact_writer import write_greatest_penalty, write_least_penalty, write_soft, write_tree
+from foon_asp.encoding.run import Run
 from foon_asp.errors import UserError
-from foon_asp.grounding.run import Run
 from foon_asp.problem import Objective, Problem
-from foon_asp.rules.constraint import Constraint, find_constraint
+from foon_asp.rules.passed_constraint import Constraint, find_constraint
 
 
 class Broken(NamedTuple):

@@ -20,9 +20,9 @@ from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 
 if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
+    from foon_asp.encoding.grounded import Grounded
+    from foon_asp.encoding.run import Run
     from foon_asp.encoding.scales import Scales
-    from foon_asp.grounding.grounded import Grounded
-    from foon_asp.grounding.run import Run
 
 _MAX_CUT_OBJECTS = 200_000  # of the cuts stored for a certificate to try first; it finds others by itself
 _NEAREST_UNITS = 200  # size of the first reduced-cost neighbourhood
@@ -285,7 +285,7 @@ class _Solver:
         Every tree has a unit of each landmark, too. ``None`` where the relaxation decides nothing within
         ``_MAX_ROUNDS``.
         """
-        from foon_asp.encoding.facts import write_known, write_objectives, write_required  # noqa: PLC0415
+        from foon_asp.encoding.fact_writer import write_known, write_objectives, write_required  # noqa: PLC0415
 
         self._take_whole_program()
         program, number = self.program, self.problem.network.unit_number
@@ -455,7 +455,7 @@ class _Solver:
             )
         except KeyboardInterrupt:  # before the search began
             self.deadline.interrupt()
-            from foon_asp.grounding.run import Run  # noqa: PLC0415
+            from foon_asp.encoding.run import Run  # noqa: PLC0415
 
             run = Run()
         self.seconds["solve"] = self.seconds.get("solve", 0.0) + run.solve_seconds
@@ -478,19 +478,23 @@ class _Solver:
             if before == question:
                 return program
             program.close()
-        from foon_asp.encoding import facts  # noqa: PLC0415 (often there is nothing left to ask)
+        from foon_asp.encoding import fact_writer  # noqa: PLC0415 (often there is nothing left to ask)
 
         began = time.perf_counter()
-        text = self.prepared.facts + self.rules + facts.write_objectives(objectives)
+        text = self.prepared.facts + self.rules + fact_writer.write_objectives(objectives)
         self._spent("facts", began)
         files = self.program.files
         if products:
             files = (*files, self.program.exact_success)
-            text += facts.write_exponents(self.problem, self._scaled())
-            text += "".join(itertools.starmap(facts.write_product, enumerate(products)))
-            text += facts.write_seen(range(len(products))) if wanted is None else facts.write_wanted(wanted)
-            text += facts.write_fewer(fewer)
-        from foon_asp.encoding.search import ground  # noqa: PLC0415 (slow to import)
+            text += fact_writer.write_exponents(self.problem, self._scaled())
+            text += "".join(itertools.starmap(fact_writer.write_product, enumerate(products)))
+            text += (
+                fact_writer.write_seen(range(len(products)))
+                if wanted is None
+                else fact_writer.write_wanted(wanted)
+            )
+            text += fact_writer.write_fewer(fewer)
+        from foon_asp.encoding.clingo_run import ground  # noqa: PLC0415 (slow to import)
 
         began = time.perf_counter()
         try:

@@ -12,7 +12,7 @@ from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
 from foon_asp.asp.solver import solve
-from foon_asp.encoding.facts import write_avoided, write_in_all, write_objectives, write_unseen
+from foon_asp.encoding.fact_writer import write_avoided, write_in_all, write_objectives, write_unseen
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
 from foon_asp.hypergraph.reduction import at_costs, reduce_under_rules

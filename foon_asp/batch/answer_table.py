@@ -14,7 +14,7 @@ from foon_asp.results.plain import csv_text, flat_row, plain
 from foon_asp.text.json_value import Json
 from foon_asp.whole_file import write_whole
 
-FORMATS: Final = (".csv", ".parquet")
+TABLE_SUFFIXES: Final = (".csv", ".parquet")
 _ARROW: Final = {
     Goals: "list<string>",
     bool | None: "bool",

@@ -18,8 +18,8 @@ from foon_asp.text.json_list import json_fault
 from foon_asp.text.json_value import read_json
 from foon_asp.text.plain_file import read_plain_text
 
-_KEYS = BatchQuestion.__struct_fields__
-_FILES = ("kitchen", "stock", "stays")
+_QUESTION_KEYS = BatchQuestion.__struct_fields__
+_FILE_KEYS = ("kitchen", "stock", "stays")
 _CHOICES = {"containers": [*map(str, ContainerRule)], "items": ITEMS}
 _FOR_MANY = ("@goals", "@makeable")
 
@@ -57,7 +57,7 @@ def read_questions(
 
 def named_files(questions: Iterable[BatchQuestion]) -> set[Path]:
     """Return the files that questions name."""
-    names = {getattr(question, key) for question in questions for key in _FILES}
+    names = {getattr(question, key) for question in questions for key in _FILE_KEYS}
     return {Path(name) for name in names - {None, str(STARTING)}}
 
 
@@ -80,11 +80,11 @@ def _combinations(value: object, time_limit: float | None) -> Iterator[BatchQues
     """Return every combination of the values of a line; raises :class:`ValueError` for a wrong value."""
     if not isinstance(value, dict) or "goal" not in value:
         raise ValueError('expected an object such as {"goal": "ice", "objective": ["units", "success"]}')
-    if unknown := sorted(value.keys() - {*_KEYS}):
-        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(_KEYS)}")
+    if unknown := sorted(value.keys() - {*_QUESTION_KEYS}):
+        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(_QUESTION_KEYS)}")
     entry = {"time_limit": time_limit} | value
     # goals vary fastest in the product, so the goal comes last
-    values_of_key = {key: _several(entry[key]) for key in reversed(_KEYS) if key in entry}
+    values_of_key = {key: _several(entry[key]) for key in reversed(_QUESTION_KEYS) if key in entry}
     if [] in values_of_key.values():
         raise ValueError("found an empty list, expected at least one value")
     for key, choices in _CHOICES.items():
@@ -114,7 +114,7 @@ def _several(value: object) -> list[object]:
 
 def _with_files(question: BatchQuestion, folder: Path) -> BatchQuestion:
     """Return a question whose file names are relative to the working directory; ``@starting`` stays."""
-    named = {key: name for key in _FILES if (name := getattr(question, key)) is not None}
+    named = {key: name for key in _FILE_KEYS if (name := getattr(question, key)) is not None}
     files = {
         key: str(folder / name) for key, name in named.items() if (key, name) != ("kitchen", str(STARTING))
     }

@@ -11,7 +11,7 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector
 from foon_asp.hypergraph.optimality_proof import Cases
 from foon_asp.problem import Objective, Problem, multiplies
-from foon_asp.proof import ruled, verify
+from foon_asp.proof import ruled, verifier
 
 
 class Arrays:
@@ -208,4 +208,4 @@ def written(number: Fraction) -> str:
     try:
         return str(number)
     except ValueError:  # Python writes no whole number of more than 4,300 digits
-        raise verify.LimitError("a fraction has more digits than are written") from None
+        raise verifier.LimitError("a fraction has more digits than are written") from None

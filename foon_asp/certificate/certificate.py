@@ -1,7 +1,7 @@
 """Certificates: JSON that proves a tree optimal, a bound on all trees, or that there is no tree.
 
 docs/dev/certificates.md describes the format. Every certificate returned was accepted by
-``foon_asp.proof.verify``.
+``foon_asp.proof.verifier``.
 """
 
 import hashlib
@@ -26,7 +26,7 @@ from foon_asp.hypergraph.optimality_proof import (
     Prover,
 )
 from foon_asp.problem import Costs, Known, Objective, Problem
-from foon_asp.proof import verify
+from foon_asp.proof import verifier
 from foon_asp.proof.verify_plan import verify_any
 from foon_asp.text.json_value import json_line
 
@@ -74,7 +74,7 @@ def certify(
     covered: Coverage = NOTHING,
     expired: Callable[[], bool] = lambda: False,
     cuts: Sequence[Sequence[int]] = (),
-    subject: verify.Subject | None = None,
+    subject: verifier.Subject | None = None,
     cases: Cases = None,
 ) -> Certificate | None:
     """Return a certificate that a tree is optimal by the first objectives, as many as are proved, or a bound.
@@ -127,7 +127,7 @@ def certify_infeasible(
     problem: Problem,
     covered: Coverage = NOTHING,
     expired: Callable[[], bool] = lambda: False,
-    subject: verify.Subject | None = None,
+    subject: verifier.Subject | None = None,
 ) -> Certificate | None:
     """Return a certificate that there is no tree; ``subject`` is as for :func:`certify`.
 
@@ -166,7 +166,7 @@ def _write(
     claim: str,
     units: Sequence[int] | None,
     proof: Proof,
-    subject: verify.Subject | None,
+    subject: verifier.Subject | None,
     bound: Vector | None = None,
 ) -> Certificate | None:
     problem, network = arrays.problem, arrays.problem.network
@@ -212,7 +212,7 @@ def _write(
     try:
         proof_content = stated(proof)
         least = None if bound is None else arrays.stated(bound)
-    except verify.LimitError:
+    except verifier.LimitError:
         return None
     graph = arrays.graph
     members = (u for cut in cuts for o in cut for u in graph.makers[o] if {*cut}.isdisjoint(graph.needs[u]))
@@ -221,7 +221,7 @@ def _write(
     numbered = [list(map(network.object_number, objects)) for objects in cuts]
     claimed = Claimed(claim, arrays.objectives, units, least)
     return write(
-        verify.TREE, problem, claimed, covered._replace(rules=rules), numbered, proof_content, subject
+        verifier.TREE_FORM, problem, claimed, covered._replace(rules=rules), numbered, proof_content, subject
     )
 
 
@@ -235,13 +235,13 @@ class Claimed(NamedTuple):
 
 
 def write(
-    form: verify.Form,
+    form: verifier.Form,
     problem: Problem,
     claimed: Claimed,
     covered: Coverage,
     cuts: Sequence[Sequence[int]],
     proof: object,
-    subject: verify.Subject,
+    subject: verifier.Subject,
     **more_keys: object,
 ) -> Certificate | None:
     """Return a sealed and verified certificate; ``None`` where it is beyond the limits of the verifier.
@@ -282,9 +282,9 @@ def write(
             content["measures"][measure.name]["costs"] = _by_cost(measure.costs)
         if verified.trusted:
             _verified(certificate, subject)
-    except verify.LimitError:
+    except verifier.LimitError:
         return None
-    except verify.RefusedError as refused:
+    except verifier.RefusedError as refused:
         raise BugError(f"a certificate that was found is refused: {refused}") from None
     return certificate
 
@@ -296,15 +296,15 @@ def _costs(problem: Problem, objectives: Sequence[Objective], units: Sequence[in
     return [figure if isinstance(figure, int) else written(figure) for figure in figures]
 
 
-def _verified(certificate: Certificate, subject: verify.Subject) -> verify.Verified:
+def _verified(certificate: Certificate, subject: verifier.Subject) -> verifier.Verified:
     content = certificate.content
-    content["seal"] = verify.seal(content)
-    return verify_any(verify.read_certificate(certificate.text()), subject)
+    content["seal"] = verifier.seal(content)
+    return verify_any(verifier.read_certificate(certificate.text()), subject)
 
 
-def subject_of(problem: Problem) -> verify.Subject:
+def subject_of(problem: Problem) -> verifier.Subject:
     """Return the data that certificates of a problem over a whole network are about."""
-    return verify.Subject(
+    return verifier.Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
         amounts=problem.amounts,
         stand_ins=problem.stand_ins.table if problem.stand_ins else None,

@@ -12,24 +12,24 @@ from foon_asp.encoding.encoding_file import string_constant
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.hypergraph.exact_optimum import Limit
 from foon_asp.problem import Problem
-from foon_asp.proof.constraint import LIBRARY, OWN, Rule, meaning
+from foon_asp.proof.rule_meaning import LIBRARY, OWN, Rule, meaning
 from foon_asp.proof.ruled import Ruled
-from foon_asp.proof.verify import canonical
-from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint
+from foon_asp.proof.verifier import canonical
+from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.rules.ready_made import LISTED, question_of
 
 if TYPE_CHECKING:  # clingo
     from foon_asp.certificate.own_limits import OwnLimits
 
-_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
-_FACT = re.compile(rf"(\w+)\(({_TEXT.pattern}(?:;{_TEXT.pattern})*)\)\.")
+_STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
+_FACT = re.compile(rf"(\w+)\(({_STRING.pattern}(?:;{_STRING.pattern})*)\)\.")
 _UNSET = frozenset(("", '""', "#sup", "#inf"))
 
 
 class Coverage(NamedTuple):
     """The constraints on trees: the ``rules`` that a certificate covers, and those that it does not.
 
-    Each rule is one of :data:`foon_asp.proof.constraint.LIBRARY` with its values. ``not_covered`` names
+    Each rule is one of :data:`foon_asp.proof.rule_meaning.LIBRARY` with its values. ``not_covered`` names
     rules, by their text or by file, with a digest, and the constants that were set. ``limits`` are those of
     user rules, which are found one by one.
     """
@@ -130,7 +130,7 @@ def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[
     for line in encoding.read_encoding(stating.loaded((constraint,))[constraint]).text.splitlines():
         fact = _FACT.fullmatch(line)
         if fact is not None:
-            values.setdefault(fact[1], set()).update(map(string_constant, _TEXT.findall(fact[2])))
+            values.setdefault(fact[1], set()).update(map(string_constant, _STRING.findall(fact[2])))
         elif not among_others and line != "#program base." and not line.startswith("% "):
             return {}
     return values

@@ -7,11 +7,11 @@ from foon_asp.asp import Settings
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.integrity import relax
 from foon_asp.asp.prepared import Prepared
-from foon_asp.encoding.facts import write_given, write_soft
+from foon_asp.encoding.fact_writer import write_given, write_soft
 from foon_asp.encoding.own_encodings import ENCODING_FILES, question_encoding
 from foon_asp.hypergraph.exact_optimum import Limit
 from foon_asp.problem import Objective, Problem, reach
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 from foon_asp.rules.rule_kind import Kind
 from foon_asp.rules.rules import Rules
 

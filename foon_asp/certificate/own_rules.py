@@ -17,9 +17,15 @@ from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import NONE
 from foon_asp.problem import Contradiction, Objective, Problem
-from foon_asp.proof.constraint import OWN, Rule
-from foon_asp.proof.verify import LimitError, RefusedError, canonical
-from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint, named_constraint
+from foon_asp.proof.rule_meaning import OWN, Rule
+from foon_asp.proof.verifier import LimitError, RefusedError, canonical
+from foon_asp.rules.passed_constraint import (
+    Constraint,
+    LibraryUse,
+    RuleText,
+    find_constraint,
+    named_constraint,
+)
 
 _GREATEST = 2**31 - 1  # the greatest number of clingo
 

@@ -26,20 +26,20 @@ from foon_asp.problem import (
     reach,
     relevant_to_plans,
 )
-from foon_asp.proof import verify
-from foon_asp.proof.constraint import OWN
-from foon_asp.proof.verify_plan import FINE, PLAN, RULES
+from foon_asp.proof import verifier
+from foon_asp.proof.rule_meaning import OWN
+from foon_asp.proof.verify_plan import LOGARITHM_SCALE, PLAN, PLAN_RULES
 
-_LARGEST = 10**9  # a cost of a unit, as a whole number that conditions are written with
-_DIGITS = 60  # of a logarithm
+_MAX_WHOLE_COST = 10**9  # a cost of a unit, as a whole number that conditions are written with
+_LOGARITHM_DIGITS = 60  # of a logarithm
 _TOLERANCE = 1e-6
 _HALF = Fraction(1, 2)
 
 
 def covered_for_plans(covered: Coverage) -> Coverage:
     """Return the coverage with the rules that certificates of plans cannot check moved to ``not_covered``."""
-    rules = tuple(rule for rule in covered.rules if rule["rule"] in RULES)
-    others = {verify.canonical(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN}
+    rules = tuple(rule for rule in covered.rules if rule["rule"] in PLAN_RULES)
+    others = {verifier.canonical(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN}
     return Coverage(rules, tuple(sorted({*covered.not_covered, *others})))
 
 
@@ -203,10 +203,10 @@ class _Question:
         if multiplies(objective):
             costs = [_fine(rate, up=False) for rate in figures]
             max_cost = sum(_minus_log(self._problem.rate(unit), up=True) for unit in self._plan)
-            return Level(Measure(costs), Fraction(0), math.ceil(FINE * max_cost)), FINE
+            return Level(Measure(costs), Fraction(0), math.ceil(LOGARITHM_SCALE * max_cost)), LOGARITHM_SCALE
         cost = Fraction(self._problem.costs(self._plan).measure(objective))
         scale = math.lcm(cost.denominator, *(figure.denominator for figure in figures))
-        if scale * max(figures, default=0) > _LARGEST:
+        if scale * max(figures, default=0) > _MAX_WHOLE_COST:
             return None
         measure = Measure([int(scale * figure) for figure in figures], scale * objective.row.item)
         return Level(measure, scale * cost, int(scale * cost)), scale
@@ -284,7 +284,7 @@ class _Question:
         try:
             order = None if bound is None else self._claim(objectives[0]).order
             stated = None if bound is None else [weight_text(vector, order) for vector in bound]
-        except verify.LimitError:
+        except verifier.LimitError:
             return None
         return write(
             PLAN,
@@ -368,9 +368,9 @@ def _minus_log(rate: Fraction, up: bool) -> Fraction:
     """Return an upper or lower bound of ``-log(rate)``."""
     if rate == 1:
         return Fraction(0)
-    about, off = minus_log(rate, _DIGITS)
+    about, off = minus_log(rate, _LOGARITHM_DIGITS)
     return about + off if up else about - off
 
 
 def _fine(rate: Fraction, up: bool) -> int:
-    return math.floor(FINE * _minus_log(rate, up))
+    return math.floor(LOGARITHM_SCALE * _minus_log(rate, up))

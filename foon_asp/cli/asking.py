@@ -10,7 +10,7 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.output import say
 from foon_asp.cli.progress_line import Progress
 from foon_asp.dataset import Dataset
@@ -115,9 +115,9 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
     if problems and (goals or not command.dataset.has_kitchen):
         from foon_asp.dataset.assumed import goal_lines, kitchen_lines
 
-        lines = [*goal_lines(command.dataset, goals, options.is_verbose())] if goals else []
+        lines = [*goal_lines(command.dataset, goals, shared_options.is_verbose())] if goals else []
         if not command.dataset.has_kitchen:
-            lines += kitchen_lines(command.dataset, problems, options.is_verbose())
+            lines += kitchen_lines(command.dataset, problems, shared_options.is_verbose())
         if lines:
             say("\n".join(lines))
     return subjects
@@ -142,7 +142,7 @@ class _Command:
     @cached_property
     def dataset(self) -> Dataset:
         """The data that the options name, read at the first access."""
-        return options.read_dataset(**self._data)
+        return shared_options.read_dataset(**self._data)
 
     @property
     def read_seconds(self) -> float | None:
@@ -187,4 +187,4 @@ class _Command:
 
     def reading(self) -> AbstractContextManager[object]:
         """Return a context in which reading stops at the limits of the command."""
-        return options.reading()
+        return shared_options.reading()

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from foon_asp.batch.batch_question import BatchQuestion
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.comparison.many import makeable
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.item_options import items_of
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import ContainerRule, Problem
@@ -34,7 +34,7 @@ class Opening:
     def __call__(self, quiet: bool = True) -> "BatchData":
         """Return the data, opened; ``quiet`` suppresses the warnings, which the first process has shown."""
         with contextlib.redirect_stderr(io.StringIO()) if quiet else contextlib.nullcontext():
-            return BatchData(options.read_dataset(**dict(self.named)))
+            return BatchData(shared_options.read_dataset(**dict(self.named)))
 
 
 class BatchData:

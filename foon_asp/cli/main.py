@@ -13,7 +13,7 @@ from foon_asp import __version__
 from foon_asp.cli.ctrl_c import end_at_ctrl_c, raise_at_ctrl_c
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import drop_output, safe_streams, show_remarks
-from foon_asp.cli.verbs import FIRST, FOR_PROGRAMS, SHELL_REQUEST, VERBS, verb_command, write_verbs
+from foon_asp.cli.verbs import FIRST_VERBS, FOR_PROGRAMS, SHELL_REQUEST, VERBS, verb_command, write_verbs
 from foon_asp.cli.whole_process import BEGAN, keep, leave
 from foon_asp.deadline import LimitError, resend_lost_interrupts
 from foon_asp.errors import FoonWarning, UserError
@@ -62,7 +62,7 @@ class _Verbs(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        write_verbs(formatter, "Verbs that most people need", FIRST)
+        write_verbs(formatter, "Verbs that most people need", FIRST_VERBS)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> "list[CompletionItem[str]]":
         from click.shell_completion import CompletionItem
@@ -118,7 +118,7 @@ def _run(words: list[str], began: float | None) -> ExitCode:
     try:
         try:
             if SHELL_REQUEST in os.environ:
-                from foon_asp.cli.completion import answer_shell
+                from foon_asp.cli.completion_command import answer_shell
 
                 return answer_shell(cli, os.environ[SHELL_REQUEST])
             ended = cli.main(args=words, prog_name="foon-asp", standalone_mode=False, obj=began)

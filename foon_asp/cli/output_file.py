@@ -7,10 +7,10 @@ from pathlib import Path
 import click
 
 from foon_asp.cli.named_path import WrittenPath
-from foon_asp.cli.options import with_sources
+from foon_asp.cli.shared_options import with_sources
 from foon_asp.encoding.encoding_file import included_files
 from foon_asp.errors import UserError
-from foon_asp.rules.constraint import LibraryUse, find_constraint
+from foon_asp.rules.passed_constraint import LibraryUse, find_constraint
 from foon_asp.text.data_folder import find_data, network_files
 
 _DATA_OPTIONS = ("kitchen", "rates", "utensils", "goals", "unit_prices", "unit_amounts")

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from foon_asp.asp.reporter import Reporter
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.asking import ask, find_question, parameters
 from foon_asp.cli.click_option import Command, click_option
 from foon_asp.cli.exit_code import ExitCode
@@ -30,7 +30,7 @@ from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, R
 _EXIT_CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
 _LIMITS = frozenset({"time_limit", "memory_limit"})
 _NOT_FOR_TERMINALS = {"png": "PNG", "pdf": "PDF", "html": "a page of HTML"}
-_ESCAPED = frozenset(
+_ESCAPED_FORMATS = frozenset(
     {"text", "json", "csv", "markdown", "steps", "steps-csv"}
 )  # other formats are written unchanged
 
@@ -40,13 +40,15 @@ def question_command(verb: str) -> click.Command:
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answering(question)
     if verb == "view":
-        from foon_asp.cli.serve import with_serve_option
+        from foon_asp.cli.serve_command import with_serve_option
 
         command = with_serve_option(command, question)
-    command = (options.debug_option if question.pose is no_data else options.data_options)(command)
+    command = (shared_options.debug_option if question.pose is no_data else shared_options.data_options)(
+        command
+    )
     takes_all = any(option.positional and option.many for option in question.options)
     if question.pose is not no_data and not takes_all:  # after the arguments of the question
-        command = options.sources_argument(command)
+        command = shared_options.sources_argument(command)
     for option in _format_options(question):
         command = option(command)
     names = {option.name for option in question.options}
@@ -54,7 +56,7 @@ def question_command(verb: str) -> click.Command:
         command = _without_used_up(verb)(command)
     own_options = [o for o in question.options if not (o.name in _LIMITS and o.role is Role.COMMAND)]
     if len(own_options) < len(question.options):
-        command = options.limit_options(command)
+        command = shared_options.limit_options(command)
     for declared in reversed(own_options):
         command = click_option(declared)(command)
     help_ = f"{INDEX[verb].line}\n\n{textwrap.dedent(question.help).strip()}"
@@ -122,7 +124,7 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
     if len(question.formats) == 1:
         return []
     if not question.suffixes:
-        return [options.format_option(*question.formats)]
+        return [shared_options.format_option(*question.formats)]
     first = question.formats[0].upper()
     return [
         click.option(
@@ -155,7 +157,7 @@ def _show(result: Result, format_: str) -> None:
     """Write the result to standard output, and its remark, which the format cannot hold, to stderr."""
     if format_ == "text":
         write_parts(result.show())
-    elif format_ in _ESCAPED:
+    elif format_ in _ESCAPED_FORMATS:
         click.echo(getattr(result, format_method(format_))(), nl=False)
     else:
         with contextlib.suppress(NothingToDrawError):  # the remark has the reason

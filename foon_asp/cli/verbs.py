@@ -31,7 +31,7 @@ _OTHER_VERBS: Final[Mapping[str, Entry]] = {
 }
 VERBS: Final[Mapping[str, Entry]] = {**INDEX, **_OTHER_VERBS}
 GROUPS = ("Solve", "Explain", "Compare", "Data", "Prove", "Tools", FOR_PROGRAMS)
-FIRST = ("solve", "view", "compare", "why-not", "check", "alternatives", "schedule", "lint", "init")
+FIRST_VERBS = ("solve", "view", "compare", "why-not", "check", "alternatives", "schedule", "lint", "init")
 
 
 def verb_command(verb: str) -> click.Command:
@@ -40,7 +40,7 @@ def verb_command(verb: str) -> click.Command:
         from foon_asp.cli.question_command import question_command
 
         return question_command(verb)
-    module = importlib.import_module(f"foon_asp.cli.{verb.replace('-', '_')}")
+    module = importlib.import_module(f"foon_asp.cli.{verb.replace('-', '_')}_command")
     command: click.Command = module.command
     return command
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from foon_asp.asp.assembly import GREATEST_WEIGHT
 from foon_asp.errors import UserError
-from foon_asp.rules.constraint import Constraint, find_constraint, given_constraint
+from foon_asp.rules.passed_constraint import Constraint, find_constraint, given_constraint
 
 
 def weighted_files(settings: Sequence[str], option: str) -> dict[Constraint, int]:

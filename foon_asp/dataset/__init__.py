@@ -2,4 +2,4 @@
 
 from foon_asp.dataset.dataset import Dataset as Dataset
 from foon_asp.dataset.dataset import ask as ask
-from foon_asp.dataset.reading import read_dataset as read_dataset
+from foon_asp.dataset.read_dataset import read_dataset as read_dataset

@@ -8,8 +8,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from foon_asp.dataset.data_source import Source
 from foon_asp.dataset.kitchen import Kitchen
-from foon_asp.dataset.names import (
+from foon_asp.dataset.named_ids import (
     NamesAndUnits,
     changed_prices,
     changed_rates,
@@ -19,7 +20,6 @@ from foon_asp.dataset.names import (
     node_ids,
 )
 from foon_asp.dataset.prices import NO_PRICES, DataPrices
-from foon_asp.dataset.source import Source
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -52,11 +52,11 @@ from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
 
 if TYPE_CHECKING:  # plain answers do not need it
-    from foon_asp.proof.verify import Subject
+    from foon_asp.proof.verifier import Subject
     from foon_asp.store.unit_distances import UnitDistances
 
 
-FIRST = 1000
+FIRST_UNITS = 1000
 """The number of units that are read at first, about, of a store for goals that can need more."""
 
 
@@ -392,7 +392,7 @@ class Dataset:
         :class:`UserError` is raised if a stated digest is not true. A starting kitchen is the one for
         ``goals``.
         """
-        from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
+        from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
         source, stocked = self.source, self.for_goals(goals)
         rates = None if self.unrated else self.rates
@@ -428,7 +428,7 @@ class Dataset:
 
         With ``steps``, by id, they are those for the repair of a tree that has these units.
         """
-        from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
+        from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
         if steps and self.stand_ins is not None:
             posed = ask(self.for_goals(goals).data, goals, containers, self)
@@ -513,7 +513,7 @@ class Dataset:
         return ask(dataset._data_of(network), _local_ids(network, goals), containers, self, items)
 
     def nearby(
-        self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = FIRST
+        self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = FIRST_UNITS
     ) -> Problem:
         """Return the problem of goals; of a store, only ``first`` units near the goals are read now.
 

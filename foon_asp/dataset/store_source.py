@@ -7,8 +7,8 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from foon_asp.dataset.data_source import Source
 from foon_asp.dataset.prices import DataPrices
-from foon_asp.dataset.source import Source
 from foon_asp.errors import UserError
 from foon_asp.network import DataAmounts, FunctionalUnit, Network, UnitPrices
 from foon_asp.network import Source as Place
@@ -113,7 +113,7 @@ class StoreSource(Source):
 
     def true_digests(self) -> dict[str, str]:
         """Compute the digests that the store states; raises :class:`UserError` if one is not true."""
-        from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
+        from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
         store, (network, kitchen) = self.names, self._whole
         single = self.unit_prices(network, self.prices.from_file)

@@ -5,10 +5,10 @@ from typing import NamedTuple
 from foon_asp.editor.edited_text import EditedText
 from foon_asp.errors import UserError
 from foon_asp.linting.context import Context
+from foon_asp.linting.lint_settings import LintSettings, find_settings
 from foon_asp.linting.linted_files import LintedFiles
 from foon_asp.linting.linter import lint_context
 from foon_asp.linting.names import Names
-from foon_asp.linting.settings import LintSettings, find_settings
 from foon_asp.text.diagnostics import Diagnostic
 
 

@@ -11,12 +11,12 @@ from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Loca
 from clingo.symbol import SymbolType
 
 from foon_asp.encoding.encoding_file import check_text, excerpt, included_files, string_constant
-from foon_asp.encoding.facts import FACT_PREDICATES, quote
+from foon_asp.encoding.exact import LARGEST
+from foon_asp.encoding.fact_writer import FACT_PREDICATES, quote
+from foon_asp.encoding.messages import listener
+from foon_asp.encoding.parsing import nodes, parse
+from foon_asp.encoding.stated import Loaded, Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.exact import LARGEST
-from foon_asp.grounding.messages import listener
-from foon_asp.grounding.parsing import nodes, parse
-from foon_asp.grounding.stated import Loaded, Stated
 from foon_asp.network import Source
 from foon_asp.problem import Objective
 from foon_asp.resources import encodings_folder
@@ -63,7 +63,7 @@ _NEGATIVE = re.compile(r"-\d+(,|$)")  # the weight of an element
 _EQUALITIES = {ComparisonOperator.Equal, ComparisonOperator.NotEqual}
 _NON_NUMERIC = {AggregateFunction.Min, AggregateFunction.Max}  # aggregates over terms of any type
 _EXAMPLE = ':- use(U), motion(U,"fry").'
-_WORD = re.compile(r"[a-z][A-Za-z0-9_]*")
+_IDENTIFIER = re.compile(r"[a-z][A-Za-z0-9_]*")
 
 
 @dataclass
@@ -477,7 +477,7 @@ def constant_value(name: str, default: str, value: str) -> str:
         return quote(string_constant(value))
     if _is_number(default) and not _fits(value):
         raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number of 32 bits")
-    if not _is_number(default) and not (_fits(value) or _WORD.fullmatch(value)):
+    if not _is_number(default) and not (_fits(value) or _IDENTIFIER.fullmatch(value)):
         raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number or a word")
     return str(int(value)) if _fits(value) else value  # clingo reads no 007
 

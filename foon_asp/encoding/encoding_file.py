@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from foon_asp.encoding.exact import LARGEST
 from foon_asp.errors import UserError
-from foon_asp.grounding.exact import LARGEST
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 

@@ -18,7 +18,7 @@ from foon_asp.problem import Problem
 _MAX_NUMBER = 2**31 - 1
 _USUAL_SCALE = 10**8  # the finest scale, except for rates next to 1
 _MIN_WEIGHT = 1000  # least weight of a rate: next to 1 the scale is finer where it fits
-_DIGITS = 40  # of a logarithm, initially
+_FIRST_DIGITS = 40  # of a logarithm, initially
 _CONTEXT = Context(prec=60, Emax=MAX_EMAX, Emin=MIN_EMIN)
 
 
@@ -65,7 +65,7 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
     """
     if not all(0 < rate <= 1 for rate in rates):
         raise ValueError("expected success rates above 0 and at most 1")
-    logarithms = {rate: _minus_log(rate, _DIGITS) for rate in sorted(rates)}
+    logarithms = {rate: _minus_log(rate, _FIRST_DIGITS) for rate in sorted(rates)}
     scale = _scale([logarithm for logarithm in logarithms.values() if logarithm])
     weights = {rate: _weight(rate, scale) for rate in logarithms}
     return RateScale(scale, weights, _exponents(weights))
@@ -111,7 +111,7 @@ def _weight(rate: Fraction, scale: int) -> int:
     """
     lost = scale * (1 - rate)
     low, high = lost, lost / rate  # bounds of -ln rate, precise enough next to 1
-    digits = _DIGITS
+    digits = _FIRST_DIGITS
     while math.floor(low) < math.floor(high):
         value = scale * Fraction(_minus_log(rate, digits))
         off = value / 10**digits

@@ -32,8 +32,8 @@ _EXTRA = "it is not installed (pip install 'foon-asp[cross-check]')"
 
 ENTRY_POINTS: Final = "foon_asp.engines"
 ENGINES: Final = (
-    Engine(highs.NAME, lambda: True, highs.solve_with_highs),
-    Engine(fast_downward.NAME, fast_downward.installed, fast_downward.solve_with_fast_downward),
+    Engine(highs.HIGHS, lambda: True, highs.solve_with_highs),
+    Engine(fast_downward.FAST_DOWNWARD, fast_downward.installed, fast_downward.solve_with_fast_downward),
 )
 """The built-in engines besides bare clingo."""
 
@@ -43,7 +43,7 @@ def find_engines() -> tuple[Engine, ...]:
 
     Raises :class:`UserError` where a package offers an engine by a name that another one has.
     """
-    reserved = ["foon-asp", bare_clingo.NAME, *(engine.name for engine in ENGINES)]
+    reserved = ["foon-asp", bare_clingo.BARE_CLINGO, *(engine.name for engine in ENGINES)]
     offers = offers_by_name(find_offers(ENTRY_POINTS), reserved)
     return (*ENGINES, *map(offered_engine, offers.values()))
 
@@ -83,7 +83,7 @@ def cross_check(
     interrupted = False
     others = () if claim.outcome.problem.items is not None else engines  # they cannot model consumption
     for engine in (None, *others):
-        name, package = (bare_clingo.NAME, None) if engine is None else (engine.name, engine.package)
+        name, package = (bare_clingo.BARE_CLINGO, None) if engine is None else (engine.name, engine.package)
         began = time.monotonic()
         objectives: tuple[Objective, ...] = ()
         reason: str | None = None

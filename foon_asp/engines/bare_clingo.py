@@ -25,7 +25,7 @@ from fractions import Fraction
 from typing import Any, Final, NamedTuple
 
 from foon_asp.asp.bare_program import BareProgram, bare_program
-from foon_asp.encoding.facts import write_exactly_alike, write_given, write_most_alike, write_same_rates
+from foon_asp.encoding.fact_writer import write_exactly_alike, write_given, write_most_alike, write_same_rates
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.engines.engine import (
     Asked,
@@ -37,8 +37,8 @@ from foon_asp.engines.engine import (
 )
 from foon_asp.problem import Costs, Objective, levels, multiplies
 
-NAME: Final = "clingo"
-OPTIONS: Final = (
+BARE_CLINGO: Final = "clingo"
+CLINGO_OPTIONS: Final = (
     "--opt-strategy=usc,pmres,disjoint,stratify",
 )  # of the strategies tried, it ended most often
 MAX_KINDS = 10_000  # of trees within the bound: more prove more answers, and take longer to enumerate
@@ -117,7 +117,7 @@ class Clingo:
         if remaining <= 0:
             raise NotCheckedError(timeout_message)
         with subprocess.Popen(
-            [*command, *OPTIONS, *options],
+            [*command, *CLINGO_OPTIONS, *options],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -338,7 +338,7 @@ class _Check:
 
     def _answer(self, answer: ClingoAnswer | None) -> EngineAnswer:
         units = None if answer is None else tuple(map(self._unit, sorted(answer.times)))
-        return EngineAnswer(NAME, self.levels, units, True)
+        return EngineAnswer(BARE_CLINGO, self.levels, units, True)
 
     def _disagreement(self, message: str, answer: ClingoAnswer | None) -> DisagreementError:
         return DisagreementError(message, self._answer(answer))

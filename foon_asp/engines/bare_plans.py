@@ -8,8 +8,8 @@ from itertools import takewhile
 
 from foon_asp.asp import Status
 from foon_asp.asp.bare_program import bare_plans
-from foon_asp.encoding.facts import write_times
-from foon_asp.engines.bare_clingo import NAME, Clingo
+from foon_asp.encoding.fact_writer import write_times
+from foon_asp.engines.bare_clingo import BARE_CLINGO, Clingo
 from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError
 from foon_asp.plans.counting import order_that_runs
 from foon_asp.problem import Objective, levels
@@ -38,7 +38,7 @@ def check_plan_with_bare_clingo(claim: Asked, seconds: float) -> tuple[Objective
     ours = tuple(int(outcome.costs.measure(objective)) for objective in whole)
     counts = {number: outcome.units.count(unit) for unit, (number, _) in caps.items()}
     our_plan = clingo.best(write_times({number: (n, n) for number, n in counts.items()}), False)
-    answer = EngineAnswer(NAME, whole, outcome.units, True)
+    answer = EngineAnswer(BARE_CLINGO, whole, outcome.units, True)
     if our_plan is None or our_plan.costs != ours or sum(counts.values()) != len(outcome.units):
         costs = None if our_plan is None else our_plan.costs
         raise DisagreementError(f"our plan costs {list(ours)}, clingo says {costs}", answer)

@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 from foon_asp.asp import Outcome, Settings
 from foon_asp.problem import Objective, Problem, backwards, executable_order, multiplies
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 
 _MAX_UNIT_COST = 10**9  # in sums with a larger cost, floats of 53 bits lose small ones
 

@@ -16,7 +16,7 @@ from foon_asp.engines.engine import EngineAnswer, NotCheckedError, cost, kitchen
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
 
-NAME = "Fast Downward"
+FAST_DOWNWARD = "Fast Downward"
 _FRACTION_SCALE = 10**6  # of fractions and logarithms, which it adds as integers: a finer one overflows
 _MAX_INT = 2**31 - 1  # of its integers
 _MEMORY_LIMIT = "4G"
@@ -48,7 +48,7 @@ def solve_with_fast_downward(
     if program is None:
         raise BugError("Fast Downward is asked for where it is not installed")
     if not scope_of(problem, forbidden).goals:  # it refuses tasks without goals; the empty tree is optimal
-        return EngineAnswer(NAME, objectives[:1], (), True)
+        return EngineAnswer(FAST_DOWNWARD, objectives[:1], (), True)
     with tempfile.TemporaryDirectory() as name:
         task, plan = Path(name, "task.sas"), Path(name, "plan")
         task.write_text(_task(problem, objectives[0], forbidden), encoding="ascii")
@@ -67,7 +67,7 @@ def solve_with_fast_downward(
             raise BugError(
                 f"Fast Downward ends with {ended.returncode}: {(ended.stdout + ended.stderr)[-2000:]}"
             )
-    return EngineAnswer(NAME, objectives[:1], units, finished)
+    return EngineAnswer(FAST_DOWNWARD, objectives[:1], units, finished)
 
 
 def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> str:

@@ -14,7 +14,7 @@ from foon_asp.errors import BugError
 from foon_asp.hypergraph.highs_run import libraries, silent_highs
 from foon_asp.problem import Objective, Problem
 
-NAME: Final = "HiGHS"
+HIGHS: Final = "HiGHS"
 _ROW_TOLERANCE: Final = 1e-6  # of a sum of fractions or logarithms: HiGHS keeps a row within it
 _HIGHS_OPTIONS: Final = {
     "threads": 1,
@@ -32,17 +32,17 @@ def solve_with_highs(
     Objectives are minimized one after the other, each with the more important ones fixed at their optimum.
     """
     if not scope_of(problem, forbidden).goals:  # a program without variables; the empty tree is optimal
-        return EngineAnswer(NAME, objectives, (), True)
+        return EngineAnswer(HIGHS, objectives, (), True)
     end = time.monotonic() + seconds
     program = _Program(problem, forbidden)
     units: tuple[int, ...] | None = None
     for objective in objectives:
         status = program.minimize(objective, max(end - time.monotonic(), 0.001))
         if status != "optimal":
-            return EngineAnswer(NAME, objectives, None, status == "infeasible" and units is None)
+            return EngineAnswer(HIGHS, objectives, None, status == "infeasible" and units is None)
         units = program.units()
         program.fix(objective)
-    return EngineAnswer(NAME, objectives, units, True)
+    return EngineAnswer(HIGHS, objectives, units, True)
 
 
 class _Program:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from foon_asp.network import Network, ObjectNode
 
 _STEM, _SHORTEST = 4, 3  # letters by which words count as one: wrapped, wrapping
-_NOTHING: frozenset[str] = frozenset()
+_NO_NAMES: frozenset[str] = frozenset()
 
 
 class Changes(NamedTuple):
@@ -27,7 +27,7 @@ class Changes(NamedTuple):
 
 def content_names(node: ObjectNode) -> AbstractSet[str]:
     """Return the names of the contents of a node."""
-    return _NOTHING if not node.contents else {item for _, items in node.contents for item in items}
+    return _NO_NAMES if not node.contents else {item for _, items in node.contents for item in items}
 
 
 def mentioned(nodes: Collection[ObjectNode]) -> set[str]:

@@ -12,7 +12,7 @@ from foon_asp.text.line import ObjectLine, name_of
 
 _KINDS = {"O": "object", "S": "state", "M": "motion"}
 _NEARLY_ALL = 20  # lines with an id for one without
-_MANY = 4  # names of one id; with more it means nothing, and they are reported together
+_MAX_NAMES = 4  # names of one id; with more it means nothing, and they are reported together
 
 
 class _Use(NamedTuple):
@@ -49,8 +49,8 @@ def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
     for sheet in context.sheets:
         for letter, id_, uses in _shared(sheet, by_id=True):
             usual, *others = uses
-            if len(uses) >= _MANY:
-                shown = ", ".join(f"{use.text!r} ({use.often})" for use in uses[: _MANY - 1])
+            if len(uses) >= _MAX_NAMES:
+                shown = ", ".join(f"{use.text!r} ({use.often})" for use in uses[: _MAX_NAMES - 1])
                 message = (
                     f"the {_KINDS[letter]} id {letter}{id_} is that of {len(uses)} names: {shown}, ...; "
                     "ids should tell names apart, or be left out"

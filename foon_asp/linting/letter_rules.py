@@ -10,7 +10,9 @@ from foon_asp.linting.rule import ERROR, rule
 from foon_asp.text.diagnostics import Diagnostic
 
 _PLAIN = re.compile(r"[\t\x20-\x7e]*")
-_WORD = re.compile(r"(?:[^\W\d_]|[\u0300-\u036f])+")  # letters, and accents that stand behind theirs
+_LETTERS_OF_WORD = re.compile(
+    r"(?:[^\W\d_]|[\u0300-\u036f])+"
+)  # letters, and accents that stand behind theirs
 _SCRIPTS = {"LATIN", "CYRILLIC", "GREEK"}  # those whose letters look alike
 _UNSEEN = {"Cc", "Cf", "Zl", "Zp", "Zs"}
 
@@ -30,7 +32,7 @@ def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
         for index, line in enumerate(sheet.lines)
         if not line.startswith("#") and not _PLAIN.fullmatch(line)
     ]
-    spelt = Counter(word for _, _, line in odd_lines for word in _WORD.findall(line))
+    spelt = Counter(word for _, _, line in odd_lines for word in _LETTERS_OF_WORD.findall(line))
     usual: dict[
         str, str
     ] = {}  # of the forms of a word, by its composed form, which is usual if all are as rare
@@ -38,7 +40,7 @@ def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
         usual[unicodedata.normalize("NFC", word)] = word
     for sheet, index, line in odd_lines:
         faults = [_invisible_character(line), _of_two_scripts(line)]
-        for word in dict.fromkeys(_WORD.findall(line)):
+        for word in dict.fromkeys(_LETTERS_OF_WORD.findall(line)):
             if word != usual[unicodedata.normalize("NFC", word)]:
                 message = (
                     f"{word!r} looks the same elsewhere, where its accents are other characters; the names "
@@ -63,7 +65,7 @@ def _invisible_character(line: str) -> tuple[int, str] | None:
 
 def _of_two_scripts(line: str) -> tuple[int, str] | None:
     """Return the column of the first letter of a rarer script in a word, and the message about it."""
-    for match in _WORD.finditer(line):
+    for match in _LETTERS_OF_WORD.finditer(line):
         scripts: dict[str, list[int]] = {}
         for index, letter in enumerate(match[0]):
             scripts.setdefault(unicodedata.name(letter, "").partition(" ")[0], []).append(index)

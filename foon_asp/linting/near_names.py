@@ -5,7 +5,7 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 
 from foon_asp.network.spelling import joined, one_letter_apart, without_doubles
 
-_LONGEST = 60  # letters; longer texts are no names, and slow to compare
+_LONGEST_NAME = 60  # letters; longer texts are no names, and slow to compare
 _SHORTEST_DOUBLED = 5  # letters: off and of, bell and bel are words of their own
 _PLURAL_ENDING = re.compile(r"e?s$")
 _VERB_ENDING = re.compile(r"(?:e?[sdr]|[ey])$")  # juice, juiced; flakes, flaked; mix, mixer; salt, salty
@@ -73,7 +73,7 @@ def _spelt_two_ways(counts: dict[str, int], known_words: Collection[str]) -> Ite
     """Yield pairs that are equal but for doubled letters, capitals and blanks, the rarer name first."""
     spellings: dict[str, list[str]] = {}
     for name in counts:
-        if len(name) <= _LONGEST:
+        if len(name) <= _LONGEST_NAME:
             spellings.setdefault(without_doubles(name), []).append(name)
     for skeleton, names in spellings.items():
         if len(names) < 2:
@@ -86,7 +86,7 @@ def _spelt_two_ways(counts: dict[str, int], known_words: Collection[str]) -> Ite
 
 def _without_a_letter(name: str) -> Iterable[str]:
     """Return the deletion neighbourhood of a name: itself, and the texts without one of its letters."""
-    if len(name) > _LONGEST:
+    if len(name) > _LONGEST_NAME:
         return ()
     return {name, *(name[:position] + name[position + 1 :] for position in range(len(name)))}
 
@@ -96,7 +96,7 @@ def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) ->
 
     ``deletions`` is the :func:`deletion_index` of the known words.
     """
-    if not _SHORT_KNOWN <= len(word) <= _LONGEST:
+    if not _SHORT_KNOWN <= len(word) <= _LONGEST_NAME:
         return None
     if word + "ed" in deletions:
         return word + "ed"

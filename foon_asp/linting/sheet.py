@@ -17,7 +17,7 @@ from foon_asp.text.listed_unit import node_of
 from foon_asp.text.reader import FoonReader
 
 _LETTERS = {"O", "S", "M"}
-_NAME = re.compile(r"[^\t\[\]{},]+")
+_SHEET_NAME = re.compile(r"[^\t\[\]{},]+")
 # An unclosed quote is matched too, so that its text is not searched again from each quote in it.
 _QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)("?)')
 
@@ -166,6 +166,6 @@ def _column(line: str, name: str) -> int:
 @lru_cache(1)  # a long list is not searched anew for each of its names
 def _columns(line: str) -> dict[str, int]:
     columns: dict[str, int] = {}
-    for match in _NAME.finditer(line, line.find("\t") + 1):
+    for match in _SHEET_NAME.finditer(line, line.find("\t") + 1):
         columns.setdefault(match[0].strip(), match.end() - len(match[0].lstrip()) + 1)
     return columns

@@ -13,7 +13,7 @@ from foon_asp.text.diagnostics import Diagnostic, InputError
 from foon_asp.text.side_table import TABLES
 
 _RATES = "motion.txt"
-_MANY = 10  # unknown rows; if a table has more, and mostly unknown ones, they are reported together
+_MAX_UNKNOWN = 10  # unknown rows; if a table has more, and mostly unknown ones, they are reported together
 
 
 @rule("table", ERROR, "a row of a table beside the network that cannot be read")
@@ -44,7 +44,7 @@ def unknown_row(context: Context) -> Iterator[Diagnostic]:
         known_names = context.vocabulary.names[kind] if kind is Kind.OBJECT else set()
         rows = _rows(sheet)
         unknown = [name for name in rows if name not in network_names and name not in known_names]
-        if len(unknown) > _MANY and 2 * len(unknown) > len(rows):
+        if len(unknown) > _MAX_UNKNOWN and 2 * len(unknown) > len(rows):
             message = (
                 f"{len(unknown)} of the {len(rows)} names are no {kind} of the network, {unknown[0]!r} "
                 "first; is the table for another network?"

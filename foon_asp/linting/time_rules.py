@@ -13,8 +13,8 @@ from foon_asp.linting.sheet import Sheet
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import MotionLine
 
-_CLOCK = re.compile(r"\d+:\d\d(?::\d\d)?")
-_SPAN = re.compile(rf"({_CLOCK.pattern}) ?- ?({_CLOCK.pattern})")
+_CLOCK_TIME = re.compile(r"\d+:\d\d(?::\d\d)?")
+_SPAN = re.compile(rf"({_CLOCK_TIME.pattern}) ?- ?({_CLOCK_TIME.pattern})")
 _HOUR, _LONG, _MINUTE = 3600, 1200, 60  # seconds
 _LATER, _MUCH_LATER = 2, 4  # times as late as the latest time of another form, and as the median
 _MUCH_LONGER = 20  # times as long as the median step
@@ -75,7 +75,7 @@ def _spans(text: str) -> list[tuple[_Clock, _Clock]]:
     """Return the pairs of beginning and end after a motion: in two fields, or in one with ``-`` between."""
     start = text.find("\t", text.find("\t") + 1)
     spans = [(_Clock.of(match, 1), _Clock.of(match, 2)) for match in _SPAN.finditer(text, start)]
-    clocks = [_Clock.of(match) for match in _CLOCK.finditer(text, start)]
+    clocks = [_Clock.of(match) for match in _CLOCK_TIME.finditer(text, start)]
     return spans or ([(clocks[0], clocks[1])] if len(clocks) == 2 else [])
 
 

@@ -11,9 +11,9 @@ from foon_asp.linting.names import Kind, Names
 from foon_asp.linting.near_names import deletion_index, near_word
 from foon_asp.network import Contents, Relation, counted
 from foon_asp.text.line import LineError, StateLine
-from foon_asp.text.table import read_rows
+from foon_asp.text.value_table import read_rows
 
-_UTENSILS = "utensils.txt"
+_UTENSILS_FILE = "utensils.txt"
 UTENSIL, HABIT = "utensil", "habit"
 Bracket = type[Relation] | type[Contents]
 _BRACKETS: dict[Bracket, str] = {Relation: f"{Kind.WORD} [ ]", Contents: f"{Kind.WORD} {{ }}"}
@@ -51,7 +51,7 @@ class Vocabulary:
             (kind, name, ()) for kind in Kind if kind is not Kind.WORD for name in names.mentions[kind]
         ]
         for table in names.files.tables:
-            if Path(table.file).name == _UTENSILS:
+            if Path(table.file).name == _UTENSILS_FILE:
                 rows += [(UTENSIL, line.strip(), ()) for line in table.lines if line.strip()[:1] not in "#"]
         for word, mentions in names.mentions[Kind.WORD].items():
             for line, often in ((mention.line, mention.often) for mention in mentions):

@@ -44,7 +44,7 @@ def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
 
 
 def _start() -> Worker:
-    return Worker("foon_asp.offered.worker", "what other packages offer is run", read=_line)
+    return Worker("foon_asp.offered.call_worker", "what other packages offer is run", read=_line)
 
 
 def _line(pipe: RawIOBase) -> tuple[str, bytes]:

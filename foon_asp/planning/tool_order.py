@@ -9,10 +9,10 @@ from heapq import heappop, heappush, heapreplace
 from typing import NamedTuple
 
 from foon_asp.deadline import Deadline
-from foon_asp.encoding.facts import write_tool_order
+from foon_asp.encoding.clingo_run import run
+from foon_asp.encoding.fact_writer import write_tool_order
 from foon_asp.encoding.own_encodings import question_encoding
-from foon_asp.encoding.search import run
-from foon_asp.grounding.run import Run
+from foon_asp.encoding.run import Run
 from foon_asp.planning.schedule_task import ScheduleTask
 from foon_asp.proof.timetable import ToolName
 

@@ -11,8 +11,8 @@ from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
 from foon_asp.encoding.exact_success import RateScale, rate_scale
 from foon_asp.encoding.own_encodings import ENCODING_FILES, question_encoding
+from foon_asp.encoding.run import Run
 from foon_asp.errors import UserError
-from foon_asp.grounding.run import Run
 from foon_asp.plans.bulk_order import bulk_order, least_copies, plan_of
 from foon_asp.plans.conditions import Counts, Level, Measure
 from foon_asp.plans.count_bound import BetterError, CountBound
@@ -279,18 +279,18 @@ class Counting:
         program, problem = self._question.program, self._problem
         if program.own:
             return True
-        from foon_asp.encoding import facts, search  # noqa: PLC0415 (clingo, which not every question needs)
+        from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
         units = [self.units[a] for a in counts]
-        text = facts.write_facts(problem, units, Scales(problem, units), program.looked_at)
+        text = fact_writer.write_facts(problem, units, Scales(problem, units), program.looked_at)
         text += "".join(
             f"use({number}). times({number},{n}).\n"
             for a, n in counts.items()
             if (number := problem.network.unit_number(self.units[a])) is not None
         )
         added = program.files[len(ENCODING_FILES) :]
-        ended = search.run(
+        ended = clingo_run.run(
             added, text, program.arguments, self._question.deadline, "ignore", endless=program.endless
         )
         if not ended.exhausted and ended.units is None:
@@ -309,7 +309,7 @@ class Counting:
         return sequence(self._problem, ended.rows["times"], ended.rows["_after"])
 
     def _ended(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
-        from foon_asp.encoding import facts, search  # noqa: PLC0415 (clingo, which not every question needs)
+        from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
         question, problem = self._question, self._problem
@@ -319,18 +319,18 @@ class Counting:
         wanted = question.levels if best else [o for o in question.levels if o is Objective.KITCHEN]
         looked_at = None if question.program.own else question.program.looked_at
         scales = Scales(problem, units, wanted) if best or looked_at is not None else None
-        text = facts.write_facts(problem, units, scales, looked_at)
-        text += facts.write_times({number(self.units[a]): bounds for a, bounds in times.items()})
-        text += facts.write_objectives(wanted)
+        text = fact_writer.write_facts(problem, units, scales, looked_at)
+        text += fact_writer.write_times({number(self.units[a]): bounds for a, bounds in times.items()})
+        text += fact_writer.write_objectives(wanted)
         files = question.program.files
         if best and scales is not None and (question.below or question.incomparable):
             # bounds by fractions are enforced by counts alone
-            text += facts.write_below([{o: cost} for o, cost in question.below if o.row.whole], scales)
-            text += facts.write_beside(
+            text += fact_writer.write_below([{o: cost} for o, cost in question.below if o.row.whole], scales)
+            text += fact_writer.write_beside(
                 [{number(u): n for u, n in plan.items()} for plan in question.incomparable]
             )
             files = (*files, question_encoding("bounded_plans.lp"))
-        ended = search.run(
+        ended = clingo_run.run(
             files,
             text,
             question.program.arguments,

@@ -10,20 +10,20 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from foon_asp.proof.verify import RefusedError, Subject, canonical, read_rules
+from foon_asp.proof.verifier import RefusedError, Subject, canonical, read_rules
 
 ACCEPTED = "accepted"
 NOT_BUILT = "not built; `make verified` builds it where Coq is installed"
 
-_NAME = "foon-verified"
-_BUILT = Path(__file__).resolve().parents[2] / "verified" / "build" / _NAME
+_PROGRAM = "foon-verified"
+_BUILT = Path(__file__).resolve().parents[2] / "verified" / "build" / _PROGRAM
 
 
 def program() -> Path | None:
     """Return the proved checker: as it is built in a checkout, or on PATH; ``None`` where it is not built."""
     if _BUILT.is_file():
         return _BUILT
-    installed = shutil.which(_NAME)
+    installed = shutil.which(_PROGRAM)
     return None if installed is None else Path(installed)
 
 

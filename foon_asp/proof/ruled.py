@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.proof.constraint import Barred, Meaning, Units
+from foon_asp.proof.rule_meaning import Barred, Meaning, Units
 
 
 class Limit(NamedTuple):

@@ -18,9 +18,9 @@ from itertools import chain
 from typing import Any, NamedTuple
 
 from foon_asp.network import ObjectNode
-from foon_asp.proof.constraint import LIBRARY, Rule
-from foon_asp.proof.verify import (
-    KEYS,
+from foon_asp.proof.rule_meaning import LIBRARY, Rule
+from foon_asp.proof.verifier import (
+    CERTIFICATE_KEYS,
     Amount,
     Check,
     Form,
@@ -39,15 +39,15 @@ from foon_asp.proof.verify import (
     verify,
 )
 
-PLAN = Form("foon-asp certificate of a plan", 2, KEYS | {"items", "unreached"})
+PLAN = Form("foon-asp certificate of a plan", 2, CERTIFICATE_KEYS | {"items", "unreached"})
 
 # The rules that plans can be checked against: those that remove units, at-least-one constraints, and those
 # whose limit counts each execution.
 COUNTING = ("at_most_units", "at_most_motion", "at_most_utensil_uses", "at_most_price")
 WANTING = ("forbid_ingredient", "require_motion", "require_object", "require_ingredient")
-RULES = frozenset({*COUNTING, *WANTING, *(name for name, rule in LIBRARY.items() if rule.removes)})
+PLAN_RULES = frozenset({*COUNTING, *WANTING, *(name for name, rule in LIBRARY.items() if rule.removes)})
 
-FINE = 10**9  # scale of logarithms, where plans have to be as good by success as the incumbent
+LOGARITHM_SCALE = 10**9  # scale of logarithms, where plans have to be as good by success as the incumbent
 _MAX_COUNT = 10**9  # of copies in stock, and of executions in a branch
 _LEAF = {"weights", "before", "supply", "balance", "limits", "levels"}
 
@@ -87,7 +87,7 @@ def verify_plan(certificate: Any, subject: Subject) -> Verified:
     """
     rules = read_frame(certificate, PLAN, subject)
     require(subject.network.level == 3, "below level 3 nothing says what is used up: contents decide")
-    require(RULES.issuperset(rule["rule"] for rule in rules), "a rule that plans are not held against")
+    require(PLAN_RULES.issuperset(rule["rule"] for rule in rules), "a rule that plans are not held against")
     check = PlanCheck(certificate, rules, subject)
     return check.claim()._replace(used_up=UsedUp(check.stock, check.stays_stated, check.wanted_stated))
 
@@ -372,7 +372,7 @@ class PlanCheck(Check):
         if member >= len(self.network):
             return Fraction(0)
         require(self.rate(member) > 0, "a unit that never succeeds is not compared")
-        return Fraction(math.floor(FINE * self.minus_log(self.rate(member))[0]), FINE)
+        return Fraction(math.floor(LOGARITHM_SCALE * self.minus_log(self.rate(member))[0]), LOGARITHM_SCALE)
 
     def limit(self, level: int) -> Fraction:
         """Return the greatest cost of plans by an objective as one number; by success rounded up."""
@@ -381,7 +381,7 @@ class PlanCheck(Check):
         if self.objectives[level] != "success":
             return stated.get(None, Fraction(0))
         bounds = ([e * bound for bound in self.minus_log(rate)] for rate, e in stated.items() if rate)
-        return Fraction(math.ceil(FINE * sum(map(max, bounds), Fraction(0))), FINE)
+        return Fraction(math.ceil(LOGARITHM_SCALE * sum(map(max, bounds), Fraction(0))), LOGARITHM_SCALE)
 
     def cut(self, number: int) -> frozenset[int]:
         """Return a cut by its number."""

@@ -8,9 +8,9 @@ from typing import Annotated, NamedTuple, Unpack
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.asp.ranking import Ranked
-from foon_asp.encoding.facts import write_distances
+from foon_asp.encoding.clingo_run import run
+from foon_asp.encoding.fact_writer import write_distances
 from foon_asp.encoding.own_encodings import question_encoding
-from foon_asp.encoding.search import run
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import counted
 from foon_asp.pictures.drawing import Drawing
@@ -32,7 +32,7 @@ from foon_asp.results.values import CostedTree, Mention, Node, Value, step_lines
 from foon_asp.results.values_of import costed_tree, head_of, mention_of, node_of
 from foon_asp.text.json_value import schema_name
 
-_MAX_SHOWN = 20  # trees that are listed one by one for people
+_MAX_SHOWN_TREES = 20  # trees that are listed one by one for people
 _MAX_PICTURES = 4  # trees drawn in a notebook
 
 
@@ -110,7 +110,7 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
         yield from self.goal_lines()
         yield from self._claim()
         for number, (tree, task_tree) in enumerate(
-            zip(self.trees[:_MAX_SHOWN], self.task_trees, strict=False), 1
+            zip(self.trees[:_MAX_SHOWN_TREES], self.task_trees, strict=False), 1
         ):
             yield task_tree.claim
             yield from used_up_note(self.problem, task_tree)
@@ -119,8 +119,9 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
                 continue
             yield from step_lines(steps_not_in(self.trees[0].units, tree.units), "-")
             yield from step_lines(steps_not_in(tree.units, self.trees[0].units), "+")
-        if len(self.trees) > _MAX_SHOWN:
-            yield f"... and {counted(len(self.trees) - _MAX_SHOWN, 'more tree')}; --format json lists all"
+        if len(self.trees) > _MAX_SHOWN_TREES:
+            others = counted(len(self.trees) - _MAX_SHOWN_TREES, "more tree")
+            yield f"... and {others}; --format json lists all"
 
     def _claim(self) -> Iterator[str]:
         """Return lines with the claim about all trees: how many, and whether proved."""

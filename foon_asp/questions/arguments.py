@@ -6,12 +6,12 @@ from dataclasses import replace
 from os import PathLike
 
 from foon_asp.asp.settings import Settings
-from foon_asp.dataset.items import require_contents
+from foon_asp.dataset.item_options import require_contents
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS, Objective, Problem, UsedUp, parse_objectives, with_dissimilarity
 from foon_asp.questions.caller import caller
-from foon_asp.rules.constraint import Constraint, find_constraint, given_constraint
+from foon_asp.rules.passed_constraint import Constraint, find_constraint, given_constraint
 
 Objectives = str | Iterable[str]
 """An objective, a list by commas, or several: the first counts most."""

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from foon_asp.escapes import escaped
 from foon_asp.network import counted
-from foon_asp.proof.constraint import Rule
-from foon_asp.proof.verify import trusted
+from foon_asp.proof.rule_meaning import Rule
+from foon_asp.proof.verifier import trusted
 
 if TYPE_CHECKING:  # takes clingo along, which `verify` must not load
     from foon_asp.asp import Outcome

@@ -18,7 +18,7 @@ from foon_asp.dataset import Dataset
 from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.dataset.paths import File
 from foon_asp.problem import Objective, Problem, levels
-from foon_asp.proof.verify import Subject
+from foon_asp.proof.verifier import Subject
 from foon_asp.questions.answer import Answer, answered, answered_nearby
 from foon_asp.questions.arguments import asked_with, reading, whole
 from foon_asp.questions.certificate_text import bound_text, certificate_lines, looked_at

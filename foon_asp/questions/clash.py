@@ -10,9 +10,9 @@ from foon_asp.asp.assembly import CLINGO_OPTIONS, assemble
 from foon_asp.asp.integrity import relax
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.solver import solve_prepared
-from foon_asp.encoding.facts import write_constraints, write_corrections
+from foon_asp.encoding.clingo_run import run
+from foon_asp.encoding.fact_writer import write_constraints, write_corrections
 from foon_asp.encoding.own_encodings import question_encoding
-from foon_asp.encoding.search import run
 from foon_asp.errors import BugError
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
@@ -20,9 +20,9 @@ from foon_asp.questions.answer import Answer
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending
 from foon_asp.results.values import ListedConstraint, Value
-from foon_asp.rules.constraint import Constraint, find_constraint
+from foon_asp.rules.passed_constraint import Constraint, find_constraint
 
-_OBJECTIVES = (Objective.UNITS,)
+_BY_UNITS = (Objective.UNITS,)
 
 
 class WeightedConstraint(ListedConstraint, frozen=True):
@@ -150,7 +150,7 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
     def constraints_of(numbers: Iterable[int]) -> tuple[WeightedConstraint, ...]:
         return tuple(by_number[number] for number in sorted(numbers))
 
-    prepared = prepare(problem, _OBJECTIVES, settings, program)
+    prepared = prepare(problem, _BY_UNITS, settings, program)
     if prepared.stopped:
         return clash(complete=False)
     if prepared.tree is None:
@@ -180,7 +180,7 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
         )
     dropped = corrections[0]
     kept = write_constraints(weights, set(weights).difference(dropped))
-    outcome = solve_prepared(prepared, _OBJECTIVES, kept)
+    outcome = solve_prepared(prepared, _BY_UNITS, kept)
     if outcome.status is Status.INFEASIBLE:
         raise BugError("dropping the constraints does not leave a tree")
     return clash(

@@ -16,7 +16,7 @@ from foon_asp.comparison.many import compare_goals, makeable
 from foon_asp.comparison.published_table import PublishedTable, read_published
 from foon_asp.comparison.rows_file import RowsFile
 from foon_asp.comparison.summary import all_proved, summarize_comparisons
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.item_options import items_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.pictures.comparison_chart import write_comparison_chart

@@ -11,7 +11,7 @@ from foon_asp.errors import BugError
 from foon_asp.questions.answer import Answer, EngineCheck
 from foon_asp.questions.caller import is_python
 from foon_asp.questions.disagreement import write_disagreement
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 
 
 def cross_checked(

@@ -9,12 +9,12 @@ from foon_asp.asp import Outcome
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.encoding.encoding import read_encoding
 from foon_asp.engines import Asked, DisagreementError
-from foon_asp.engines.bare_clingo import OPTIONS
+from foon_asp.engines.bare_clingo import CLINGO_OPTIONS
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.proof.verify import Subject
+from foon_asp.proof.verifier import Subject
 from foon_asp.results.plain import exact_measures, plain
-from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint
+from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.text.exact_number import decimal_text
 from foon_asp.text.json_value import Json, json_text
 from foon_asp.text.unit_amount_list import write_unit_amounts
@@ -88,7 +88,7 @@ def disagreement_json(request: Asked, disagreement: DisagreementError) -> Json:
             },
         },
         "bare_clingo": {
-            "arguments": [*program.constants, *OPTIONS],
+            "arguments": [*program.constants, *CLINGO_OPTIONS],
             "program": "".join(encodings) + program.text,
         },
         "versions": {name: version(name) for name in _DISTRIBUTIONS},

@@ -11,7 +11,7 @@ from foon_asp.network import Source
 from foon_asp.results.document import Document
 from foon_asp.results.table import Block
 from foon_asp.results.values import Value
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 from foon_asp.rules.rule_kind import Kind
 from foon_asp.rules.rules import ShownRule, Together
 from foon_asp.text.json_value import schema_name

@@ -7,7 +7,7 @@ from foon_asp.asp.bare_program import printed_program
 from foon_asp.problem import Objective, Problem
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.values_of import head_of
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 from foon_asp.text.json_value import schema_name
 
 

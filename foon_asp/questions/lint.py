@@ -15,8 +15,8 @@ from foon_asp.linting import linter
 from foon_asp.linting.baseline import read_baseline
 from foon_asp.linting.catalog import CATALOG, unknown_code
 from foon_asp.linting.finding import Finding, SeverityCounts
+from foon_asp.linting.lint_settings import find_settings
 from foon_asp.linting.linted_files import with_tables
-from foon_asp.linting.settings import find_settings
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.lint_findings import annotations, finding_lines, sarif, statistics, summary
 from foon_asp.results.plain import flat_row, plain

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.items import items_of, wanted_of
+from foon_asp.dataset.item_options import items_of, wanted_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode

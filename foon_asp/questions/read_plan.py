@@ -5,7 +5,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Unpack
 
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.item_options import items_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.planning.name_map import map_of, read_name_map

@@ -15,7 +15,7 @@ from foon_asp.dataset.paths import File
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import FunctionalUnit, ObjectNode, StandInTable, counted
 from foon_asp.problem import Costs, Objective, Problem
-from foon_asp.proof.constraint import ALL_STEPS
+from foon_asp.proof.rule_meaning import ALL_STEPS
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.answer import of_status
 from foon_asp.questions.arguments import whole

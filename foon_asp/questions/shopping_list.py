@@ -16,7 +16,7 @@ from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
 from foon_asp.dataset.paths import File
-from foon_asp.encoding.facts import write_for_sale, write_list
+from foon_asp.encoding.fact_writer import write_for_sale, write_list
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import ObjectNode, Source, counted
@@ -38,8 +38,8 @@ from foon_asp.results.values_of import head_of, node_as
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_name
-from foon_asp.text.table import Row
 from foon_asp.text.tables import PRICES
+from foon_asp.text.value_table import Row
 
 _MAX_COMPARED = 30  # lists of one price whose trees are compared, at most
 

@@ -10,7 +10,7 @@ from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, SoftConstraint
 from foon_asp.questions.arguments import whole
 from foon_asp.questions.caller import caller
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 
 
 def softly_answered(

@@ -7,9 +7,9 @@ from typing import Literal, Unpack
 from msgspec import UNSET, UnsetType
 
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.items import Stays, items_of
+from foon_asp.dataset.item_options import Stays, items_of
+from foon_asp.dataset.level_counts import count_levels
 from foon_asp.dataset.paths import File
-from foon_asp.dataset.statistics import count_levels
 from foon_asp.escapes import escaped
 from foon_asp.foon import Foon, load
 from foon_asp.network import Network, counted, starting_kitchen

@@ -16,8 +16,8 @@ from foon_asp.foon import Foon
 from foon_asp.network import Network, StandInTable, counted
 from foon_asp.problem import ContainerRule, Problem, kitchen_needed, parse_objectives
 from foon_asp.proof import proved_checker
-from foon_asp.proof import verify as proof
-from foon_asp.proof.constraint import ALL_STEPS, OWN, Rule
+from foon_asp.proof import verifier as proof
+from foon_asp.proof.rule_meaning import ALL_STEPS, OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.certificate_text import bound_text, looked_at, trusted_text
 from foon_asp.questions.common_options import Limits, begin

@@ -56,7 +56,7 @@ _SHOWN = (
 )
 _PAGES = ("html", "json")
 _PICTURES = ("svg", "png", "pdf", "dot", "mermaid", "graphml")
-_RULES = ("constraints", "constants", "encodings")
+_RULE_OPTIONS = ("constraints", "constants", "encodings")
 _FOR_THE_BEST = {
     "objectives": "--objective",
     "beside": "--beside",
@@ -356,7 +356,7 @@ def view(
     if isinstance(about, Answer):
         return View(about)
     listed = tuple(dict.fromkeys(units))
-    rules = {name: options[name] for name in _RULES if name in options}  # type: ignore[literal-required]
+    rules = {name: options[name] for name in _RULE_OPTIONS if name in options}  # type: ignore[literal-required]
     rule = options.get("containers", "strict")
     if tree is not None and listed:
         raise UserError("a tree and units are two different drawings: give one of them")

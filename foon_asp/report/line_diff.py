@@ -4,12 +4,12 @@ import difflib
 import re
 from collections.abc import Iterator
 
-_LINE = re.compile(r"[^\n]*\n|[^\n]+")
+_LINE_AND_END = re.compile(r"[^\n]*\n|[^\n]+")
 
 
 def line_diff(file: str, before: str, after: str) -> str:
     """Return a unified diff of the text of a file; empty without changes."""
-    return "".join(_lines(file, _LINE.findall(before), _LINE.findall(after)))
+    return "".join(_lines(file, _LINE_AND_END.findall(before), _LINE_AND_END.findall(after)))
 
 
 def _lines(file: str, before: list[str], after: list[str]) -> Iterator[str]:

@@ -19,8 +19,8 @@ from foon_asp.text.json_value import Json
 T = TypeVar("T")
 
 _EXACT = "_exact"
-_NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)
-_DIGITS = 6  # significant digits of a figure in Markdown
+_WRITTEN_NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)
+_SIGNIFICANT_DIGITS = 6  # significant digits of a figure in Markdown
 
 
 def plain(value: object) -> Any:
@@ -189,7 +189,7 @@ def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
 def safe_cell(text: str) -> str:
     """Return the text of a cell; an apostrophe before a text that a spreadsheet would take for a formula."""
     text = escaped(text)  # of what begins a formula, tabs and line ends
-    return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _NUMBER.fullmatch(text) else text
+    return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _WRITTEN_NUMBER.fullmatch(text) else text
 
 
 def markdown_text(rows: Iterable[Json]) -> str:
@@ -216,7 +216,7 @@ def markdown_row(cells: Iterable[str]) -> str:
 
 def _rounded(value: Any) -> str:
     if isinstance(value, float):
-        return str(int(value)) if value.is_integer() else f"{value:.{_DIGITS}g}"
+        return str(int(value)) if value.is_integer() else f"{value:.{_SIGNIFICANT_DIGITS}g}"
     return _text(value)
 
 

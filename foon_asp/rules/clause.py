@@ -17,8 +17,8 @@ from clingo.ast import (
 )
 from clingo.symbol import Number, Symbol, SymbolType
 
-from foon_asp.grounding.parsing import nodes
-from foon_asp.grounding.stated import Loaded, Stated
+from foon_asp.encoding.parsing import nodes
+from foon_asp.encoding.stated import Loaded, Stated
 from foon_asp.network import Source
 
 Signature = tuple[str, int]

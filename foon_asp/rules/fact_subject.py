@@ -28,7 +28,7 @@ class Subjects(NamedTuple):
 
 _OF_UNIT = Subjects({0: Subject.UNIT}, {})
 _UNIT_OBJECT = Subjects({0: Subject.UNIT}, {1: Subject.OBJECT})
-_NUMBER = Subjects({0: Subject.UNIT}, {}, (1,))
+_NUMBER_SUBJECTS = Subjects({0: Subject.UNIT}, {}, (1,))
 _OF_OBJECT = Subjects({0: Subject.OBJECT}, {})
 
 # Facts that are the same for a unit or a node whatever other facts there are. Facts not listed are not.
@@ -49,10 +49,10 @@ SUBJECTS: dict[Signature, Subjects] = {
     ("utensil", 1): Subjects({0: Subject.LABEL}, {}),
     ("source", 2): _OF_UNIT,
     ("video", 2): _OF_UNIT,
-    ("inputs", 2): _NUMBER,
-    ("ingredients", 2): _NUMBER,
-    ("rate", 2): _NUMBER,
-    ("price", 2): _NUMBER,
+    ("inputs", 2): _NUMBER_SUBJECTS,
+    ("ingredients", 2): _NUMBER_SUBJECTS,
+    ("rate", 2): _NUMBER_SUBJECTS,
+    ("price", 2): _NUMBER_SUBJECTS,
 }
 DECISIONS: dict[Signature, Subjects] = {
     ("use", 1): Subjects({}, {0: Subject.UNIT}),

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import islice
 from typing import Final, NamedTuple
 
-from foon_asp.encoding.facts import quote, source_names
+from foon_asp.encoding.fact_writer import quote, source_names
 from foon_asp.escapes import encodable
 from foon_asp.network import Network, ObjectNode, Source
 from foon_asp.network.spelling import near_labels
@@ -28,7 +28,7 @@ class Columns(NamedTuple):
 
 
 _UNIT_OBJECT: Final = Columns(units=(0,), objects=(1,))
-_NUMBER: Final = Columns(units=(0,), numbers=(1,))
+_NUMBER_COLUMNS: Final = Columns(units=(0,), numbers=(1,))
 _UNIT_TEXT: Final = Columns(units=(0,), texts=(1,))
 _OBJECT_TEXT: Final = Columns(objects=(0,), texts=(1,))
 _OBJECT: Final = Columns(objects=(0,))
@@ -36,14 +36,16 @@ _OBJECT: Final = Columns(objects=(0,))
 COLUMNS: Final[Mapping[tuple[str, int], Columns]] = {
     ("unit", 1): Columns(units=(0,)),
     ("use", 1): Columns(units=(0,)),
-    ("times", 2): _NUMBER,
+    ("times", 2): _NUMBER_COLUMNS,
     ("motion", 2): _UNIT_TEXT,
     ("source", 2): _UNIT_TEXT,
     ("video", 2): _UNIT_TEXT,
     **dict.fromkeys(
         ((name, 2) for name in ("input", "output", "needs", "gives", "stays", "uses_up")), _UNIT_OBJECT
     ),
-    **dict.fromkeys(((name, 2) for name in ("inputs", "ingredients", "rate", "price", "risk")), _NUMBER),
+    **dict.fromkeys(
+        ((name, 2) for name in ("inputs", "ingredients", "rate", "price", "risk")), _NUMBER_COLUMNS
+    ),
     **dict.fromkeys(((name, 1) for name in ("object", "kitchen", "goal", "available")), _OBJECT),
     **dict.fromkeys(((name, 2) for name in ("label", "state", "ingredient")), _OBJECT_TEXT),
     ("located", 3): Columns(objects=(0,), texts=(1, 2)),

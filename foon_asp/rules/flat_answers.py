@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from clingo.ast import ComparisonOperator
 from clingo.symbol import Number, String, Symbol
 
-from foon_asp.encoding.facts import millionths, quote, source_names
+from foon_asp.encoding.fact_writer import millionths, quote, source_names
 from foon_asp.escapes import encodable
 from foon_asp.problem import Problem
 from foon_asp.rules.clause import Signature, compared

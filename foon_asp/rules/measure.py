@@ -11,24 +11,24 @@ from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 from foon_asp.deadline import Deadline
-from foon_asp.encoding.facts import OBJECT_FACTS, object_facts, quote, write_worlds
+from foon_asp.encoding.fact_writer import OBJECT_FACTS, object_facts, quote, write_worlds
+from foon_asp.encoding.run import ProgramError
+from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.run import ProgramError
-from foon_asp.grounding.stated import Stated
 from foon_asp.network import Network, Source
 from foon_asp.problem import Problem
-from foon_asp.rules.constraint import exists
+from foon_asp.rules.passed_constraint import exists
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.plain_file import read_plain_text
 
 if TYPE_CHECKING:  # clingo, which is not needed before there is a measure
-    from foon_asp.grounding.derived import Value
+    from foon_asp.encoding.derived import Value
     from foon_asp.rules.measure_rules import MeasureRules, Statement
 
 Cost = int | Fraction
 
 _DECIMAL = re.compile(r"[0-9]{1,1000}(\.[0-9]{1,1000})?", re.ASCII)
-_LARGE = 1_500_000  # letters that clingo grounds in a fraction of a second
+_QUICKLY_GROUNDED = 1_500_000  # letters that clingo grounds in a fraction of a second
 
 
 @dataclass(frozen=True)
@@ -174,8 +174,8 @@ class _Evaluation:
         self, units: Iterable[int], statements: Iterable["Statement"]
     ) -> Sequence[tuple["Value", ...]]:
         """Derive costs of units with clingo; raises :class:`InputError` for instances that it drops."""
+        from foon_asp.encoding import derived  # noqa: PLC0415
         from foon_asp.encoding.encoding import fault  # noqa: PLC0415 (takes clingo along)
-        from foon_asp.grounding import derived  # noqa: PLC0415
         from foon_asp.rules.measure_rules import COST, WORLD  # noqa: PLC0415
 
         statements = list(statements)
@@ -187,9 +187,9 @@ class _Evaluation:
         text = "\n".join(lines)
         name, arity = f"_{COST[0]}", COST[1] + 1
         try:
-            if self._rules.plain and len(text) < _LARGE:
+            if self._rules.plain and len(text) < _QUICKLY_GROUNDED:
                 return derived.derive(text, name, arity)
-            from foon_asp.grounding.worker_process import derive  # noqa: PLC0415
+            from foon_asp.encoding.worker_process import derive  # noqa: PLC0415
 
             return derive(text, name, arity, self._deadline)
         except ProgramError as refused:

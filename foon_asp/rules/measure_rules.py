@@ -28,11 +28,11 @@ from clingo.symbol import SymbolType
 
 from foon_asp.encoding.encoding import PUBLIC_NAMES, Signature, fault, located, no_numbers, undefined
 from foon_asp.encoding.encoding_file import check_text
-from foon_asp.encoding.facts import FACT_PREDICATES, OBJECT_FACTS
+from foon_asp.encoding.fact_writer import FACT_PREDICATES, OBJECT_FACTS
+from foon_asp.encoding.messages import listener
+from foon_asp.encoding.parsing import parse
+from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.messages import listener
-from foon_asp.grounding.parsing import parse
-from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
 from foon_asp.rules.number_limits import beyond
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
@@ -41,15 +41,15 @@ COST = ("cost", 3)
 WORLD = "__world"
 BEYOND = "_beyond"  # the cost of a unit where rules calculate with numbers beyond those of clingo
 # Predicates that a rule cannot read, since they are not about one unit, and the reason.
-_TREE = (
+_DIFFERS_BY_TREE = (
     "differs from tree to tree, and what a unit costs does not: a price for what a tree does is a soft "
     "constraint (--soft), another way to measure trees an edited copy of objectives.lp (--encodings)"
 )
 _QUESTION = "differs from question to question, and what a unit costs does not"
 _REFUSED = {
-    ("use", 1): _TREE,
-    ("available", 1): _TREE,
-    ("times", 2): _TREE,
+    ("use", 1): _DIFFERS_BY_TREE,
+    ("available", 1): _DIFFERS_BY_TREE,
+    ("times", 2): _DIFFERS_BY_TREE,
     ("kitchen", 1): _QUESTION,
     ("goal", 1): _QUESTION,
     ("optimize", 2): _QUESTION,

@@ -16,10 +16,10 @@ from clingo.ast import (
 )
 from clingo.symbol import SymbolType
 
-from foon_asp.encoding.facts import quote
-from foon_asp.grounding.exact import LARGEST, is_beyond
-from foon_asp.grounding.number_checks import BEYOND
-from foon_asp.grounding.parsing import nodes
+from foon_asp.encoding.exact import LARGEST, is_beyond
+from foon_asp.encoding.fact_writer import quote
+from foon_asp.encoding.number_checks import BEYOND
+from foon_asp.encoding.parsing import nodes
 from foon_asp.rules.clause import variables
 
 _BINARY = {

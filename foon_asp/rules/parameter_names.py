@@ -6,9 +6,9 @@ from typing import Final
 
 from foon_asp.encoding.encoding_file import string_constant
 from foon_asp.encoding.own_encodings import is_own
-from foon_asp.proof.constraint import LIBRARY
-from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
+from foon_asp.proof.rule_meaning import LIBRARY
 from foon_asp.rules.fact_values import CONTENTS, MOTIONS, FactValues, has_text, nearest_text, unknown_text
+from foon_asp.rules.passed_constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.rules.ready_made import LISTED
 
 _LABELS: Final = ("label",)

@@ -10,15 +10,15 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
-from foon_asp.encoding.facts import hundredths
+from foon_asp.encoding.exact import LARGEST
+from foon_asp.encoding.fact_writer import hundredths
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
-from foon_asp.grounding.exact import LARGEST
 from foon_asp.problem import Contradiction, Problem, Restriction
-from foon_asp.proof.constraint import LIBRARY, Meaning, Question, Rule, meaning
+from foon_asp.proof.rule_meaning import LIBRARY, Meaning, Question, Rule, meaning
 from foon_asp.proof.ruled import Ruled
 from foon_asp.resources import encodings_folder
-from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
+from foon_asp.rules.passed_constraint import Constraint, LibraryUse, find_constraint
 
 # Parameters that are listed in facts, of a user file as well: the constant that sets one, empty without one.
 LISTED: Final = {"allergen": "forbidden_ingredient", "allowed": "allowed_source", "heats": ""}
@@ -31,8 +31,8 @@ READ: Final = frozenset(
     | {("source", 2), ("video", 2), ("rate", 2)}
 )
 _HEATS = re.compile(r'heats\("([^"\\]*)"\)\.')
-_NUMBER = re.compile(r"-?(0|[1-9]\d{0,9})", re.ASCII)
-_TEXT = re.compile(r'("?)([^"\\]+)\1')
+_INTEGER = re.compile(r"-?(0|[1-9]\d{0,9})", re.ASCII)
+_QUOTED = re.compile(r'("?)([^"\\]+)\1')
 _WITH_UNSETTLED = {"before", "not_both_motions", *(name for name in LIBRARY if name.startswith("at_most"))}
 _REQUIRING_PREFIX = "require_"  # prefix of the names of constraints that require units
 
@@ -149,7 +149,7 @@ def _values(
             return None
         for constant, (value, kind) in read.items():
             written = constants_given.get(constant, "")
-            match = _NUMBER.fullmatch(written) if kind is int else _TEXT.fullmatch(written)
+            match = _INTEGER.fullmatch(written) if kind is int else _QUOTED.fullmatch(written)
             if match is None or not written.isprintable() or (kind is int and abs(int(written)) > LARGEST):
                 return None
             used_names.update({constant} if constants_given is shared else ())

@@ -9,9 +9,9 @@ from typing import NamedTuple
 from clingo.ast import AST, ASTType
 
 from foon_asp.encoding.encoding import Encoding, read_encoding
-from foon_asp.encoding.facts import hundredths
+from foon_asp.encoding.fact_writer import hundredths
+from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
 from foon_asp.problem import Contradiction, Having, Problem, Restriction, Trait, Wanted, reach
 from foon_asp.rules.clause import Signature, literals, written

@@ -7,10 +7,10 @@ from clingo.ast import AST, ASTType, Transformer, parse_string
 from clingo.symbol import Function, SymbolType
 
 from foon_asp.encoding.encoding import EXTENDED, PUBLIC, Signature, constant_value, read_encoding
+from foon_asp.encoding.parsing import parse
+from foon_asp.encoding.stated import Loaded, Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.parsing import parse
-from foon_asp.grounding.stated import Loaded, Stated
-from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText
+from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText
 
 
 def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:

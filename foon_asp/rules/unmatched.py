@@ -9,7 +9,7 @@ from clingo.ast import AST, ASTType, ComparisonOperator, Sign
 from clingo.symbol import Symbol, SymbolType
 
 from foon_asp.encoding.encoding import Encoding
-from foon_asp.encoding.facts import quote
+from foon_asp.encoding.fact_writer import quote
 from foon_asp.network import Source
 from foon_asp.rules.clause import (
     Aggregate,
@@ -29,7 +29,7 @@ from foon_asp.rules.fact_values import COLUMNS, LISTED_FACTS, FactValues, has_te
 from foon_asp.text.diagnostics import Diagnostic, Severity
 
 _MAX_COMBINATIONS = 10_000  # of values of one literal; with more, it counts as matched
-_SHOWN = 3  # values of a list
+_MAX_VALUES = 3  # values of a list
 
 _Values = Mapping[str, Sequence[Symbol]]  # by variable, where all values are known
 
@@ -286,4 +286,4 @@ def _text(literal: Literal, arguments: Mapping[int, str]) -> str:
 
 def _shortened(words: Sequence[str]) -> list[str]:
     words = list(dict.fromkeys(words))
-    return [*words[:_SHOWN], "..."] if len(words) > _SHOWN else words
+    return [*words[:_MAX_VALUES], "..."] if len(words) > _MAX_VALUES else words

@@ -2,7 +2,7 @@
 
 from foon_asp.problem import Problem
 from foon_asp.searches.retrieval import Retrieval, backward, least
-from foon_asp.searches.search import SearchSettings
+from foon_asp.searches.search_interface import SearchSettings
 
 
 def depth_first(problem: Problem, settings: SearchSettings) -> Retrieval:

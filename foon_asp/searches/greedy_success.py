@@ -3,7 +3,7 @@
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.searches.retrieval import Retrieval, backward, least
-from foon_asp.searches.search import SearchSettings
+from foon_asp.searches.search_interface import SearchSettings
 
 
 def greedy_success(problem: Problem, settings: SearchSettings) -> Retrieval:

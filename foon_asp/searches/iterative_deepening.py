@@ -4,7 +4,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.problem import Problem, backwards
 from foon_asp.searches.breadth_first import breadth_first
 from foon_asp.searches.retrieval import Ending, Retrieval
-from foon_asp.searches.search import SearchSettings
+from foon_asp.searches.search_interface import SearchSettings
 
 
 def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval:

@@ -8,7 +8,7 @@ from foon_asp.offered.offer import Offer, Raised
 from foon_asp.offered.process import ask_offered
 from foon_asp.problem import Problem
 from foon_asp.searches.retrieval import Ending, Retrieval
-from foon_asp.searches.search import Search, SearchSettings
+from foon_asp.searches.search_interface import Search, SearchSettings
 
 
 def offered_search(offer: Offer) -> Search:

@@ -10,7 +10,7 @@ from foon_asp.searches.greedy_inputs import greedy_inputs
 from foon_asp.searches.greedy_success import greedy_success
 from foon_asp.searches.iterative_deepening import iterative_deepening
 from foon_asp.searches.offered_search import offered_search
-from foon_asp.searches.search import Search
+from foon_asp.searches.search_interface import Search
 
 ENTRY_POINTS: Final = "foon_asp.searches"
 _OPTIMUM = "optimum"  # the row of the optimum in tables of searches

@@ -17,7 +17,7 @@ from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.regret import regret_of
 from foon_asp.questions.view import PagePart, View, pages
 from foon_asp.results.figure_text import bound_text, costs_text
-from foon_asp.rules.constraint import Constraint, RuleText, find_constraint
+from foon_asp.rules.passed_constraint import Constraint, RuleText, find_constraint
 from foon_asp.serve.form import Form, Without
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import entry_names, nodes_beginning

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from foon_asp.network import Edit, ObjectNode, StandInTable
 from foon_asp.text.line import LineError, NameKind
-from foon_asp.text.table import Row, Table
 from foon_asp.text.tables import stated_name
+from foon_asp.text.value_table import Row, Table
 
 _NEVER = "never"
 _NUMBER = re.compile(r"\d{1,6}(\.\d{1,3})?", re.ASCII)

@@ -25,7 +25,7 @@ from foon_asp.store.columns import (
 )
 from foon_asp.store.digests import content_digests
 from foon_asp.store.label_search import write_trigrams
-from foon_asp.store.schema import OUTLINE, UNITS_OF_FILE, create_indexes, create_tables
+from foon_asp.store.store_tables import OUTLINE, UNITS_OF_FILE, create_indexes, create_tables
 from foon_asp.text.assumed_goals import as_entry, wanted_outputs
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode

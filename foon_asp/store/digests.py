@@ -34,7 +34,7 @@ def content_digests(
     motions: Mapping[str, Fraction] | None,
     priced: Mapping[int, Fraction] | None,
 ) -> dict[str, str]:
-    """Return the digests of network, kitchen and prices, equal to :func:`foon_asp.proof.verify.digests`.
+    """Return the digests of network, kitchen and prices, equal to :func:`foon_asp.proof.verifier.digests`.
 
     ``motions`` are prices by motion, ``priced`` those of single units by id; ``None`` where none are known.
     """

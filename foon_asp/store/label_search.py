@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from foon_asp.network.spelling import near_labels
 from foon_asp.store.columns import decoded_label, encoded_label
-from foon_asp.store.schema import TRIGRAMS
+from foon_asp.store.store_tables import TRIGRAMS
 
 _MAX_COMPARED = 300  # labels, those that share the rarest trigrams
 

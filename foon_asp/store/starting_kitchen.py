@@ -4,9 +4,9 @@ from collections.abc import Iterable, Sequence
 
 from foon_asp.network.starting import StartingKitchen
 from foon_asp.store.columns import ids_of
-from foon_asp.store.schema import UNITS_OF_FILE
 from foon_asp.store.store import Store
 from foon_asp.store.store_file import reporting_damage
+from foon_asp.store.store_tables import UNITS_OF_FILE
 from foon_asp.store.stored_ids import StoredIds
 
 

@@ -40,7 +40,7 @@ from foon_asp.text.repeated_node import RepeatedNode
 if TYPE_CHECKING:  # few answers need numpy
     from foon_asp.store.outline import Outline
 
-LISTED = 12  # node ids returned with a label, as many as a message lists
+LISTED_IDS = 12  # node ids returned with a label, as many as a message lists
 
 _NODE = (
     "SELECT node.id, name, states, relations, contents, kitchen, starting "
@@ -273,9 +273,9 @@ class Store:
 
     @reporting_damage
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Return how many nodes have a label, and the ids of the first :data:`LISTED`."""
+        """Return how many nodes have a label, and the ids of the first :data:`LISTED_IDS`."""
         ids = [*self._named(label)]
-        return len(ids), ids[:LISTED]
+        return len(ids), ids[:LISTED_IDS]
 
     @reporting_damage
     def beginning(self, start: str, max_labels: int) -> list[str]:

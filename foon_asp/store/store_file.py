@@ -12,7 +12,7 @@ from typing import Any, Concatenate, NoReturn, ParamSpec, Protocol, TypeVar
 from foon_asp.errors import UserError
 from foon_asp.store.columns import decoded
 from foon_asp.store.digests import FILE_DIGEST, has_true_digest
-from foon_asp.store.schema import APPLICATION_ID, VERSION, check_tables
+from foon_asp.store.store_tables import APPLICATION_ID, VERSION, check_tables
 from foon_asp.text.plain_file import STORE_MAGIC, read_beginning
 
 _HEADER = 100  # bytes; https://www.sqlite.org/fileformat2.html says what is where

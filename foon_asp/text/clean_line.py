@@ -8,14 +8,14 @@ import re
 from foon_asp.network import Contents, ObjectNode, Relation
 from foon_asp.text.line import Line, MotionLine, ObjectLine, Remark, StateLine
 
-_NAME = r"[^ \t\r\n\[\]{}](?:[^\t\r\n\[\]{}]*[^ \t\r\n\[\]{}])?"
+_CLEAN_NAME = r"[^ \t\r\n\[\]{}](?:[^\t\r\n\[\]{}]*[^ \t\r\n\[\]{}])?"
 _MOTION = r"[^ *\t\r\n\[\]{}](?:[^*\t\r\n\[\]{}]*[^ *\t\r\n\[\]{}])?"
 _RELATED = r"[^ ,\[\]{}\t\r\n](?:[^,\[\]{}\t\r\n]*[^ ,\[\]{}\t\r\n])?"
-_OBJECT_LINE = re.compile(rf"O([0-9]*)\t({_NAME})(?:\t([01]))?")
+_OBJECT_LINE = re.compile(rf"O([0-9]*)\t({_CLEAN_NAME})(?:\t([01]))?")
 _MOTION_LINE = re.compile(rf"M([0-9]*)\t({_MOTION})((?:\t(?:[0-9]+:[0-9][0-9]|Assumed))*)")
 # JSON has a blank for the tab before a bracket; contains [something] is a list in the wrong brackets
 _STATE_LINE = re.compile(
-    rf"S([0-9]*)\t(?!contains[\t ]\[)({_NAME})(?:([\t ])\[({_RELATED})\]|\t\{{([^\[\]{{}}\t\r\n]*)\}})?"
+    rf"S([0-9]*)\t(?!contains[\t ]\[)({_CLEAN_NAME})(?:([\t ])\[({_RELATED})\]|\t\{{([^\[\]{{}}\t\r\n]*)\}})?"
 )
 _LABEL = re.compile(r' *[^ ";\t\r\n\[\]{}][^;\t\r\n\[\]{}]*')
 

@@ -2,7 +2,7 @@
 
 from foon_asp.text.line import Line, name_of
 
-_DIGITS = 15  # longer ids do not count for the highest one
+_MAX_ID_DIGITS = 15  # longer ids do not count for the highest one
 
 
 class Numbering:
@@ -24,7 +24,7 @@ class Numbering:
         kind = type(line)
         self._ids.setdefault((kind, name_of(line)), line.id)
         self._used_ids.add((kind, line.id))
-        if len(line.id) <= _DIGITS:
+        if len(line.id) <= _MAX_ID_DIGITS:
             self._highest[kind] = max(self._highest.get(kind, 0), int(line.id))
 
     def number(self, line: Line) -> Line:

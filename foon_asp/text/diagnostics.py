@@ -10,7 +10,7 @@ from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 from foon_asp.network import Source, counted
 
-_SHOWN = 40  # errors in a message
+_MAX_ERRORS = 40  # errors in a message
 _BRIEF = 6  # lines that warnings may take before they are counted
 
 
@@ -75,11 +75,10 @@ class InputError(UserError):
     """Input that could not be read; carries every error found, in file order, and shows the first ones."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
-        lines = [str(diagnostic) for diagnostic in diagnostics[:_SHOWN]]
-        if len(diagnostics) > _SHOWN:
-            lines.append(
-                f"... and {counted(len(diagnostics) - _SHOWN, 'more error')}; foon-asp lint lists them all"
-            )
+        lines = [str(diagnostic) for diagnostic in diagnostics[:_MAX_ERRORS]]
+        if len(diagnostics) > _MAX_ERRORS:
+            others = counted(len(diagnostics) - _MAX_ERRORS, "more error")
+            lines.append(f"... and {others}; foon-asp lint lists them all")
         super().__init__("\n".join(lines))
         self.diagnostics = tuple(diagnostics)
 

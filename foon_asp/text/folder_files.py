@@ -9,9 +9,9 @@ from foon_asp.errors import UserError
 from foon_asp.text.formats import NEUTRAL
 from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, beginning, read_content
 
-_LINE = re.compile(rb"^(?:\xef\xbb\xbf)?[OSM]\d*[\t ]", re.MULTILINE)
+_FOON_LINE = re.compile(rb"^(?:\xef\xbb\xbf)?[OSM]\d*[\t ]", re.MULTILINE)
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-_KEY = re.compile(rb'"(?:input_nodes|object_label|label)"\s*:')
+_JSON_KEY = re.compile(rb'"(?:input_nodes|object_label|label)"\s*:')
 
 
 class FolderFile(NamedTuple):
@@ -48,7 +48,7 @@ def _is_foon(file: Path, relative: Path) -> bool:
         return False
     if file.name.endswith(NEUTRAL_SUFFIXES):
         return NEUTRAL.recognises(beginning(file), "")
-    pattern = {".txt": _LINE, ".json": _KEY}.get(file.suffix)
+    pattern = {".txt": _FOON_LINE, ".json": _JSON_KEY}.get(file.suffix)
     content = read_content(file) if pattern else b""
     # UTF-16 cannot be read, which has to be reported to the caller
     return pattern is not None and (pattern.search(content) is not None or content[:2] in _UTF_16)

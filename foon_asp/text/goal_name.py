@@ -12,7 +12,7 @@ from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_name
 from foon_asp.text.object_list import ListedObject
 
-_MAX_SHOWN = 12  # candidates in a message
+_MAX_CANDIDATES = 12  # candidates in a message
 _MAX_SIMILAR = 3  # labels shown that are similar to an unknown one
 _IN_QUOTES = re.compile(r' *"(?:\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4})|[^"\\])*("?)')  # closed or not
 
@@ -192,16 +192,18 @@ def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames
 
 def _unknown(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
     """Return the error about an unknown node, with some nodes of each similar label."""
-    labels = dict.fromkeys((*names.beginning(node.label, _MAX_SHOWN), *names.near(node.label, _MAX_SIMILAR)))
+    labels = dict.fromkeys(
+        (*names.beginning(node.label, _MAX_CANDIDATES), *names.near(node.label, _MAX_SIMILAR))
+    )
     counted_nodes = [names.labelled(label) for label in labels]
     if not counted_nodes:
         return GoalError(message)
-    share = max(1, _MAX_SHOWN // len(counted_nodes))
+    share = max(1, _MAX_CANDIDATES // len(counted_nodes))
     total = sum(count for count, _ in counted_nodes)
     first = [o for _, nodes in counted_nodes for o in _most_similar_first(node, nodes, names)[:share]]
     return _unclear(f"{message}; similar are", names, total, first, wording)
 
 
 def _unclear(message: str, names: NodeNames, count: int, first: Iterable[int], wording: Wording) -> GoalError:
-    shown = [str(names.node(o)) for o in [*first][:_MAX_SHOWN]]
+    shown = [str(names.node(o)) for o in [*first][:_MAX_CANDIDATES]]
     return GoalError(message, shown, count - len(shown), wording.before)

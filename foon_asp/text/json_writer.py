@@ -22,7 +22,7 @@ from foon_asp.text.provenance import read_copy, read_video
 from foon_asp.text.reading import Reading
 
 # What a JSON number may look like; other digits, such as 007, are written as text.
-_NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
+_JSON_NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
 
 
 class JsonWriter:
@@ -205,7 +205,7 @@ def written_list(values: Sequence[str], level: int) -> str:
 def _number(digits: str) -> object:
     if not digits:
         return None
-    return JsonNumber(digits) if _NUMBER.fullmatch(digits) else digits
+    return JsonNumber(digits) if _JSON_NUMBER.fullmatch(digits) else digits
 
 
 def _text(value: object) -> str:

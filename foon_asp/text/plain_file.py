@@ -13,7 +13,7 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 STORE_SUFFIX = ".foon"
 NEUTRAL_SUFFIXES = (".jsonl", ".ndjson")
-_BEGINNING = 1_000_000  # bytes; a unit of the neutral form may be that long
+_SNIFFED_BYTES = 1_000_000  # bytes; a unit of the neutral form may be that long
 _LINE = re.compile(r"([^\r\n]*)(\r\n|\r|\n|\Z)")
 _LINE_END = re.compile(r"\r\n|\r|\n")
 FENCE = "```"
@@ -108,7 +108,7 @@ def with_own_mark(text: str) -> str:
 
 def beginning(file: Path) -> str:
     """Return the beginning of a file as text, long enough to recognise its format."""
-    return read_beginning(file, _BEGINNING).decode("utf-8-sig", errors="replace")
+    return read_beginning(file, _SNIFFED_BYTES).decode("utf-8-sig", errors="replace")
 
 
 def read_plain_text(file: Path) -> str:

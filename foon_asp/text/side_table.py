@@ -8,10 +8,10 @@ from foon_asp.errors import UserError
 from foon_asp.text.foon_text import FoonText
 from foon_asp.text.line import Mention
 from foon_asp.text.plain_file import each_line, split_lines
-from foon_asp.text.table import Table
 from foon_asp.text.tables import DURATIONS, RATES, TOOLS, UTENSILS
 from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 from foon_asp.text.unit_price_list import UNIT_PRICES
+from foon_asp.text.value_table import Table
 
 if TYPE_CHECKING:
     from foon_asp.text.renaming import Renaming

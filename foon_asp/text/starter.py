@@ -18,7 +18,7 @@ _MOTIONS = """\
 _UNKNOWN = """\
 # 1 says that it never fails: nothing is known yet. Put in what you measured.
 """
-_UTENSILS = """\
+_UTENSILS_HEAD = """\
 # Things to hold something, one a line. Only --containers implied looks at them: a unit is then not asked for
 # the bowl that holds its flour, if the flour is there.
 """
@@ -47,7 +47,7 @@ def starter_files(
         RATES_FILE: _MOTIONS
         + ("" if rates else _UNKNOWN)
         + "".join(f"{motion}\t{_decimal(rate)}\n" for motion, rate in all_rates.items()),
-        "utensils.txt": _UTENSILS + "".join(f"{label}\n" for label in _utensils(network.objects)),
+        "utensils.txt": _UTENSILS_HEAD + "".join(f"{label}\n" for label in _utensils(network.objects)),
         "goal_nodes.txt": _GOALS + "".join(map(write_node, goals)),
     }
 

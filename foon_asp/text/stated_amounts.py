@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 
 from foon_asp.network import DataAmounts, FunctionalUnit, Network, ObjectNode, Source, UnitAmounts
 from foon_asp.text.diagnostics import Diagnostic, Severity
-from foon_asp.text.table import Row
+from foon_asp.text.value_table import Row
 
 UnitAmount = tuple[str, bool, ObjectNode]
 """The first columns of a table of amounts: a motion, whether the node is an output, and the node."""

@@ -13,8 +13,8 @@ from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_name, parse_node
 from foon_asp.text.plain_file import read_plain_text, split_lines
 from foon_asp.text.reading import Reading
-from foon_asp.text.table import Table
 from foon_asp.text.text_units import TextUnits
+from foon_asp.text.value_table import Table
 
 _TIME_UNITS = {"": 1, "s": 1, "min": 60, "h": 3600}
 _DURATION = "a number of seconds such as 90 or 1.5, or of minutes or hours such as 25 min"

@@ -7,8 +7,8 @@ from foon_asp.network import MAX_AMOUNT, FunctionalUnit, ObjectNode, UnitAmounts
 from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_node
 from foon_asp.text.stated_amounts import UnitAmount
-from foon_asp.text.table import Table
 from foon_asp.text.tables import motion_column
+from foon_asp.text.value_table import Table
 
 _ARROWS = ("→", "->")
 _AMOUNT = re.compile(r"[1-9]\d{0,6}", re.ASCII)

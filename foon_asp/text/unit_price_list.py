@@ -8,8 +8,8 @@ from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices, in_
 from foon_asp.text.exact_number import decimal_text, read_price
 from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_node
-from foon_asp.text.table import Table
 from foon_asp.text.tables import motion_column
+from foon_asp.text.value_table import Table
 
 _ARROWS = ("→", "->")
 

@@ -9,7 +9,7 @@ from foon_asp.asp import Settings
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.settings import Bounded
 from foon_asp.asp.soft import solve_soft
-from foon_asp.encoding.facts import write_at_most
+from foon_asp.encoding.fact_writer import write_at_most
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit

@@ -20,15 +20,15 @@ import foon_asp
 from foon_asp.asp import Outcome, Reporter, Settings, Status, optimum, solve
 from foon_asp.cli.main import cli as commands
 from foon_asp.cli.main import main
-from foon_asp.cli.options import begin
+from foon_asp.cli.shared_options import begin
 from foon_asp.deadline import Deadline, LimitError, resend_lost_interrupts, uninterrupted
-from foon_asp.grounding import worker_process
+from foon_asp.encoding import worker_process
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.processes import worker
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.arguments import chosen_objectives
 from foon_asp.questions.caller import Caller, asked_by, caller
-from foon_asp.rules.constraint import RuleText
+from foon_asp.rules.passed_constraint import RuleText
 from foon_asp.text.writer import write_units
 from tests.support.hard_problem import hard_problem
 

@@ -41,12 +41,12 @@ def outcome_of(problem: Problem, objectives: str = "units", **how: Any) -> Outco
 
 def break_wanted_product(patch: pytest.MonkeyPatch) -> None:
     """Let the search for what comes after success forget which product it was to keep."""
-    patch.setattr("foon_asp.encoding.facts.write_wanted", lambda _: "")
+    patch.setattr("foon_asp.encoding.fact_writer.write_wanted", lambda _: "")
 
 
 def break_models(patch: pytest.MonkeyPatch) -> None:
     """Read other units out of clingo's answers than it used."""
-    patch.setattr("foon_asp.grounding.ground_program._used", lambda _: frozenset({0, 1}))
+    patch.setattr("foon_asp.encoding.ground_program._used", lambda _: frozenset({0, 1}))
 
 
 def break_costs(patch: pytest.MonkeyPatch) -> None:

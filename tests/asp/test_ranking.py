@@ -10,9 +10,9 @@ import pytest
 from foon_asp.asp import Settings
 from foon_asp.asp.ranking import Ranked
 from foon_asp.deadline import Deadline
-from foon_asp.encoding import search
+from foon_asp.encoding import clingo_run
+from foon_asp.encoding.run import Run
 from foon_asp.errors import BugError, UserError
-from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem, UsedUp
 from tests.asp.test_solver import Heard, numbers, own_encodings
 from tests.support.ways_problem import ways
@@ -119,11 +119,11 @@ def test_what_was_found_before_a_limit_is_known(monkeypatch: pytest.MonkeyPatch)
     problem = ways(["0.5"], ["0.5"], ["0.4"], ["0.3", "0.3"])
     assert stopped(problem, SUCCESS, deadline=Deadline(0)) == ([], [])
     one, other = (Run(numbers(problem, unit), (69314718, 1), True) for unit in (0, 1))
-    monkeypatch.setattr(search, "run", says(other, one, Run(numbers(problem, 3, 4))))
+    monkeypatch.setattr(clingo_run, "run", says(other, one, Run(numbers(problem, 3, 4))))
     assert stopped(problem, SUCCESS) == ([], [(0,), (1,), (3, 4)])
     two = Run(numbers(problem, 3, 4), (2,), True)
     for answers, given in (([], []), ([replace(one, cost=(1,)), two], [(0,), (3, 4)])):
-        monkeypatch.setattr(search, "run", says(*answers))
+        monkeypatch.setattr(clingo_run, "run", says(*answers))
         assert stopped(problem, UNITS) == (given, [])
 
 
@@ -151,7 +151,7 @@ def test_answers_that_contradict_our_own_costs_are_bugs(
 ) -> None:
     problem = ways(["0.5"], ["0.5", "0.2"], ["0.5", "0.2", "0.1"])
     runs = [Run(numbers(problem, *units), costs, True) for units, costs in answers]
-    monkeypatch.setattr(search, "run", says(*runs))
+    monkeypatch.setattr(clingo_run, "run", says(*runs))
     with pytest.raises(BugError, match=message):
         list(Ranked(problem, [UNITS], Settings()))
 
@@ -194,6 +194,6 @@ def test_other_encodings_that_measure_the_same_may_be_given(
         ((two, one), "trees cannot be ordered"),
         ((strange,), "^a tree was found with units that are not in the network: check the encodings$"),
     ):
-        monkeypatch.setattr(search, "run", says(*answers))
+        monkeypatch.setattr(clingo_run, "run", says(*answers))
         with pytest.raises(UserError, match=message):
             list(Ranked(problem, [UNITS], Settings(encodings=own)))

@@ -14,9 +14,9 @@ import pytest
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.grounded import Grounded
+from foon_asp.encoding.run import Run
 from foon_asp.errors import BugError, UserError
-from foon_asp.grounding.grounded import Grounded
-from foon_asp.grounding.run import Run
 from foon_asp.hypergraph import ALL, NONE
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import Costs, Objective, Problem, levels

@@ -21,7 +21,7 @@ from foon_asp.certificate import (
 from foon_asp.network import TaskTree
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.simulation import simulate_for
-from foon_asp.proof.verify import Verified, read_certificate
+from foon_asp.proof.verifier import Verified, read_certificate
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.goal_name import find_goal
@@ -310,7 +310,7 @@ print(*sys.modules)
     loaded = run_python("-I", "-c", alone).split()
     ours = {name for name in loaded if name.split(".")[0] == "foon_asp"}
     names = {"foon_asp", "foon_asp.escapes"}  # public names, and how names are quoted
-    names |= {"foon_asp.proof", "foon_asp.proof.constraint", "foon_asp.proof.ruled"}  # its own parts
+    names |= {"foon_asp.proof", "foon_asp.proof.rule_meaning", "foon_asp.proof.ruled"}  # its own parts
     names.add("foon_asp.proof.stand_ins")
     assert ours == names | {name for name in ours if name.startswith("foon_asp.network")}
     assert not {"clingo", "highspy", "numpy", "lark", "click"} & {*loaded}
@@ -343,7 +343,7 @@ def test_a_broken_finder_ends_with_70(cli: Cli, tmp_path: Path, monkeypatch: pyt
         assert right is not None
         return Certificate({**right.content, "claim": "bound", "bound": ["1000"]}, "bound", right.certified)
 
-    monkeypatch.setattr("foon_asp.certificate.outcome.certify", above)
+    monkeypatch.setattr("foon_asp.certificate.certified_outcome.certify", above)
     file = tmp_path / "proof.json"
     ran = cli("solve", "--goal", "ice", "--certificate", file)
     assert ran.code == 70

@@ -19,8 +19,8 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.deadline import Deadline
 from foon_asp.network import ObjectNode, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, UsedUp, levels
-from foon_asp.proof.verify import RefusedError, Verified, seal
-from foon_asp.proof.verify_plan import FINE, verify_any
+from foon_asp.proof.verifier import RefusedError, Verified, seal
+from foon_asp.proof.verify_plan import LOGARITHM_SCALE, verify_any
 from foon_asp.questions.certificate_text import certificate_lines
 from tests.conftest import Cli
 from tests.oracle.used_up import key, plans, random_problem
@@ -228,7 +228,7 @@ RELIABLE = covering("least_rate", least_rate=900_000)
 def rate(cost: str) -> Fraction:
     """Give a rate whose logarithm, below 0, has so many parts of a billion; it has 70 digits."""
     with localcontext(prec=120):
-        exact = (-Decimal(cost) / FINE).exp()
+        exact = (-Decimal(cost) / LOGARITHM_SCALE).exp()
         return Fraction(exact.quantize(Decimal(1).scaleb(-70), rounding=ROUND_FLOOR))
 
 

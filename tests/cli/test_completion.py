@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.cli.verbs import FIRST, VERBS
+from foon_asp.cli.verbs import FIRST_VERBS, VERBS
 from tests.conftest import ROOT, Cli
 
 PROGRAM = f"{shlex.quote(sys.executable)} -m foon_asp"
@@ -142,7 +142,11 @@ def test_a_misspelt_verb_gets_the_nearest(cli: Cli, word: str, hint: str) -> Non
 
 def test_help_lists_the_verbs_that_most_people_need_or_all(cli: Cli) -> None:
     for_programs = {"rename", "schema", "completion", "lsp"}
-    for words, verbs in (("-h", {*FIRST}), ("help", VERBS.keys() - for_programs), ("help --all", {*VERBS})):
+    for words, verbs in (
+        ("-h", {*FIRST_VERBS}),
+        ("help", VERBS.keys() - for_programs),
+        ("help --all", {*VERBS}),
+    ):
         text = cli(*words.split()).out
         assert {*re.findall(r"^  ([a-z-]+) ", text, re.MULTILINE)} & VERBS.keys() == verbs
     assert "foon-asp help" in cli("-h").out

@@ -27,11 +27,11 @@ from foon_asp.dataset.reading_store import read_stored
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.foon import Foon
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
-from foon_asp.proof import verify
+from foon_asp.proof import verifier
 from foon_asp.questions.answer import answered_nearby, answered_under
 from foon_asp.questions.certifying import certified
 from foon_asp.questions.result import Ending
-from foon_asp.rules.constraint import RuleText
+from foon_asp.rules.passed_constraint import RuleText
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles
 from tests.conftest import Cli
@@ -471,7 +471,7 @@ def test_a_certificate_of_a_store_is_one_of_the_text(rule: ContainerRule, part: 
         assert found.certificate is not None, seed
         assert found.proof is Proof.CERTIFICATE
         whole = subject_of(problem)._replace(prices=dataset.unit_prices)
-        there = verify.verify(found.certificate.content, whole)
+        there = verifier.verify(found.certificate.content, whole)
         here = foon_asp.verify(Foon(dataset, "a store"), found.certificate)
         computed = foon_asp.verify(Foon(dataset, "a store"), found.certificate, full=True)
         assert (here.claim, here.tree) == (there.claim, there.tree)

@@ -19,7 +19,7 @@ from foon_asp.dataset.reading_store import read_stored
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
 from foon_asp.questions.answer import Answer, answered_under
-from foon_asp.rules.constraint import RuleText
+from foon_asp.rules.passed_constraint import RuleText
 from foon_asp.store.import_files import import_files
 from foon_asp.store.unit_distances import UnitDistances
 from foon_asp.text.data_folder import DataFiles

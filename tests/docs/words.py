@@ -56,8 +56,11 @@ EXCEPTIONS = {
         "hypergraph/reductions.py results/proof_cases.py",
         "a word of --reduce, and a key of certificates",
     ),
-    "each": ("cli/rename.py pictures/whole_network.py text/json_names.py", "a loop of one line"),
-    "found": ("asp/ranking.py cli/lint.py text whole_file.py", "findings, and what a line error found"),
+    "each": ("cli/rename_command.py pictures/whole_network.py text/json_names.py", "a loop of one line"),
+    "found": (
+        "asp/ranking.py cli/lint_command.py text whole_file.py",
+        "findings, and what a line error found",
+    ),
     "given": (
         "cli/asking.py questions/posing.py questions/tree.py results/proof_cases.py",
         "keys of documents",
@@ -78,7 +81,7 @@ EXCEPTIONS = {
         "near names and nodes",
     ),
     "part": ("dataset network questions/regret.py store/store.py", "a part of a network or a tree"),
-    "place": ("grounding problem results/values.py rules/measure.py", "file, line and column"),
+    "place": ("encoding problem results/values.py rules/measure.py", "file, line and column"),
     "side": (
         "linting network questions text store problem planning proof certificate foon.py",
         "the inputs or the outputs of a unit",

@@ -21,7 +21,7 @@ from clingo.symbol import SymbolType
 from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.encoding import encoding
-from foon_asp.grounding.parsing import nodes
+from foon_asp.encoding.parsing import nodes
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen

@@ -15,7 +15,7 @@ from foon_asp.hypergraph import ALL, NONE
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import encodings_folder
-from foon_asp.rules.constraint import RuleText
+from foon_asp.rules.passed_constraint import RuleText
 from tests.conftest import Cli
 
 MINE = ':- use(U), motion(U,"whisk").\n:- #count { U : use(U), motion(U,"pour") } > 3.\n'

@@ -17,8 +17,8 @@ import foon_asp
 from foon_asp.asp import Settings, Status
 from foon_asp.asp.soft import solve_soft
 from foon_asp.deadline import Deadline, LimitError, memory_size, seconds, size_text
+from foon_asp.encoding.worker_process import prepare
 from foon_asp.errors import UserError
-from foon_asp.grounding.worker_process import prepare
 from foon_asp.problem import Objective
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.alternatives import alternatives
@@ -55,7 +55,7 @@ def workers(parent: int) -> list[int]:
     for folder in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError, IndexError):
             words = (folder / "cmdline").read_bytes()
-            if b"grounding.worker" in words:
+            if b"encoding.program_worker" in words:
                 stat = (folder / "stat").read_text().rpartition(")")[2].split()
                 if stat[0] != "Z" and int(stat[1]) in {parent, 1}:
                     found.append(int(folder.name))

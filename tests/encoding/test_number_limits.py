@@ -12,15 +12,15 @@ from clingo.ast import AST
 
 import foon_asp
 from foon_asp.asp import Settings, solve
-from foon_asp.grounding.exact import LARGEST
-from foon_asp.grounding.ground_program import GroundProgram
-from foon_asp.grounding.number_checks import CHECKS_FILE
-from foon_asp.grounding.parsing import parse
-from foon_asp.grounding.run import FoundAnswer, ProgramError
-from foon_asp.grounding.stated import Stated
+from foon_asp.encoding.exact import LARGEST
+from foon_asp.encoding.ground_program import GroundProgram
+from foon_asp.encoding.number_checks import CHECKS_FILE
+from foon_asp.encoding.parsing import parse
+from foon_asp.encoding.run import FoundAnswer, ProgramError
+from foon_asp.encoding.stated import Stated
 from foon_asp.problem import Problem
-from foon_asp.rules.constraint import RuleText
 from foon_asp.rules.number_limits import number_checks
+from foon_asp.rules.passed_constraint import RuleText
 from foon_asp.text.diagnostics import InputError
 from tests.conftest import Cli
 

@@ -20,7 +20,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copytree(encodings_folder(), copy)
     for module in (
         "asp.assembly",
-        "rules.constraint",
+        "rules.passed_constraint",
         "asp.settings",
         "encoding.own_encodings",
         "encoding.encoding",

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.encoding import encoding as encoding_rules
-from foon_asp.grounding.stated import Stated
+from foon_asp.encoding.stated import Stated
 from foon_asp.resources import encodings_folder
 from tests.conftest import Cli
 

@@ -28,7 +28,7 @@ from foon_asp.engines import (
 )
 from foon_asp.engines.bare_clingo import check_with_bare_clingo, greatest_weight
 from foon_asp.problem import Objective, Problem
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 from tests.conftest import ROOT, Cli
 from tests.encoding.test_exact_success import two_ways
 from tests.support.gap_problem import gap_problem

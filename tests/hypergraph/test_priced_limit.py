@@ -14,7 +14,7 @@ from foon_asp.hypergraph import ALL, NONE, priced_limit, tuning
 from foon_asp.hypergraph.priced_limit import Limited
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
-from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.passed_constraint import given_constraint
 from tests.oracle.constraints import keeps, random_rule, settings_of
 from tests.rules.test_constraint_meanings import small, trees
 from tests.rules.test_ready_made import known

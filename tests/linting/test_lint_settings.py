@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from foon_asp.linting.settings import find_settings, read_settings
+from foon_asp.linting.lint_settings import find_settings, read_settings
 from foon_asp.report.line_diff import line_diff
 from foon_asp.text.diagnostics import InputError
 from tests.conftest import ROOT, Cli, valid

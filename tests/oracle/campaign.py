@@ -27,7 +27,7 @@ from foon_asp.errors import UserError
 from foon_asp.hypergraph import parse_reductions
 from foon_asp.network import FunctionalUnit, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 from tests.oracle import constraints, task_trees
 from tests.oracle.constraints import random_rule, settings_of
 from tests.support.gap_problem import gap_problem

@@ -32,7 +32,7 @@ from foon_asp.network import (
 )
 from foon_asp.problem import ContainerRule, Objective, Problem, executable_order, first_tree, reach, relevant
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.proof.verify import TREE, RefusedError, seal
+from foon_asp.proof.verifier import TREE_FORM, RefusedError, seal
 from tests.conftest import Cli
 from tests.oracle import task_trees
 from tests.support.handmade_certificate import check
@@ -164,9 +164,9 @@ def forged(problem: Problem) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("version", "words"),
     [
-        (TREE.version, "the tree does not make every goal"),
-        (1, f"version {TREE.version}"),
-        (TREE.version + 1, f"version {TREE.version}"),
+        (TREE_FORM.version, "the tree does not make every goal"),
+        (1, f"version {TREE_FORM.version}"),
+        (TREE_FORM.version + 1, f"version {TREE_FORM.version}"),
     ],
 )
 def test_a_certificate_of_the_old_rule_is_refused(version: int, words: str) -> None:
@@ -201,7 +201,7 @@ def test_a_certificate_of_another_version_is_refused() -> None:
     problem = ask(HOT, ContainerRule.STRICT, (WATER, POT))
     found = certify(problem, (Objective.UNITS,), [0])
     assert found is not None
-    for version in (0, TREE.version - 1, TREE.version + 1, True, "1", 1.0, None):
+    for version in (0, TREE_FORM.version - 1, TREE_FORM.version + 1, True, "1", 1.0, None):
         other = found.content | {"version": version}
         other["seal"] = seal(other)
         with pytest.raises(RefusedError, match="version"):

@@ -9,7 +9,7 @@ import pytest
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
-from foon_asp.encoding.facts import write_facts, write_objectives
+from foon_asp.encoding.fact_writer import write_facts, write_objectives
 from foon_asp.encoding.scales import Scales
 from foon_asp.engines import Asked, DisagreementError, cross_check
 from foon_asp.errors import BugError
@@ -25,7 +25,7 @@ from foon_asp.problem import (
     levels,
     multiplies,
 )
-from foon_asp.proof import verify
+from foon_asp.proof import verifier
 from foon_asp.resources import encodings_folder
 from tests.encoding.test_exact_success import two_ways
 from tests.oracle import task_trees
@@ -144,7 +144,7 @@ def test_rooms_that_measure_different_things_give_no_answer(
 
 
 def test_the_verifier_knows_all_objectives() -> None:
-    assert set(verify.OBJECTIVES) == set(map(str, Objective))
+    assert set(verifier.OBJECTIVES) == set(map(str, Objective))
 
 
 def criteria(problem: Problem, tree: list[int], objectives: list[Objective]) -> list[int]:

@@ -8,7 +8,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.processes.pipe import packed
 from foon_asp.processes.worker import Worker
 
-GROUNDER = "foon_asp.grounding.worker"
+GROUNDER = "foon_asp.encoding.program_worker"
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
 
 

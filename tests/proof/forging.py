@@ -13,7 +13,7 @@ import pytest
 
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.problem import Problem
-from foon_asp.proof.verify import RefusedError
+from foon_asp.proof.verifier import RefusedError
 
 KIND = "what is of another kind ends the check with a fault of Python's and not with a refusal"
 WORDS = "the refusal says what is wrong; without it a later one says less"

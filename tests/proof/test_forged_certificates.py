@@ -15,7 +15,7 @@ import pytest
 
 from foon_asp.network import StandInTable, UnitPrices
 from foon_asp.problem import Problem, StandIns
-from foon_asp.proof import constraint, ruled, verify
+from foon_asp.proof import rule_meaning, ruled, verifier
 from tests.proof.by_hand import (
     BAKE,
     END,
@@ -359,13 +359,13 @@ SLOW = "_spend: to check it takes more than … steps"
 
 def test_a_right_certificate_passes(tmp_path: Path) -> None:
     content = (certificate(), certificate(**FIVE, measures=measured()), text(), text().encode())
-    assert [held(verify, Forged(each, PLAIN), tmp_path).claim for each in content] == [
+    assert [held(verifier, Forged(each, PLAIN), tmp_path).claim for each in content] == [
         *("optimal", "optimal", "bound", "bound")
     ]
 
 
 def test_every_check_has_a_forged_certificate() -> None:
-    names = [name for name, _ in checks(verify)]
+    names = [name for name, _ in checks(verifier)]
     assert len(set(names)) == len(names)
     assert {*names} == FORGED.keys() | NO_CHECKS | {NEXT}
 
@@ -374,22 +374,22 @@ def test_an_objective_that_has_no_cost_yet_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """That check is for the day when an objective is added: no certificate comes to it now."""
-    monkeypatch.setattr(verify, "OBJECTIVES", (*verify.OBJECTIVES, "pans"))
-    with pytest.raises(verify.RefusedError, match="an objective is unknown"):
-        held(verify, plain(objective=["pans"]), tmp_path)
+    monkeypatch.setattr(verifier, "OBJECTIVES", (*verifier.OBJECTIVES, "pans"))
+    with pytest.raises(verifier.RefusedError, match="an objective is unknown"):
+        held(verifier, plain(objective=["pans"]), tmp_path)
 
 
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name == SLOW else ()) for name in FORGED]
 )
 def test_a_forged_certificate_is_refused_by_its_check_alone(name: str, tmp_path: Path) -> None:
-    require_its_check_alone(verify, name, FORGED[name], tmp_path)
+    require_its_check_alone(verifier, name, FORGED[name], tmp_path)
 
 
 @pytest.mark.parametrize("said", PLACES)
 def test_each_place_is_read(said: str, tmp_path: Path) -> None:
-    with pytest.raises(verify.RefusedError, match=said):
-        held(verify, PLACES[said], tmp_path)
+    with pytest.raises(verifier.RefusedError, match=said):
+        held(verifier, PLACES[said], tmp_path)
 
 
 # --- what refuses by what it computes
@@ -503,19 +503,19 @@ PARTS = {
         "if not (touched.isdisjoint(inputs) and touched.isdisjoint(outputs))",
         "if not touched.isdisjoint(outputs)",
         plain(rules=forbid([], ["start"])),
-        constraint,
+        rule_meaning,
     ),
     "all that a rule removes is": Part(
         "rate * 1_000_000 // 1 >= least_rate",
         "rate * 1_000_001 // 1 >= least_rate",
         plain(at=LEAST, rules=[{"rule": "least_rate", "least_rate": 500_001}]),
-        constraint,
+        rule_meaning,
     ),
     "an allergen of a goal leaves no tree, and of nothing else": Part(
         "isdisjoint(question.goals)",
         "isdisjoint(question.kitchen)",
         plain(**NO_TREE, rules=[SPOILED | {"allergen": ["salt"]}], cuts=[], proof={"broken": 0}),
-        constraint,
+        rule_meaning,
     ),
     "what is at hand is not passed on": Part(
         "        if o not in question.kitchen:\n",
@@ -528,7 +528,7 @@ PARTS = {
             tree=[0, 1],
             costs=[2],
         ),
-        constraint,
+        rule_meaning,
     ),
     "things of one unit are counted each": Part(
         "amounts[thing] + amount if thing in amounts else amount",
@@ -550,7 +550,7 @@ PARTS = {
         "if len(one) == 1",
         "if one",
         plain(**NO_TREE, rules=[own([[[1, 3], []]]), *forbid(["pour"])], cuts=[BOTH], proof=HOPELESS),
-        constraint,
+        rule_meaning,
     ),
     "no unit of the tree is barred": Part(
         "any(units & barred for", "any(others & barred for", plain(rules=[BEFORE], **MIXED), ruled
@@ -562,4 +562,4 @@ PARTS = {
 def test_a_part_that_is_wrong_lets_a_forged_certificate_pass(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    require_right(PARTS[name], tmp_path, monkeypatch, constraint, ruled, verify)
+    require_right(PARTS[name], tmp_path, monkeypatch, rule_meaning, ruled, verifier)

@@ -14,7 +14,7 @@ import pytest
 from foon_asp.network import UnitAmounts, UnitPrices
 from foon_asp.network.level import network_at_level
 from foon_asp.problem import ContainerRule, Problem
-from foon_asp.proof import verify, verify_plan
+from foon_asp.proof import verifier, verify_plan
 from tests.proof.by_hand import NO_TREE, bound, goals, recipe
 from tests.proof.forging import KIND, Forged, Part, checks, held, require_its_check_alone, require_right
 from tests.support.handmade_certificate import Content, forbid, handmade
@@ -84,7 +84,7 @@ def certificate(at: Problem = PLAIN, **values: Any) -> Content:
     }
     right = {"tree": [0, 1], "costs": [2], "unreached": [RARE, GOLD], "proof": [PROOF]}
     content = {**handmade(at), **frame, **right, **values}
-    return {**content, "seal": verify.seal(content)}
+    return {**content, "seal": verifier.seal(content)}
 
 
 def plain(stays: str = "", at: Problem = PLAIN, **values: Any) -> Forged:
@@ -300,7 +300,7 @@ def test_right_certificates_pass(tmp_path: Path) -> None:
         at_least("2", {"balance": [[FLOUR, "2"]]}, **{**TWO_BAGS, "cuts": []}),  # the bag that is taken
     )
     for each in wrong:
-        with pytest.raises(verify.RefusedError):
+        with pytest.raises(verifier.RefusedError):
             held(verify_plan, each, tmp_path)
 
 
@@ -317,7 +317,7 @@ def test_a_forged_certificate_is_refused_by_its_check_alone(name: str, tmp_path:
 
 @pytest.mark.parametrize("said", PLACES)
 def test_each_place_is_read(said: str, tmp_path: Path) -> None:
-    with pytest.raises(verify.RefusedError, match=said):
+    with pytest.raises(verifier.RefusedError, match=said):
         held(verify_plan, PLACES[said], tmp_path)
 
 
@@ -325,7 +325,7 @@ def test_what_is_nested_too_deeply_is_refused(tmp_path: Path) -> None:
     content = certificate()
     for _ in range(10_000):
         content["proof"] = [content["proof"]]
-    with pytest.raises(verify.RefusedError, match="branches nested too deeply"):
+    with pytest.raises(verifier.RefusedError, match="branches nested too deeply"):
         held(verify_plan, Forged(content, PLAIN), tmp_path)
 
 

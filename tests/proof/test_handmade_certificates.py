@@ -13,9 +13,9 @@ import pytest
 
 from foon_asp.network import FunctionalUnit, UnitPrices, network_at_level
 from foon_asp.problem import ContainerRule, Problem
-from foon_asp.proof import verify
-from foon_asp.proof.constraint import OWN
-from foon_asp.proof.verify import LimitError, RefusedError, Subject, load_certificate, read_certificate
+from foon_asp.proof import verifier
+from foon_asp.proof.rule_meaning import OWN
+from foon_asp.proof.verifier import LimitError, RefusedError, Subject, load_certificate, read_certificate
 from foon_asp.text.line_parser import parse_node
 from tests.proof.by_hand import (
     BAKE,
@@ -80,7 +80,7 @@ def test_an_optimum_by_each_objective(
     found = accepted(**values)
     exact = tuple(map(Fraction, costs))
     said = ("optimal", (END,), "strict", 3, tuple(objective), (), (), tuple(tree), exact, len(cuts))
-    assert found == verify.Verified(*said)
+    assert found == verifier.Verified(*said)
 
 
 @pytest.mark.parametrize(
@@ -539,7 +539,7 @@ def test_digests_are_those_of_canonical_json() -> None:
         '[1,[["bowl",[],[],[]],["plat\\u00e9",[],[],[]],["end",[],[],[]]],'
         f'["pour","mix"],[[0,1],[2]],[[2],[1]],{written},[[0],[1]]]'
     )
-    assert verify.seal({"b": [1, "x"], "seal": "any", "a": None}) == sha('{"a":null,"b":[1,"x"]}')
+    assert verifier.seal({"b": [1, "x"], "seal": "any", "a": None}) == sha('{"a":null,"b":[1,"x"]}')
 
 
 # --- how much work is done, and how long numbers may be
@@ -572,8 +572,8 @@ def test_work_of_all_kinds_is_counted(
     monkeypatch: pytest.MonkeyPatch, most: int, at: Problem, values: Content
 ) -> None:
     assert accepted(at, **values).claim == "bound"
-    monkeypatch.setattr(verify, "_STEPS_EACH", 0)
-    monkeypatch.setattr(verify, "_STEPS", most)
+    monkeypatch.setattr(verifier, "_STEPS_EACH", 0)
+    monkeypatch.setattr(verifier, "_STEPS", most)
     assert refusal(at, **values) == f"to check it takes more than {most:,} steps"
 
 
@@ -630,9 +630,9 @@ def test_files_have_their_limits(tmp_path: Path) -> None:
 
 
 def test_what_is_taken_on_trust_is_found() -> None:
-    assert verify.trusted({"rules": [*forbid(["pour"]), claiming()]}) == claiming()
-    assert verify.trusted({"rules": forbid(["pour"])}) is None
-    assert verify.trusted({}) is None
+    assert verifier.trusted({"rules": [*forbid(["pour"]), claiming()]}) == claiming()
+    assert verifier.trusted({"rules": forbid(["pour"])}) is None
+    assert verifier.trusted({}) is None
     text = "cost(mine,U,1) :- unit(U)."
     measures = {"mine": {"rules": text, "sha256": sha(text), "costs": {"0": [POUR]}}}
     assert accepted(**bound("0"), measures=measures).trusted == ()
@@ -655,7 +655,7 @@ def test_a_claim_is_about_units_of_one_set_and_none_of_another_and_what_they_com
     two = claiming(limits=[[{"1": [BAKE], "2": [MIX]}, 2]])
     assert accepted(**POURED, rules=[two], cuts=[[END]], proof=weigh("1")).claim == "optimal"
     # without pouring there is no tree; the limit of the rule after the library's is the next but one
-    rules = sorted([*forbid(["pour"]), two], key=verify.canonical)
+    rules = sorted([*forbid(["pour"]), two], key=verifier.canonical)
     proof = weigh("1", "2", limits=[[2, ["1"]]])
     values: Content = {**NO_TREE, "rules": rules, "cuts": CUTS}
     assert accepted(**values, proof=proof).claim == "infeasible"
@@ -708,7 +708,7 @@ def test_what_a_limit_does_not_speak_of_carries_what_it_costs() -> None:
     for weight in ("0", "-1"):
         said = "limits: a weight is not above zero"
         assert refusal(**bound("0", **values), proof=weigh("1", limits=[[0, [weight]]])) == said
-    no_pouring = sorted([*rules, *forbid(["pour"])], key=verify.canonical)
+    no_pouring = sorted([*rules, *forbid(["pour"])], key=verifier.canonical)
     baked: Content = {"rules": no_pouring, "cuts": [[END]], "proof": weigh("3/2", limits=[[1, ["1/2"]]])}
     assert accepted(**bound("1", **baked)).claim == "bound"
 

@@ -18,7 +18,7 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.proof import proved_checker
-from foon_asp.proof.verify import RefusedError, Subject, read_certificate, read_rules, seal, verify
+from foon_asp.proof.verifier import RefusedError, Subject, read_certificate, read_rules, seal, verify
 from tests.conftest import Cli
 from tests.oracle.constraints import random_rule, settings_of
 from tests.proof.forging import Forged

@@ -11,7 +11,7 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.problem import ContainerRule, Objective
-from foon_asp.proof import verify
+from foon_asp.proof import verifier
 from tests.conftest import Cli
 from tests.oracle import task_trees
 from tests.support.random_problems import random_problem
@@ -56,7 +56,7 @@ def test_the_best_are_those_of_brute_force_and_proved(rule: ContainerRule) -> No
         assert (found.costs.measure(Objective.ATTEMPTS), found.costs.units) == least
         certificate = certify(problem, (*BY, Objective.UNITS), found.units)
         if certificate is not None:
-            verified = verify.verify(certificate.content, subject_of(problem))
+            verified = verifier.verify(certificate.content, subject_of(problem))
             assert verified.costs is not None
             assert verified.costs[0] == least[0]
             proved += 1

@@ -18,7 +18,7 @@ from foon_asp.errors import UserError
 from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.network import FunctionalUnit, Network, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof import verify
+from foon_asp.proof import verifier
 from foon_asp.questions.pareto import pareto
 from tests.oracle import task_trees
 from tests.oracle.test_optimum import assert_agrees
@@ -106,7 +106,7 @@ def test_the_best_are_those_of_brute_force_in_every_room(
             continue
         certificate = certify(problem, (*BY, Objective.UNITS), found.units)
         assert certificate is not None
-        proved = verify.verify(verify.read_certificate(certificate.text()), subject_of(problem))
+        proved = verifier.verify(verifier.read_certificate(certificate.text()), subject_of(problem))
         assert (proved.claim, proved.costs) == ("optimal", task_trees.best(trees, problem, ["price"]))
         if seed % 4 == 0:
             clingo, *_ = cross_check(Asked(found))
@@ -164,7 +164,7 @@ def forged(problem: Problem, **values: Any) -> Any:
     certificate = certify(problem, (*BY, Objective.UNITS), (0, 1))
     assert certificate is not None
     content = {**certificate.content, **values}
-    return {**content, "seal": verify.seal(content)}
+    return {**content, "seal": verifier.seal(content)}
 
 
 def test_certificates_by_wrong_prices_are_refused() -> None:
@@ -173,8 +173,8 @@ def test_certificates_by_wrong_prices_are_refused() -> None:
     assert prices is not None
     given = subject_of(problem)
     for costs in (["1/5", 2], ["3/10", 3], [0, 2], ["0.3", 2]):
-        with pytest.raises(verify.RefusedError, match="the tree costs"):
-            verify.verify(forged(problem, costs=costs), given)
+        with pytest.raises(verifier.RefusedError, match="the tree costs"):
+            verifier.verify(forged(problem, costs=costs), given)
     one, two, other = problem.network.motions
     unit = problem.network.unit
     for wrong, said in (
@@ -186,11 +186,11 @@ def test_certificates_by_wrong_prices_are_refused() -> None:
     ):
         priced = given._replace(prices=wrong)
         content = forged(problem, digests=priced.digests())
-        with pytest.raises(verify.RefusedError, match=said):
-            verify.verify(content, priced)
+        with pytest.raises(verifier.RefusedError, match=said):
+            verifier.verify(content, priced)
     # of a unit that is not here, and so of no account
     free = FunctionalUnit("go 0 0", unit(0).inputs, unit(0).inputs)
     also = UnitPrices(prices.motions, {free: Fraction(0), unit(2): Fraction(1, 2)})
     priced = given._replace(prices=also)
     content = forged(problem, digests=priced.digests())
-    assert verify.verify(content, priced).claim == "optimal"
+    assert verifier.verify(content, priced).claim == "optimal"

@@ -21,8 +21,8 @@ from foon_asp.network import UnitPrices
 from foon_asp.problem import Fate, Objective, Problem, levels, parse_objectives
 from foon_asp.problem.items import fate
 from foon_asp.proof.replay import replay_for
-from foon_asp.rules.constraint import given_constraint
 from foon_asp.rules.measure import read_measures
+from foon_asp.rules.passed_constraint import given_constraint
 from foon_asp.text.tables import STAYS, read_stock
 from tests.conftest import Cli
 from tests.oracle.used_up import UTENSILS, key, plans, random_problem, stays

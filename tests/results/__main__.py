@@ -11,7 +11,7 @@ import foon_asp
 from foon_asp.batch.answer_row import AnswerRow
 from foon_asp.comparison.comparison import Comparison
 from foon_asp.results.document import Document
-from foon_asp.results.schema import schema_of, schema_of_rows
+from foon_asp.results.json_schema import schema_of, schema_of_rows
 from foon_asp.results.schema_file import SCHEMAS
 from foon_asp.results.values import Value
 from foon_asp.text.json_value import Json, json_text

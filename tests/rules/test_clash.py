@@ -14,7 +14,7 @@ from foon_asp.dataset.paths import File
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
 from foon_asp.questions.why_not import why_not
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 from tests.conftest import STRUCK_WHILE_READING, Cli
 from tests.oracle import task_trees
 from tests.support.random_problems import MOTIONS, random_problem

@@ -16,9 +16,9 @@ from foon_asp.certificate.own_rules import check_with_clingo
 from foon_asp.deadline import Deadline
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, looked_at
+from foon_asp.proof.rule_meaning import LIBRARY, OWN, Meaning, looked_at
 from foon_asp.proof.ruled import Ruled
-from foon_asp.proof.verify import LimitError, RefusedError, read_certificate, verify
+from foon_asp.proof.verifier import LimitError, RefusedError, read_certificate, verify
 from foon_asp.text.line_parser import parse_node
 from tests.oracle import task_trees
 from tests.oracle.constraints import keeps, random_rule

@@ -11,10 +11,10 @@ from foon_asp.asp import Settings
 from foon_asp.certificate import Coverage, coverage
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Problem
-from foon_asp.proof.constraint import LIBRARY, Rule
+from foon_asp.proof.rule_meaning import LIBRARY, Rule
 from foon_asp.resources import encodings_folder
-from foon_asp.rules.constraint import given_constraint
 from foon_asp.rules.constraint_library import library_constraints
+from foon_asp.rules.passed_constraint import given_constraint
 from tests.oracle.constraints import HEATS
 from tests.rules.test_constraint_meanings import small
 from tests.support.handmade_certificate import forbid

@@ -18,7 +18,7 @@ from foon_asp.errors import UserError
 from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.network import UnitPrices
 from foon_asp.problem import Objective, Problem
-from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.passed_constraint import given_constraint
 from foon_asp.rules.ready_made import ReadyMade
 from tests.conftest import ROOT, Cli
 from tests.dataset.test_nearby import near_of, stored

@@ -12,12 +12,12 @@ import pytest
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
 from foon_asp.encoding import exact_success
+from foon_asp.encoding.run import Run
 from foon_asp.errors import BugError
-from foon_asp.grounding.run import Run
 from foon_asp.hypergraph import ALL, NONE
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction
-from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.passed_constraint import given_constraint
 from foon_asp.rules.rules import Rules
 from tests.asp.test_solver import Answer, Heard, answering
 from tests.oracle import task_trees

@@ -13,7 +13,7 @@ from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.asp.breaking import Breaking
 from foon_asp.asp.ranking import Ranked
 from foon_asp.problem import Objective, Problem
-from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.passed_constraint import given_constraint
 from tests.hypergraph.test_reductions import LISTS, Measured, posed
 from tests.rules.test_constraint_meanings import small
 

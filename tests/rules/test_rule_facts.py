@@ -9,11 +9,11 @@ import pytest
 import foon_asp
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
+from foon_asp.encoding.exact import LARGEST
 from foon_asp.errors import UserError
-from foon_asp.grounding.exact import LARGEST
 from foon_asp.network import UnitPrices
 from foon_asp.problem import Objective, Problem
-from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.passed_constraint import given_constraint
 from tests.conftest import Cli
 from tests.rules.test_constraint_meanings import small
 

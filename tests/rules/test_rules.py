@@ -15,7 +15,7 @@ from foon_asp.asp.soft import solve_soft
 from foon_asp.encoding.encoding_file import included_files
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen, encodings_folder
-from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.passed_constraint import given_constraint
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import find_goal

@@ -8,13 +8,13 @@ from clingo import Control
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
-from foon_asp.encoding.facts import write_facts
+from foon_asp.encoding.fact_writer import write_facts
 from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, reach
 from foon_asp.resources import encodings_folder
-from foon_asp.rules.constraint import RuleText
+from foon_asp.rules.passed_constraint import RuleText
 from tests.rules.test_explained_rules import WRITTEN
 from tests.support.random_problems import random_problem, random_steps
 from tests.support.random_rules import RandomRules

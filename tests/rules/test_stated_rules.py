@@ -15,11 +15,11 @@ from foon_asp.asp import Settings
 from foon_asp.asp.integrity import relax
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.certificate import coverage
+from foon_asp.encoding.stated import Stated
 from foon_asp.errors import BugError, UserError
-from foon_asp.grounding.stated import Stated
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.resources import encodings_folder
-from foon_asp.rules.constraint import LibraryUse, RuleText, given_constraint, named_constraint
+from foon_asp.rules.passed_constraint import LibraryUse, RuleText, given_constraint, named_constraint
 from foon_asp.rules.stating import loaded
 from tests.conftest import ROOT, Cli
 from tests.support.handmade_certificate import forbid

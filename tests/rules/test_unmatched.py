@@ -11,7 +11,7 @@ import pytest
 
 import foon_asp
 from foon_asp import FoonWarning
-from foon_asp.encoding.facts import write_facts
+from foon_asp.encoding.fact_writer import write_facts
 from foon_asp.resources import bundled_kitchen
 from foon_asp.rules.constraint_library import library_constraints
 from tests.conftest import Cli

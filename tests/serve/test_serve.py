@@ -21,7 +21,7 @@ import pytest
 import foon_asp
 from foon_asp import Cancel, UserError
 from foon_asp.asp import Settings
-from foon_asp.rules.constraint import RuleText
+from foon_asp.rules.passed_constraint import RuleText
 from foon_asp.serve.desk import Desk
 from foon_asp.serve.form import Form, Without, read_question
 from tests.conftest import Cli

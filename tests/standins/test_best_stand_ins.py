@@ -12,7 +12,7 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.errors import BugError
 from foon_asp.network import STAND_IN, Edit, ObjectNode, StandInTable
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof import verify
+from foon_asp.proof import verifier
 from foon_asp.standins import with_stand_ins
 from tests.oracle import stand_ins
 from tests.support.random_problems import random_problem
@@ -86,7 +86,7 @@ def test_certificates_hold_and_no_stand_in_may_be_missing() -> None:
         extended = with_stand_ins(problem, table)
         answer = foon_asp.solve(extended, "dissimilarity,units", certificate=os.devnull)
         assert answer.certificate is not None, seed
-        verify.verify(answer.certificate.content, subject_of(extended))
+        verifier.verify(answer.certificate.content, subject_of(extended))
         network = extended.network
         for unit in [u for u in answer.ids or () if network.motions[u] == STAND_IN]:
             missing += 1

@@ -25,13 +25,13 @@ from foon_asp.dataset.reading_store import read_stored
 from foon_asp.errors import UserError
 from foon_asp.network import Network, starting_nodes
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof.verify import Subject
-from foon_asp.store import builder, schema
+from foon_asp.proof.verifier import Subject
+from foon_asp.store import builder, store_tables
 from foon_asp.store.digests import FILE_DIGEST, append_digest
 from foon_asp.store.import_files import import_files
-from foon_asp.store.schema import VERSION
 from foon_asp.store.starting_kitchen import StoredStartingKitchen
 from foon_asp.store.store import Store
+from foon_asp.store.store_tables import VERSION
 from foon_asp.store.stored_ids import StoredIds
 from foon_asp.text import foon_text
 from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
@@ -378,7 +378,7 @@ def test_goals_are_not_found_in_the_same_words(kitchen_store: Path, name: str) -
 def test_similar_names_are_found_where_sqlite_has_no_trigrams(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(schema, "TRIGRAMS", "CREATE VIRTUAL TABLE label_trigram USING nothing(name)")
+    monkeypatch.setattr(store_tables, "TRIGRAMS", "CREATE VIRTUAL TABLE label_trigram USING nothing(name)")
     import_files(find_data(KITCHEN), tmp_path / "kitchen.foon")
     network = read_data(find_data(KITCHEN)).network
     for name in ("onoin", "greek salat", "xyzzy"):

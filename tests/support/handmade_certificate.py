@@ -5,7 +5,7 @@ from typing import Any
 
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.problem import Problem
-from foon_asp.proof import verify
+from foon_asp.proof import verifier
 
 Content = dict[str, Any]
 
@@ -13,8 +13,8 @@ Content = dict[str, Any]
 def handmade(problem: Problem, **values: Any) -> Content:
     """Give a sealed certificate of a problem with these values, and those of no claim for the others."""
     content: Content = {
-        "format": verify.TREE.name,
-        "version": verify.TREE.version,
+        "format": verifier.TREE_FORM.name,
+        "version": verifier.TREE_FORM.version,
         "claim": "optimal",
         "goals": [{"id": goal, "node": str(problem.network.objects[goal])} for goal in problem.goals],
         "containers": str(problem.containers),
@@ -31,16 +31,16 @@ def handmade(problem: Problem, **values: Any) -> Content:
         "proof": {"weights": []},
         **values,
     }
-    return {**content, "seal": verify.seal(content)}
+    return {**content, "seal": verifier.seal(content)}
 
 
-def check(content: Any, problem: Problem) -> verify.Verified:
+def check(content: Any, problem: Problem) -> verifier.Verified:
     """Verify a certificate against the data of a problem."""
-    return verify.verify(content, subject_of(problem))
+    return verifier.verify(content, subject_of(problem))
 
 
 def forbid(motions: Iterable[str] = (), labels: Iterable[str] = ()) -> list[dict[str, str]]:
     """Give the rules that forbid motions and labels of objects, in order."""
     rules = [{"rule": "forbid_motion", "forbidden_motion": motion} for motion in motions]
     rules += [{"rule": "forbid_object", "forbidden_object": label} for label in labels]
-    return sorted(rules, key=verify.canonical)
+    return sorted(rules, key=verifier.canonical)

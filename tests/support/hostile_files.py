@@ -14,8 +14,8 @@ from typing import NamedTuple
 from clingo.ast import AST, ASTType, parse_files
 from clingo.symbol import SymbolType
 
-from foon_asp.encoding.facts import FACT_PREDICATES
-from foon_asp.grounding.parsing import nodes
+from foon_asp.encoding.fact_writer import FACT_PREDICATES
+from foon_asp.encoding.parsing import nodes
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import Objective
 

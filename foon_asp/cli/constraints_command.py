@@ -2,7 +2,7 @@
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_parts
@@ -12,7 +12,7 @@ from foon_asp.questions.constraint_list import list_constraints
 from foon_asp.questions.contract import TABLES, Role
 from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, RULE
 from foon_asp.results.document import Document
-from foon_asp.rules.constraint import Constraint, RuleText
+from foon_asp.rules.passed_constraint import Constraint, RuleText
 
 _EXPLAIN = CONSTRAINTS._replace(
     name="explained",
@@ -25,8 +25,8 @@ _CONSTANTS = CONSTANTS._replace(name="values", help="The value of a #const in wh
 
 @click.command("constraints")
 @click_options(_EXPLAIN, _RULE, _CONSTANTS)
-@options.format_option(*TABLES)
-@options.debug_option
+@shared_options.format_option(*TABLES)
+@shared_options.debug_option
 def command(
     explained: tuple[Constraint, ...], stated: tuple[str, ...], values: tuple[str, ...], format_: str
 ) -> ExitCode:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.errors import UserError
@@ -21,7 +21,7 @@ from foon_asp.resources import encodings_folder
     metavar="DIR",
     help="Copy them into a new folder, to edit them or to run clingo there.",
 )
-@options.debug_option
+@shared_options.debug_option
 def command(copy: Path | None) -> ExitCode:
     """Print the folder of the answer-set programs; README.md there explains every predicate.
 

@@ -5,8 +5,8 @@ from contextlib import contextmanager
 
 from clingo import MessageCode
 
-from foon_asp.grounding.number_checks import CHECKS_FILE
-from foon_asp.grounding.run import ProgramError
+from foon_asp.encoding.number_checks import CHECKS_FILE
+from foon_asp.encoding.run import ProgramError
 
 # Undefined atoms have a check of their own; a file may be included twice; and a global variable may stand in
 # an aggregate. With any other message clingo drops an instance, or stops.

@@ -28,12 +28,12 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import STAND_IN, Amounts, Network, StandInTable, UnitPrices, node_at_level
-from foon_asp.proof.constraint import ALL_STEPS, LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
+from foon_asp.proof.rule_meaning import ALL_STEPS, LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
 from foon_asp.proof.ruled import Limit, Ruled
 from foon_asp.proof.stand_ins import Claim as StandInClaim
 from foon_asp.proof.stand_ins import Makes, price_of, stand_in_fault, stand_in_prices
 
-_NOTHING = "nothing"  # what a tree that is not there is measured by
+_UNMEASURED = "nothing"  # what a tree that is not there is measured by
 OBJECTIVES = (
     "units",
     "inputs",
@@ -45,28 +45,28 @@ OBJECTIVES = (
     "dissimilarity",
 )
 
-KEYS = frozenset(
+CERTIFICATE_KEYS = frozenset(
     (
         *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "rules"),
         *("measures", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
     )
 )
-_NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
+_MEASURE_NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
 _RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
 _SURROGATE = re.compile("[\ud800-\udfff]")
-_DIGITS = 50  # of a logarithm
+_LOGARITHM_DIGITS = 50  # of a logarithm
 _NINES = 400  # additional digits for a rate close to 1, at most
 
 # A certificate may come from a stranger: beyond these limits it is refused rather than checked.
-_LETTERS = 16_000_000  # characters of the file
+_MAX_LETTERS = 16_000_000  # characters of the file
 _BRACKETS = 1_000_000  # lists and objects in it
-_STEPS = 5_000_000  # a look at a unit is one; adding and comparing numbers takes more
+_MAX_STEPS = 5_000_000  # a look at a unit is one; adding and comparing numbers takes more
 _STEPS_EACH = 200  # additional steps for each unit and object node of the network
-_RULES = 100  # rules of a claim
+_MAX_RULES = 100  # rules of a claim
 _STEPS_RULE = 10  # for each unit and object node that a rule is checked against
 _DIGITS_READ = 2_000  # of a fraction that is read
 _LONG = 40_000  # bits of a sum of fractions
-_LARGEST = 250_000  # bits of a product of rates
+_MAX_PRODUCT_BITS = 250_000  # bits of a product of rates
 _WRITTEN = 13_000  # bits of a success rate: Python writes numbers of up to 4,300 digits
 
 # A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
@@ -81,7 +81,7 @@ class Form(NamedTuple):
     keys: frozenset[str]
 
 
-TREE = Form("foon-asp certificate", 5, KEYS)
+TREE_FORM = Form("foon-asp certificate", 5, CERTIFICATE_KEYS)
 
 
 class Subject(NamedTuple):
@@ -140,7 +140,7 @@ class RefusedError(Exception):
         >>> _ = file.write_text("{}")
         >>> foon_asp.verify(foon_asp.load(), file)
         Traceback (most recent call last):
-        foon_asp.proof.verify.RefusedError: expected the format 'foon-asp certificate'
+        foon_asp.proof.verifier.RefusedError: expected the format 'foon-asp certificate'
     """
 
 
@@ -206,9 +206,9 @@ def load_certificate(file: Path) -> Any:
     :func:`read_certificate`.
     """
     with file.open("rb") as stream:
-        raw = stream.read(_LETTERS)
+        raw = stream.read(_MAX_LETTERS)
         if stream.peek():
-            raise LimitError(f"it has more than {_LETTERS:,} letters")
+            raise LimitError(f"it has more than {_MAX_LETTERS:,} letters")
     return read_certificate(raw.decode("utf-8"))
 
 
@@ -223,8 +223,8 @@ def read_certificate(text: str) -> Any:
     def no_float(number: str) -> None:
         raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
 
-    if len(text) > _LETTERS or text.count("[") + text.count("{") > _BRACKETS:
-        raise LimitError(f"it has more than {_LETTERS:,} letters or {_BRACKETS:,} brackets")
+    if len(text) > _MAX_LETTERS or text.count("[") + text.count("{") > _BRACKETS:
+        raise LimitError(f"it has more than {_MAX_LETTERS:,} letters or {_BRACKETS:,} brackets")
     try:
         return json.loads(text, object_pairs_hook=once, parse_float=no_float, parse_constant=no_float)
     except (ValueError, RecursionError) as error:
@@ -258,7 +258,7 @@ def verify(certificate: Any, subject: Subject) -> Verified:
     network takes, raises :class:`LimitError`. Raises :class:`RefusedError` with the first fault that is
     found.
     """
-    rules = read_frame(certificate, TREE, subject)
+    rules = read_frame(certificate, TREE_FORM, subject)
     return Check(certificate, rules, subject).claim()
 
 
@@ -291,7 +291,7 @@ class Check:
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
         network, kitchen, rates, utensils, prices = subject[:5]
-        self.allowed = _STEPS + _STEPS_EACH * (len(network) + len(network.objects))
+        self.allowed = _MAX_STEPS + _STEPS_EACH * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
         self.minus_log = cache(self._minus_log)  # of a rate
         self.all_multiples = cache(self._all_multiples)  # of a number, by an objective
@@ -360,7 +360,9 @@ class Check:
 
     def _measure(self, name: str, stated: Any) -> Trusted:
         """Read the stated costs of units by a measure."""
-        require(bool(_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own")
+        require(
+            bool(_MEASURE_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own"
+        )
         measure = read_object(stated, ("rules", "sha256", "costs"))
         rules = measure["rules"]
         require(isinstance(rules, str), "expected the text of rules")
@@ -799,7 +801,7 @@ class Check:
 
     def sign(self, amount: Amount) -> Fraction | int:
         """Return a number with the sign of an amount; the first objective that is not 0 decides."""
-        for level, objective in enumerate(self.objectives or (_NOTHING,)):
+        for level, objective in enumerate(self.objectives or (_UNMEASURED,)):
             if objective == "success":
                 sign = self._minus_log_sign({r: e for (_, r), e in amount.items() if r is not None})
             else:
@@ -852,7 +854,7 @@ class Check:
         """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
         amount: Amount = {}
         parts = read_list(stated)
-        objectives = self.objectives or (_NOTHING,)
+        objectives = self.objectives or (_UNMEASURED,)
         require(len(parts) == len(objectives), "expected one part of a weight for each objective")
         for level, objective in enumerate(objectives):
             if objective == "success":
@@ -883,7 +885,7 @@ class Check:
         common = math.lcm(*(e.denominator for e in exponents.values()))
         powers = {rate: int(e * common) for rate, e in exponents.items()}
         bits = sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items())
-        if bits > _LARGEST:
+        if bits > _MAX_PRODUCT_BITS:
             raise LimitError("products of rates are too close to be told apart in reasonable time")
         self._spend(bits * math.isqrt(bits) // 64)
         above, below = 1, 1
@@ -901,7 +903,7 @@ class Check:
         are computed (one for three bits).
         """
         shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
-        precise = Context(prec=_DIGITS + min(shared, _NINES))
+        precise = Context(prec=_LOGARITHM_DIGITS + min(shared, _NINES))
         self._spend((precise.prec // 10) ** 3)
         low = high = Fraction(0)
         for sign, number in ((1, rate.denominator), (-1, rate.numerator)):
@@ -1035,8 +1037,8 @@ def _goal(value: Any, network: Network) -> int:
 def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
     """Read the constraints of a claim, and its statements about user rules that are taken on trust."""
     rules = [read_object(rule) for rule in read_list(value)]
-    if len(rules) > _RULES:
-        raise LimitError(f"it has more than {_RULES} rules")
+    if len(rules) > _MAX_RULES:
+        raise LimitError(f"it has more than {_MAX_RULES} rules")
     for rule in rules:
         name = rule.get("rule")
         if name == OWN:

@@ -9,20 +9,20 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from foon_asp.deadline import Deadline, LimitError
+from foon_asp.encoding.derived import Value
+from foon_asp.encoding.run import Ended, FoundAnswer, ProgramError
+from foon_asp.encoding.stated import Stated
 from foon_asp.errors import BugError, UserError
-from foon_asp.grounding.derived import Value
-from foon_asp.grounding.run import Ended, FoundAnswer, ProgramError
-from foon_asp.grounding.stated import Stated
 from foon_asp.processes.pipe import OUT_OF_MEMORY, packed
 from foon_asp.processes.worker import DiedError, Worker, give_back, take
 
-_KEY = "foon_asp.grounding.worker"
+_KEY = "foon_asp.encoding.program_worker"
 _OF_MEMORY = {OUT_OF_MEMORY, -signal.SIGABRT, -9}
 _Handlers = Mapping[str, Callable[[Any], None]]
 
 
 class WorkerProgram:
-    """A :class:`foon_asp.grounding.ground_program.GroundProgram` in another process.
+    """A :class:`foon_asp.encoding.ground_program.GroundProgram` in another process.
 
     At a limit or ctrl-C, the process is killed, :class:`LimitError` is raised, and the program cannot be used
     any more.
@@ -68,7 +68,7 @@ class WorkerProgram:
 
 
 def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[Value, ...]]:
-    """Run :func:`foon_asp.grounding.derived.derive` in another process, which is killed at the limits."""
+    """Run :func:`foon_asp.encoding.derived.derive` in another process, which is killed at the limits."""
     worker = take(_KEY, _start)
     try:
         rows: list[tuple[Value, ...]] = _ask(worker, deadline, "derive", text, name, arity, _memory(deadline))

@@ -6,10 +6,10 @@ import os
 import traceback
 from typing import Any
 
+from foon_asp.encoding.derived import derive
+from foon_asp.encoding.ground_program import GroundProgram
+from foon_asp.encoding.run import ProgramError
 from foon_asp.errors import UserError
-from foon_asp.grounding.derived import derive
-from foon_asp.grounding.ground_program import GroundProgram
-from foon_asp.grounding.run import ProgramError
 from foon_asp.processes.pipe import OUT_OF_MEMORY, receive, requests, send
 
 

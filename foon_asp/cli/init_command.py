@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.errors import UserError
@@ -38,7 +38,7 @@ from foon_asp.whole_file import utf_8, write_whole
     is_flag=True,
     help="Only write how long motions take, to be filled in; from the times of the recipe, if it has some.",
 )
-@options.debug_option
+@shared_options.debug_option
 def command(folder: Path, recipe: Path | None, rates: bool, durations: bool) -> ExitCode:
     """Write a data folder to start from: a recipe, a kitchen, success rates, utensils and goals.
 

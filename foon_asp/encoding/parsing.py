@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from clingo import Control, MessageCode
 from clingo.ast import AST, ASTSequence, Location, ProgramBuilder, parse_files, parse_string
 
-from foon_asp.grounding.stated import Loaded, Stated
+from foon_asp.encoding.stated import Loaded, Stated
 
 _TEXT = "<string>"  # the file name that clingo uses for a text
 

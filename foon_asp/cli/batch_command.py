@@ -9,12 +9,12 @@ import click
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import rules_digest
 from foon_asp.batch.answer_row import ANSWERS, AnswerRow
-from foon_asp.batch.answer_table import FORMATS, check_table, write_table
+from foon_asp.batch.answer_table import TABLE_SUFFIXES, check_table, write_table
 from foon_asp.batch.cluster import answer_on_cluster
 from foon_asp.batch.question_file import each_question, named_files, read_questions
 from foon_asp.batch.run_summary import RunSummary
 from foon_asp.batch.workers import answer_all
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.batch_data import Opening, digest, measured
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
@@ -24,12 +24,12 @@ from foon_asp.cli.progress_line import Progress
 from foon_asp.comparison.rows_file import RowsFile
 from foon_asp.problem import Objective
 from foon_asp.questions.options import EACH_LIMITS, JOBS, RULES
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 
 
 @click.command("batch")
 @click.argument("questions", type=click.Path(path_type=NamedPath), metavar="QUESTIONS.jsonl")
-@options.sources_argument
+@shared_options.sources_argument
 @click.option(
     "--results",
     "results_file",
@@ -41,8 +41,8 @@ from foon_asp.rules.constraint import Constraint
 @click_options(JOBS)
 @click.option("--scheduler", metavar="ADDRESS", help="Use the workers of a Dask cluster: tcp://HOST:PORT.")
 @click_options(*RULES, *EACH_LIMITS)
-@options.format_option("text", "json")
-@options.data_options
+@shared_options.format_option("text", "json")
+@shared_options.data_options
 def command(
     questions: Path,
     results_file: Path,
@@ -83,7 +83,7 @@ def command(
     with 3 when a limit stopped some, or ctrl-C the run.
     """
     check_outputs()
-    data["folder"], data["network"] = options.with_sources(sources, data["folder"], data["network"])
+    data["folder"], data["network"] = shared_options.with_sources(sources, data["folder"], data["network"])
     measures = measured(data)
     lines = read_questions(questions, time_limit, measures)
     files = named_files(lines)
@@ -98,7 +98,7 @@ def command(
     settings = Settings(constraints, encodings, constants)
     common = {"data": opening.digest, "level": data["level"], **rules_digest(settings, warn, opened.example)}
     rows_file = results_file
-    if results_file.suffix in FORMATS:
+    if results_file.suffix in TABLE_SUFFIXES:
         rows_file = results_file.with_name(f"{results_file.name}.jsonl")
         check_table(results_file, rows_file)
     answered: list[AnswerRow] = []

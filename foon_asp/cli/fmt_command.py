@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_output
 from foon_asp.errors import UserError
@@ -17,13 +17,13 @@ from foon_asp.text.plain_file import read_plain_text, with_own_mark
 
 
 @click.command("fmt")
-@options.files_argument
+@shared_options.files_argument
 @click.option("--check", is_flag=True, help="Write nothing; show what would change, and exit with 1.")
-@options.output_option(
+@shared_options.output_option(
     "FILE", "Write the result for a single file there, or with - to stdout; the file stays as it is."
 )
 @click.option("--lenient", is_flag=True, help="Leave lines that are not understood as they are.")
-@options.debug_option
+@shared_options.debug_option
 def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: bool) -> ExitCode:
     """Rewrite FOON files in canonical form.
 

@@ -14,7 +14,7 @@ from foon_asp.certificate.plan import certify_no_plan, certify_plan, covered_for
 from foon_asp.errors import BugError
 from foon_asp.hypergraph.lexicographic import Vector
 from foon_asp.problem import Problem, levels, multiplies
-from foon_asp.proof.verify import Subject, trusted
+from foon_asp.proof.verifier import Subject, trusted
 
 _WRITTEN = 13_000  # bits of a number that is printed; Python writes at most 4,300 digits
 

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from clingo import Control
 
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.grounded import Grounded
+from foon_asp.encoding.messages import listener, refusing
+from foon_asp.encoding.run import ProgramError, Run
+from foon_asp.encoding.stated import Loaded
 from foon_asp.errors import UserError
-from foon_asp.grounding.grounded import Grounded
-from foon_asp.grounding.messages import listener, refusing
-from foon_asp.grounding.run import ProgramError, Run
-from foon_asp.grounding.stated import Loaded
 
 
 def check(arguments: Sequence[str]) -> None:

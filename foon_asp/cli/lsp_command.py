@@ -2,13 +2,13 @@
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.editor.language_server import serve
 
 
 @click.command("lsp")
-@options.debug_option
+@shared_options.debug_option
 def command() -> ExitCode:
     """Serve an editor that edits FOON text, over standard input and output (the Language Server Protocol).
 

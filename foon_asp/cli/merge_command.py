@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import WrittenPath
 from foon_asp.cli.output import write_output
@@ -18,8 +18,8 @@ from foon_asp.whole_file import utf_8
 
 
 @click.command("merge")
-@options.sources_argument
-@options.output_option("FILE", "Where to write the merged network; stdout, if not given.")
+@shared_options.sources_argument
+@shared_options.output_option("FILE", "Where to write the merged network; stdout, if not given.")
 @click.option(
     "--store",
     type=WrittenPath(),
@@ -27,7 +27,7 @@ from foon_asp.whole_file import utf_8
     help="Write a store instead; an old one is replaced once the new one is complete.",
 )
 @click.option("--report", is_flag=True, help="List units that nearly agree and were kept apart, on stderr.")
-@options.network_options
+@shared_options.network_options
 def command(
     sources: tuple[Path, ...],
     output: Path | None,
@@ -69,7 +69,7 @@ def command(
     The counts go to stderr. Exits with 0, or with 2 when something is not understood.
     """
     check_outputs()
-    folder, named = options.with_sources(sources, folder, network)
+    folder, named = shared_options.with_sources(sources, folder, network)
     if folder is None and not named:
         raise UserError("name the networks to merge, or a folder of data with --data")
     if store is not None and (output is not None or report):

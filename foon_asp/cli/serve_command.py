@@ -7,9 +7,9 @@ from typing import Any
 import click
 
 from foon_asp.asp.assembly import assemble
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.item_options import items_of
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
@@ -47,7 +47,7 @@ def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -
         from foon_asp.serve.server import serve
     except ImportError as error:
         raise UserError(f"--serve needs more packages ({error}): pip install 'foon-asp[view]'") from None
-    dataset = options.read_dataset(**data)
+    dataset = shared_options.read_dataset(**data)
     first = Form(
         goals=tuple(question["goals_named"]),
         objectives=tuple(map(str, parse_objectives(question["objectives"], dataset.measures))),

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.cli.output_file import check_outputs
@@ -28,7 +28,7 @@ class _Task(NamedTuple):
 
 
 @click.command("convert")
-@options.files_argument
+@shared_options.files_argument
 @click.option(
     "--to",
     "target",
@@ -36,9 +36,11 @@ class _Task(NamedTuple):
     type=click.Choice([str(dialect) for dialect in Dialect]),
     help="The dialect to write.",
 )
-@options.output_option("FILE|DIR", "Where to write one file (stdout, if not given), or a folder for several.")
-@options.lenient_option
-@options.debug_option
+@shared_options.output_option(
+    "FILE|DIR", "Where to write one file (stdout, if not given), or a folder for several."
+)
+@shared_options.lenient_option
+@shared_options.debug_option
 def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: bool) -> ExitCode:
     """Write FOON files in another dialect, and list what gets lost.
 

@@ -12,7 +12,7 @@ from foon_asp.cli.named_path import NamedPath, WrittenPath
 from foon_asp.cli.output import say
 from foon_asp.cli.progress_line import bytes_bar
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.reading import read_dataset as read_data
+from foon_asp.dataset.read_dataset import read_dataset as read_data
 from foon_asp.deadline import Deadline, LimitError, Watch
 from foon_asp.errors import UserError
 from foon_asp.questions.options import LIMITS

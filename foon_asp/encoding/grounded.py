@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from foon_asp.deadline import Deadline, LimitError
-from foon_asp.grounding.ground_program import GroundProgram
-from foon_asp.grounding.run import FoundAnswer, Run
-from foon_asp.grounding.stated import Loaded
+from foon_asp.encoding.ground_program import GroundProgram
+from foon_asp.encoding.run import FoundAnswer, Run
+from foon_asp.encoding.stated import Loaded
 
 if TYPE_CHECKING:
-    from foon_asp.grounding.worker_process import WorkerProgram
+    from foon_asp.encoding.worker_process import WorkerProgram
 
 _MAX_LETTERS_HERE = 1_500_000  # of facts: the built-in encodings ground them in a fraction of a second
 
@@ -21,7 +21,7 @@ class Grounded:
 
     With ``endless``, for rules whose grounding may not terminate, it is in a worker process, which is killed
     at the limits and at ctrl-C; also with much text or limited memory. ``doing`` names the phase in messages
-    about limits. Raises :class:`foon_asp.grounding.run.ProgramError` where clingo refuses the program, and
+    about limits. Raises :class:`foon_asp.encoding.run.ProgramError` where clingo refuses the program, and
     :class:`LimitError`.
     """
 
@@ -40,7 +40,7 @@ class Grounded:
         names = [str(file) if isinstance(file, Path) else file for file in files]
         self._program: GroundProgram | WorkerProgram
         if endless or len(text) > _MAX_LETTERS_HERE or deadline.memory is not None:
-            from foon_asp.grounding import worker_process  # noqa: PLC0415 (often not needed)
+            from foon_asp.encoding import worker_process  # noqa: PLC0415 (often not needed)
 
             self._program = worker_process.WorkerProgram(names, text, arguments, products, deadline)
         else:

@@ -2,7 +2,7 @@
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.errors import UserError
 from foon_asp.results.schema_file import schema, schema_kinds
@@ -13,7 +13,7 @@ _DOCUMENT_KINDS = {"solve": "answer"}  # of verbs whose documents have another n
 
 @click.command("schema")
 @click.argument("verb", required=False, metavar="[VERB]")
-@options.debug_option
+@shared_options.debug_option
 def command(verb: str | None) -> ExitCode:
     """Print the JSON Schema of what a verb prints with --format json; without a verb, list them.
 

@@ -5,8 +5,8 @@ from typing import NamedTuple
 from clingo import Control
 from clingo.symbol import Symbol, SymbolType
 
-from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
-from foon_asp.grounding.number_checks import Exact
+from foon_asp.encoding.messages import NO_LIMIT, listener, refusing
+from foon_asp.encoding.number_checks import Exact
 
 
 class Term(NamedTuple):

@@ -5,10 +5,10 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from pathlib import PurePath
 
+from foon_asp.encoding.exact import LARGEST
 from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
-from foon_asp.grounding.exact import LARGEST
 from foon_asp.network import ObjectNode, Source
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.text.exact_number import decimal_text

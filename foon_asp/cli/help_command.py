@@ -2,7 +2,7 @@
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.verbs import FOR_PROGRAMS, GROUPS, verbs_of, write_verbs
 
@@ -10,7 +10,7 @@ from foon_asp.cli.verbs import FOR_PROGRAMS, GROUPS, verbs_of, write_verbs
 @click.command("help")
 @click.argument("verb", required=False, metavar="[VERB]")
 @click.option("--all", "lists_all", is_flag=True, help="Also list the verbs that are for programs.")
-@options.debug_option
+@shared_options.debug_option
 @click.pass_context
 def command(context: click.Context, verb: str | None, lists_all: bool) -> ExitCode:
     """List all verbs by group, or explain one.

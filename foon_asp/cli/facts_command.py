@@ -6,12 +6,12 @@ from pathlib import Path
 import click
 
 from foon_asp.asp import Settings
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.dataset.assumed import goal_lines, kitchen_lines
-from foon_asp.dataset.items import items_of
+from foon_asp.dataset.item_options import items_of
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
 from foon_asp.questions.facts import facts_of
@@ -25,14 +25,14 @@ from foon_asp.questions.options import (
     RULE,
     SOFT,
 )
-from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.passed_constraint import Constraint
 
 
 @click.command("facts")
 @click_options(GOALS, OBJECTIVES, CONTAINERS, *ITEMS, CONSTRAINTS, RULE, ENCODINGS, SOFT)
-@options.format_option("text", "json")
-@options.sources_argument
-@options.data_options
+@shared_options.format_option("text", "json")
+@shared_options.sources_argument
+@shared_options.data_options
 def command(
     goals_named: tuple[str, ...],
     objectives: tuple[str, ...],
@@ -68,7 +68,7 @@ def command(
 
     With items used up, they say how often the best plan can execute each unit, for which it is solved first.
     """
-    dataset = options.read_dataset(**data)  # type: ignore[arg-type]
+    dataset = shared_options.read_dataset(**data)  # type: ignore[arg-type]
     chosen = parse_objectives(objectives, dataset.measures)
     goals, used_up = dataset.goals(goals_named), items_of(dataset, items, stock, stays)
     problem = dataset.problem(goals, containers, items=used_up)
@@ -76,9 +76,9 @@ def command(
         if len(goals) > 1:
             named = "".join(f"\n  --goal {shlex.quote(str(goal))}" for goal in dataset.assumed_goals())
             raise UserError(f"name a goal with --goal; no file lists goals, and taken for them are{named}")
-        click.echo("\n".join(goal_lines(dataset, problem.goal_nodes, options.is_verbose())), err=True)
+        click.echo("\n".join(goal_lines(dataset, problem.goal_nodes, shared_options.is_verbose())), err=True)
     if not dataset.has_kitchen:
-        click.echo("\n".join(kitchen_lines(dataset, [problem], options.is_verbose())), err=True)
+        click.echo("\n".join(kitchen_lines(dataset, [problem], shared_options.is_verbose())), err=True)
     facts = facts_of(problem, chosen, Settings(constraints, encodings), soft)
     if format_ == "json":
         click.echo(facts.json_text(), nl=False)

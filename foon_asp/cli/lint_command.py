@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import terminal, write_data, write_output, write_parts
@@ -51,7 +51,7 @@ _STDIN = "-"
 
 
 @click.command("lint")
-@options.files_argument
+@shared_options.files_argument
 @click.option("--fix", is_flag=True, help="Repair what is safe to repair, in the files themselves.")
 @click.option("--diff", is_flag=True, help="Show what --fix would change, and write nothing.")
 @click.option(
@@ -99,9 +99,9 @@ _STDIN = "-"
     help="Show what a code means, with an example, and lint nothing.",
 )
 @click.option("--learn", is_flag=True, help="Collect the names that lint checks other files against.")
-@options.output_option("FILE", "Where to write the names with --learn; stdout, if not given.")
-@options.format_option(*TABLES, "github", "sarif")
-@options.debug_option
+@shared_options.output_option("FILE", "Where to write the names with --learn; stdout, if not given.")
+@shared_options.format_option(*TABLES, "github", "sarif")
+@shared_options.debug_option
 def command(
     paths: tuple[Path, ...],
     fix: bool,

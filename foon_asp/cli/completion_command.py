@@ -12,7 +12,7 @@ from click.shell_completion import (
     split_arg_string,
 )
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.verbs import SHELL_REQUEST
 from foon_asp.errors import UserError
@@ -107,7 +107,7 @@ def answer_shell(program: click.Command, request: str) -> ExitCode:
 
 @click.command("completion")
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
-@options.debug_option
+@shared_options.debug_option
 @click.pass_context
 def command(context: click.Context, shell: str) -> ExitCode:
     """Print a script by which a shell completes verbs, options, goals, objects, motions and constraints.

@@ -11,11 +11,11 @@ from clingo import Control, MessageCode, Model, SolveHandle
 from clingo.symbol import Number, Symbol, SymbolType
 
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.messages import NO_LIMIT, listener, refusing
+from foon_asp.encoding.number_checks import CHECKS_FILE, Exact, numbers_beyond
+from foon_asp.encoding.run import Ended, FoundAnswer, asks_for_statistics
+from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
-from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
-from foon_asp.grounding.number_checks import CHECKS_FILE, Exact, numbers_beyond
-from foon_asp.grounding.run import Ended, FoundAnswer, asks_for_statistics
-from foon_asp.grounding.stated import Stated
 
 
 class GroundProgram:
@@ -47,7 +47,7 @@ class GroundProgram:
     def _load(self, files: Sequence[str | Stated], logger: Callable[[MessageCode, str], None]) -> None:
         for file in files:
             if isinstance(file, Stated):
-                from foon_asp.grounding.parsing import load  # noqa: PLC0415 (slow to import)
+                from foon_asp.encoding.parsing import load  # noqa: PLC0415 (slow to import)
 
                 load(self._control, file, logger)
             else:

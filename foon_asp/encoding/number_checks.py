@@ -1,7 +1,7 @@
 """Overflow checks: rules that find arithmetic beyond clingo's numbers, which wraps silently.
 
 They derive ``_beyond(File,Line,Column,Term)``, and call ``@_exact(Text,...)`` with a term in the notation of
-:func:`foon_asp.grounding.exact.is_beyond`, and its values.
+:func:`foon_asp.encoding.exact.is_beyond`, and its values.
 """
 
 from collections.abc import Callable, Iterator
@@ -10,7 +10,7 @@ from typing import Final
 from clingo import Control
 from clingo.symbol import Number, Symbol, SymbolType
 
-from foon_asp.grounding.exact import LARGEST, is_beyond
+from foon_asp.encoding.exact import LARGEST, is_beyond
 
 CHECKS_FILE: Final = "_numbers"  # the name of these rules in place of a file
 BEYOND: Final = "_beyond", 4

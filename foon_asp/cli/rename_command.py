@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from foon_asp.cli import options
+from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.shown_diff import show_diff
 from foon_asp.errors import UserError
@@ -28,14 +28,14 @@ _WITH_ARTICLE = {NameKind.OBJECT: "an object", NameKind.WORD: "a word of relatio
 @click.command("rename")
 @click.argument("old")
 @click.argument("new")
-@options.files_argument
+@shared_options.files_argument
 @click.option(
     "--kind",
     type=click.Choice([str(kind) for kind in NameKind]),
     help="What is renamed, if the name is that of several things.",
 )
 @click.option("-y", "--write", is_flag=True, help="Write the change; without it, it is only shown.")
-@options.debug_option
+@shared_options.debug_option
 def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write: bool) -> ExitCode:
     """Rename an object, a state or a motion everywhere, and show the change first.
 

@@ -1,1 +1,0 @@
-"""Programs that clingo grounds and searches, in this process or in a worker that can be killed."""
