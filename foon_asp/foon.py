@@ -111,8 +111,8 @@ def load(
         with _counted(on_progress, size_of(named.network)) as tell, reporting_to(tell):
             dataset = read_dataset(named, lenient, level).measured(definitions)
             if stand_ins:
-                beside = () if named.stand_ins is None else (named.stand_ins,)
-                table = read_stand_ins(beside) if isinstance(stand_ins, bool) else stand_ins
+                folder_tables = () if named.stand_ins is None else (named.stand_ins,)
+                table = read_stand_ins(folder_tables) if isinstance(stand_ins, bool) else stand_ins
                 dataset = dataset.with_stand_in_table(table)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
     foon = Foon(dataset, name)

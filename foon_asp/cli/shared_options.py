@@ -249,8 +249,8 @@ def read_dataset(
         if stand_ins or stand_in_tables or similar:
             from foon_asp.standins.table_file import read_stand_ins
 
-            beside = () if files.stand_ins is None else (files.stand_ins,)
-            table = read_stand_ins((*beside, *stand_in_tables), similar, dataset.utensils)
+            folder_tables = () if files.stand_ins is None else (files.stand_ins,)
+            table = read_stand_ins((*folder_tables, *stand_in_tables), similar, dataset.utensils)
             dataset = dataset.with_stand_in_table(table)
     context = click.get_current_context(
         silent=True

@@ -210,20 +210,20 @@ def _certified(needed: Repair, outcome: Outcome, settings: Settings) -> tuple[Ou
     The certificate is ``None`` where the repair is not proved, or none is found in time.
     """
     covered = Coverage(({"rule": ALL_STEPS, "units": sorted(needed.steps)},))
-    deadline, problem, found = settings.begun, needed.shown, None
+    deadline, problem, certificate = settings.begun, needed.shown, None
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         if outcome.status is Status.INFEASIBLE:
-            found = certify_infeasible(problem, covered, lambda: deadline.passed)
+            certificate = certify_infeasible(problem, covered, lambda: deadline.passed)
         elif outcome.status is Status.OPTIMAL and outcome.units is not None:
             try:
-                found = certify(problem, _OBJECTIVES, outcome.units, covered, lambda: deadline.passed)
+                certificate = certify(problem, _OBJECTIVES, outcome.units, covered, lambda: deadline.passed)
             except NotBestError as better:
                 raise BugError(f"a repair was called the cheapest: {better}") from None
-    if found is None or found.claim == "bound":
-        return outcome, found
-    complete = found.claim == "infeasible" or found.certified == _OBJECTIVES
+    if certificate is None or certificate.claim == "bound":
+        return outcome, certificate
+    complete = certificate.claim == "infeasible" or certificate.certified == _OBJECTIVES
     proof = Proof.CERTIFICATE if complete else outcome.proof
-    return outcome._replace(proof=proof, certified=found.certified), found
+    return outcome._replace(proof=proof, certified=certificate.certified), certificate
 
 
 def _is_in_kitchen(problem: Problem) -> Callable[[ObjectNode], bool]:

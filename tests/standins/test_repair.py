@@ -14,7 +14,7 @@ from foon_asp.certificate.coverage import Coverage
 from foon_asp.errors import BugError
 from foon_asp.network import STAND_IN
 from foon_asp.problem import Objective
-from foon_asp.proof import verify
+from foon_asp.proof import verifier
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.standins import with_stand_ins
 from foon_asp.standins.repair import Repair
@@ -67,8 +67,8 @@ def test_certificates_hold_and_a_raised_bound_is_refused(seeds: range, tmp_path:
         claims[repaired.certificate.claim] += 1
         places = [network.sources[step][0] for step in steps]
         subject = subject_of(Repair.of(problem, tree, places, table, lambda _: False).shown)
-        content = verify.load_certificate(tmp_path / "proof.json")
-        verified = verify.verify(content, subject)
+        content = verifier.load_certificate(tmp_path / "proof.json")
+        verified = verifier.verify(content, subject)
         expected = stand_ins.best(problem, table, ("dissimilarity", "units"), steps)
         assert (verified.costs or None) == expected, seed
         if expected is None:
@@ -78,12 +78,12 @@ def test_certificates_hold_and_a_raised_bound_is_refused(seeds: range, tmp_path:
         dissimilarity, units = map(Fraction, expected)
         for raised in ((dissimilarity + 1, units), (dissimilarity, units + 1)):
             forged = {**content, "claim": "bound", "tree": None, "costs": None, "bound": [*map(str, raised)]}
-            with pytest.raises(verify.RefusedError, match=r"the weights do not add up|stand-in is missing"):
-                verify.verify({**forged, "seal": verify.seal(forged)}, subject)
+            with pytest.raises(verifier.RefusedError, match=r"the weights do not add up|stand-in is missing"):
+                verifier.verify({**forged, "seal": verifier.seal(forged)}, subject)
         fewer = [unit for unit in verified.tree if unit != steps[0]]
         forged = {**content, "tree": fewer}
-        with pytest.raises(verify.RefusedError):
-            verify.verify({**forged, "seal": verify.seal(forged)}, subject)
+        with pytest.raises(verifier.RefusedError):
+            verifier.verify({**forged, "seal": verifier.seal(forged)}, subject)
     assert min(claims.values()) > len(seeds) // 8
 
 
