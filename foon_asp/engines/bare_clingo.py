@@ -38,7 +38,7 @@ from foon_asp.engines.engine import (
 from foon_asp.problem import Costs, Objective, levels, multiplies
 
 BARE_CLINGO: Final = "clingo"
-CLINGO_OPTIONS: Final = (
+ENGINE_OPTIONS: Final = (
     "--opt-strategy=usc,pmres,disjoint,stratify",
 )  # of the strategies tried, it ended most often
 MAX_KINDS = 10_000  # of trees within the bound: more prove more answers, and take longer to enumerate
@@ -117,7 +117,7 @@ class Clingo:
         if remaining <= 0:
             raise NotCheckedError(timeout_message)
         with subprocess.Popen(
-            [*command, *CLINGO_OPTIONS, *options],
+            [*command, *ENGINE_OPTIONS, *options],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -60,7 +60,7 @@ _NINES = 400  # additional digits for a rate close to 1, at most
 # A certificate may come from a stranger: beyond these limits it is refused rather than checked.
 _MAX_LETTERS = 16_000_000  # characters of the file
 _BRACKETS = 1_000_000  # lists and objects in it
-_MAX_STEPS = 5_000_000  # a look at a unit is one; adding and comparing numbers takes more
+_STEPS_ALLOWED = 5_000_000  # a look at a unit is one; adding and comparing numbers takes more
 _STEPS_EACH = 200  # additional steps for each unit and object node of the network
 _MAX_RULES = 100  # rules of a claim
 _STEPS_RULE = 10  # for each unit and object node that a rule is checked against
@@ -295,7 +295,7 @@ class Check:
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
         network, kitchen, rates, utensils, prices = subject[:5]
-        self.allowed = _MAX_STEPS + _STEPS_EACH * (len(network) + len(network.objects))
+        self.allowed = _STEPS_ALLOWED + _STEPS_EACH * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
         self.minus_log = cache(self._minus_log)  # of a rate
         self.all_multiples = cache(self._all_multiples)  # of a number, by an objective

@@ -9,7 +9,7 @@ from foon_asp.asp import Outcome
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.encoding.encoding import read_encoding
 from foon_asp.engines import Asked, DisagreementError
-from foon_asp.engines.bare_clingo import CLINGO_OPTIONS
+from foon_asp.engines.bare_clingo import ENGINE_OPTIONS
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.proof.verifier import Subject
@@ -88,7 +88,7 @@ def disagreement_json(request: Asked, disagreement: DisagreementError) -> Json:
             },
         },
         "bare_clingo": {
-            "arguments": [*program.constants, *CLINGO_OPTIONS],
+            "arguments": [*program.constants, *ENGINE_OPTIONS],
             "program": "".join(encodings) + program.text,
         },
         "versions": {name: version(name) for name in _DISTRIBUTIONS},

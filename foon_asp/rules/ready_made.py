@@ -32,7 +32,7 @@ READ: Final = frozenset(
 )
 _HEATS = re.compile(r'heats\("([^"\\]*)"\)\.')
 _INTEGER = re.compile(r"-?(0|[1-9]\d{0,9})", re.ASCII)
-_QUOTED = re.compile(r'("?)([^"\\]+)\1')
+_QUOTED_TEXT = re.compile(r'("?)([^"\\]+)\1')
 _WITH_UNSETTLED = {"before", "not_both_motions", *(name for name in LIBRARY if name.startswith("at_most"))}
 _REQUIRING_PREFIX = "require_"  # prefix of the names of constraints that require units
 
@@ -149,7 +149,7 @@ def _values(
             return None
         for constant, (value, kind) in read.items():
             written = constants_given.get(constant, "")
-            match = _INTEGER.fullmatch(written) if kind is int else _QUOTED.fullmatch(written)
+            match = _INTEGER.fullmatch(written) if kind is int else _QUOTED_TEXT.fullmatch(written)
             if match is None or not written.isprintable() or (kind is int and abs(int(written)) > LARGEST):
                 return None
             used_names.update({constant} if constants_given is shared else ())

@@ -573,7 +573,7 @@ def test_work_of_all_kinds_is_counted(
 ) -> None:
     assert accepted(at, **values).claim == "bound"
     monkeypatch.setattr(verifier, "_STEPS_EACH", 0)
-    monkeypatch.setattr(verifier, "_MAX_STEPS", most)
+    monkeypatch.setattr(verifier, "_STEPS_ALLOWED", most)
     assert refusal(at, **values) == f"to check it takes more than {most:,} steps"
 
 
