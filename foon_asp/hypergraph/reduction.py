@@ -159,9 +159,7 @@ def _without_branching(
     with uncollected():
         with guard():
             task = _task(problem, objectives, reductions, expired, presolve_tuning)
-            if redundant:  # costs of all actions are needed later
-                task = _with_costs(task, range(len(task.graph.needs)))
-            presolve = _Presolve(task, listener, guard)
+            presolve = _Presolve(task, listener, guard, redundant)
         presolve.run(course)
         return presolve.reduced(redundant)
 
@@ -355,11 +353,12 @@ def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
 class _Presolve:
     """A run of the stages of a task: its last gap, ``None`` before there is a tree.
 
-    ``ended`` is true where nothing interrupted it.
+    ``ended`` is true where nothing interrupted it. Trees that may be ``redundant`` may have any action, so the
+    costs of all actions are needed.
     """
 
-    def __init__(self, task: Task, listener: Listener | None, guard: Guard) -> None:
-        self.task, self.ended = task, False
+    def __init__(self, task: Task, listener: Listener | None, guard: Guard, redundant: bool = False) -> None:
+        self.task, self.ended, self._redundant = task, False, redundant
         self.gap: Gap | None = None
         self._listener, self.guard = listener or Listener(), guard
 
@@ -408,7 +407,8 @@ class _Presolve:
     def take(self, stages: Stages, h_values: HValues) -> None:
         """Take stages from the gap; report trees and bounds on the way."""
         assert self.gap is not None
-        self.task = task = _with_costs(self.task, self.gap.candidates)
+        actions = range(len(self.task.graph.needs)) if self._redundant else self.gap.candidates
+        self.task = task = _with_costs(self.task, actions)
         for gap in stages(task, replace(self.gap, budget=task.tuning.branching_budget), h_values):
             self.report(gap)
 

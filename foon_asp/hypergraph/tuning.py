@@ -36,8 +36,8 @@ class PresolveTuning:
     relaxed_actions: int = 200
     rounds: int = 24
     branching_budget: int = 3_000_000
-    branching_bound: float = 0.75
-    sufficient_bound: float = 0.98
+    branching_bound: Fraction = Fraction(3, 4)
+    sufficient_bound: Fraction = Fraction(49, 50)
     search_looks: int = 10
     sparse_share: float = 0.2
     landmark_actions: float = 20

@@ -114,7 +114,7 @@ SIZES = {
     "nearest first": PresolveTuning(lazy_actions=0, first_actions=1),
     "no searches left out": PresolveTuning(lazy_actions=0, first_actions=1, easy_actions=0),
     "costs shared out": PresolveTuning(relaxed_actions=0, easy_actions=0),
-    "branching": PresolveTuning(relaxed_actions=0, branching_bound=0, sparse_share=1),
+    "branching": PresolveTuning(relaxed_actions=0, branching_bound=Fraction(0), sparse_share=1),
 }
 
 
