@@ -353,8 +353,8 @@ def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
 class _Presolve:
     """A run of the stages of a task: its last gap, ``None`` before there is a tree.
 
-    ``ended`` is true where nothing interrupted it. Trees that may be ``redundant`` may have any action, so the
-    costs of all actions are needed.
+    ``ended`` is true where nothing interrupted it. Trees that may be ``redundant`` may have any action, so
+    the costs of all actions are needed.
     """
 
     def __init__(self, task: Task, listener: Listener | None, guard: Guard, redundant: bool = False) -> None:
