@@ -21,7 +21,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
-from dataclasses import fields, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -81,16 +81,15 @@ def variants(only: list[str]) -> Iterator[tuple[str, str, Any]]:
     """Return the class, a description and the tuning with one number halved, then doubled."""
     for name in CLASSES:
         plain = getattr(tuning, name)
-        for field in fields(plain):
-            if only and field.name not in only:
+        for field, value in plain._asdict().items():
+            if only and field not in only:
                 continue
-            value = getattr(plain, field.name)
-            for factor, word in ((0.5, "halved"), (2, "doubled")):
+            for factor, word in ((Fraction(1, 2), "halved"), (2, "doubled")):
                 changed = max(1, round(value * factor)) if isinstance(value, int) else value * factor
                 yield (
                     name,
-                    f"{name}.{field.name} {word} ({changed:g})",
-                    replace(plain, **{field.name: changed}),
+                    f"{name}.{field} {word} ({float(changed):g})",
+                    plain._replace(**{field: changed}),
                 )
 
 

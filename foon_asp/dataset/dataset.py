@@ -44,8 +44,6 @@ from foon_asp.problem import (
     container_rule,
     unrated_text,
 )
-from foon_asp.standins import with_stand_ins
-from foon_asp.standins.repair import Repair
 from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning
 from foon_asp.text.goal_name import entry_names, find_goal, listed_goal, listed_nodes
 from foon_asp.text.object_list import ListedObject, read_object_list
@@ -431,6 +429,8 @@ class Dataset:
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
         if steps and self.stand_ins is not None:
+            from foon_asp.standins.repair import Repair  # noqa: PLC0415 (few questions have stand-ins)
+
             posed = ask(self.for_goals(goals).data, goals, containers, self)
             problem = Repair.over(posed, tuple(steps), self.stand_ins).shown
         else:
@@ -501,6 +501,8 @@ class Dataset:
         """
         dataset = self.for_goals(goals)
         if self.stand_ins is not None:
+            from foon_asp.standins import with_stand_ins  # noqa: PLC0415 (few questions have stand-ins)
+
             posed = ask(dataset.data, goals, containers, self, items)
             return with_stand_ins(posed, self.stand_ins, everything)
         if everything:

@@ -155,7 +155,7 @@ def _without_branching(
     redundant: bool,
     course: Course,
 ) -> Reduced:
-    presolve_tuning = replace(tuning.PRESOLVE, branching_budget=0, landmark_actions=math.inf)
+    presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     with uncollected():
         with guard():
             task = _task(problem, objectives, reductions, expired, presolve_tuning)
@@ -179,9 +179,9 @@ def at_costs(
     the incumbent; that is given up where more than ``max_actions`` remain and the first cuts exclude hardly
     any.
     """
-    presolve_tuning = replace(tuning.PRESOLVE, rounds=6, branching_budget=0, landmark_actions=math.inf)
+    presolve_tuning = tuning.PRESOLVE._replace(rounds=6, branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
-        presolve_tuning = replace(presolve_tuning, relaxed_actions=presolve_tuning.easy_actions)
+        presolve_tuning = presolve_tuning._replace(relaxed_actions=presolve_tuning.easy_actions)
     reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
     with uncollected():
         task = _task(subproblem.problem, objectives, reductions, expired, presolve_tuning)

@@ -4,12 +4,11 @@
 read the objects at the end of this module when they are called.
 """
 
-from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class PresolveTuning:
+class PresolveTuning(NamedTuple):
     """When a stage of :mod:`foon_asp.hypergraph.reduction` begins, and when it ends.
 
     ``lazy_actions``: actions of a network; with more, only those near the goals are looked at first.
@@ -44,8 +43,7 @@ class PresolveTuning:
     worthwhile_share: float = 0.9
 
 
-@dataclass(frozen=True)
-class CutTuning:
+class CutTuning(NamedTuple):
     """How landmark cuts and h-values are looked for.
 
     ``guided_cuts``: cuts, or one for each target, after which the h-values that guide cuts are computed anew.
@@ -60,8 +58,7 @@ class CutTuning:
     lazy_looks: int = 200_000
 
 
-@dataclass(frozen=True)
-class RelaxationTuning:
+class RelaxationTuning(NamedTuple):
     """How the linear relaxation is solved and searched.
 
     ``cuts``: violated cuts with disjoint landmarks that are separated for one LP solution, at most.
@@ -83,8 +80,7 @@ class RelaxationTuning:
     landmark_bits: int = 400_000_000
 
 
-@dataclass(frozen=True)
-class ProofTuning:
+class ProofTuning(NamedTuple):
     """How certificates are looked for, by :class:`foon_asp.hypergraph.optimality_proof.Prover`.
 
     ``orders``: orders in which cuts are grown before the relaxation counts as optimal.
@@ -103,8 +99,7 @@ class ProofTuning:
     proof_length: int = 2_000_000
 
 
-@dataclass(frozen=True)
-class PriceTuning:
+class PriceTuning(NamedTuple):
     """How a limit on a sum over units is priced, by :mod:`foon_asp.hypergraph.priced_limit`.
 
     ``prices``: prices that are tried. ``easy_units``: units; with fewer, clingo is faster than another price.

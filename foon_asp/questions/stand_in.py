@@ -8,7 +8,6 @@ from foon_asp.problem import Objective, Problem
 from foon_asp.results.figure_text import figure_text
 from foon_asp.results.values import Node, Value
 from foon_asp.results.values_of import node_as, node_of
-from foon_asp.standins.next_best import stand_ins_of
 
 
 class NodeEdit(Value, frozen=True):
@@ -70,6 +69,8 @@ class StandIn(Value, frozen=True):
 
 def stand_ins_in(problem: Problem, tree: Collection[int]) -> tuple[StandIn, ...]:
     """Return the stand-ins of a tree, by unit ids."""
+    from foon_asp.standins.next_best import stand_ins_of  # noqa: PLC0415 (few answers have stand-ins)
+
     network = problem.network
     values: list[StandIn] = []
     for unit, serving, served, next_best in stand_ins_of(problem, tree):
