@@ -17,6 +17,7 @@ from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import NONE
 from foon_asp.problem import Contradiction, Objective, Problem
+from foon_asp.problem.number import INT32_MAX
 from foon_asp.proof.rule_meaning import OWN, Rule
 from foon_asp.proof.verifier import LimitError, RefusedError, canonical
 from foon_asp.rules.passed_constraint import (
@@ -26,8 +27,6 @@ from foon_asp.rules.passed_constraint import (
     find_constraint,
     named_constraint,
 )
-
-_GREATEST = 2**31 - 1  # the greatest number of clingo
 
 
 def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> Coverage | None:
@@ -113,7 +112,7 @@ def _beyond(amounts: Mapping[str, Sequence[int]], max_sum: int) -> str:
     Raises :class:`LimitError` for sums too large for clingo.
     """
     counted = [(int(amount), unit) for amount, units in amounts.items() for unit in units]
-    if max(sum(amount for amount, _ in counted), abs(max_sum)) > _GREATEST:
+    if max(sum(amount for amount, _ in counted), abs(max_sum)) > INT32_MAX:
         raise LimitError("clingo cannot add up what a limit counts")
     return f"#sum {{ {'; '.join(f'{amount},{unit} : use({unit})' for amount, unit in counted)} }} > {max_sum}"
 

@@ -3,7 +3,9 @@
 from collections.abc import Callable, Sequence
 from typing import Final
 
-LARGEST: Final = 2**31 - 2  # clingo adds 1 to a bound: with 2^31 - 1 a condition would be dropped
+from foon_asp.problem.number import INT32_MAX
+
+LARGEST: Final = INT32_MAX - 1  # clingo adds 1 to a bound: with INT32_MAX a condition would be dropped
 
 
 class _BeyondError(Exception):

@@ -14,11 +14,11 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.hypergraph.coprime_base import coprime_base, powers
 from foon_asp.problem import Problem
+from foon_asp.problem.number import INT32_MAX
 
-_MAX_NUMBER = 2**31 - 1
-_USUAL_SCALE = 10**8  # the finest scale, except for rates next to 1
-_MIN_WEIGHT = 1000  # least weight of a rate: next to 1 the scale is finer where it fits
-_FIRST_DIGITS = 40  # of a logarithm, initially
+USUAL_SCALE = 10**8
+"""The finest scale of costs that are rounded, except for rates next to 1."""
+
 _CONTEXT = Context(prec=60, Emax=MAX_EMAX, Emin=MIN_EMIN)
 
 
@@ -65,7 +65,7 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
     """
     if not all(0 < rate <= 1 for rate in rates):
         raise ValueError("expected success rates above 0 and at most 1")
-    logarithms = {rate: _minus_log(rate, _FIRST_DIGITS) for rate in sorted(rates)}
+    logarithms = {rate: _minus_log(rate, 40) for rate in sorted(rates)}
     scale = _scale([logarithm for logarithm in logarithms.values() if logarithm])
     weights = {rate: _weight(rate, scale) for rate in logarithms}
     return RateScale(scale, weights, _exponents(weights))
@@ -74,10 +74,11 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 def _scale(logarithms: Collection[Decimal]) -> int:
     """Return the power of ten by which logarithms above 0 become weights."""
     if not logarithms:
-        return _USUAL_SCALE
-    fitting: int = 10 ** (_MAX_NUMBER / max(logarithms)).adjusted()
-    useful: int = 10 ** ((_MIN_WEIGHT / min(logarithms)).adjusted() + 1)
-    return min(fitting, max(_USUAL_SCALE, useful))
+        return USUAL_SCALE
+    fitting: int = 10 ** (INT32_MAX / max(logarithms)).adjusted()
+    # A rate next to 1 weighs 1000 or more, where that fits.
+    useful: int = 10 ** ((1000 / min(logarithms)).adjusted() + 1)
+    return min(fitting, max(USUAL_SCALE, useful))
 
 
 def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
@@ -87,7 +88,7 @@ def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
     """
     units = list(units)
     scale = rate_scale(problem.different_rates(units))
-    if any(len(units) * abs(e) > _MAX_NUMBER for rate in scale.exponents.values() for e in rate.values()):
+    if any(len(units) * abs(e) > INT32_MAX for rate in scale.exponents.values() for e in rate.values()):
         raise UserError(
             "the success rates of the motions are too far apart: written as powers of common factors, "
             f"the exponents of {len(units)} units add up to more than clingo's numbers hold"
@@ -111,7 +112,7 @@ def _weight(rate: Fraction, scale: int) -> int:
     """
     lost = scale * (1 - rate)
     low, high = lost, lost / rate  # bounds of -ln rate, precise enough next to 1
-    digits = _FIRST_DIGITS
+    digits = 40  # doubled until the floor is settled
     while math.floor(low) < math.floor(high):
         value = scale * Fraction(_minus_log(rate, digits))
         off = value / 10**digits

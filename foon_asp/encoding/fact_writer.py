@@ -11,6 +11,7 @@ from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
 from foon_asp.network import ObjectNode, Source
 from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.problem.number import INT32_MAX
 from foon_asp.text.exact_number import decimal_text
 
 # Predicates of the facts of every question, with arity; encodings/README.md has the meanings. Encodings of
@@ -65,7 +66,6 @@ OBJECT_FACTS = frozenset(("object", "label", "state", "ingredient", "located")) 
 
 _Atom = tuple[str, str]  # predicate, and arguments as text
 
-_MAX_NUMBER = 2**31 - 1  # clingo's numbers wrap silently above
 _PRICE = ("price", 2)
 _OF_RULES = frozenset({("source", 2), ("video", 2), _PRICE})
 
@@ -541,6 +541,6 @@ def millionths(rate: Fraction) -> int:
 
 
 def _check(number: int) -> int:
-    if not -_MAX_NUMBER <= number <= _MAX_NUMBER:
+    if abs(number) > INT32_MAX:
         raise UserError(f"the number {number} is too large for clingo, whose numbers have 32 bits")
     return number

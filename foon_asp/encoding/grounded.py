@@ -13,8 +13,6 @@ from foon_asp.encoding.stated import Loaded
 if TYPE_CHECKING:
     from foon_asp.encoding.worker_process import WorkerProgram
 
-_MAX_LETTERS_HERE = 1_500_000  # of facts: the built-in encodings ground them in a fraction of a second
-
 
 class Grounded:
     """Ground program of files and text.
@@ -39,7 +37,8 @@ class Grounded:
         deadline.check()
         names = [str(file) if isinstance(file, Path) else file for file in files]
         self._program: GroundProgram | WorkerProgram
-        if endless or len(text) > _MAX_LETTERS_HERE or deadline.memory is not None:
+        # the built-in encodings ground facts of so many letters in a fraction of a second
+        if endless or len(text) > 1_500_000 or deadline.memory is not None:
             from foon_asp.encoding import worker_process  # noqa: PLC0415 (often not needed)
 
             self._program = worker_process.WorkerProgram(names, text, arguments, products, deadline)

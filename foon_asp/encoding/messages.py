@@ -7,22 +7,25 @@ from clingo import MessageCode
 
 from foon_asp.encoding.number_checks import CHECKS_FILE
 from foon_asp.encoding.run import ProgramError
+from foon_asp.problem.number import INT32_MAX
 
 # Undefined atoms have a check of their own; a file may be included twice; and a global variable may stand in
 # an aggregate. With any other message clingo drops an instance, or stops.
 _HARMLESS = (MessageCode.AtomUndefined, MessageCode.FileIncluded, MessageCode.GlobalVariable)
 
-NO_LIMIT = 2**31 - 1  # clingo's limit of messages: beyond a lower one, a relevant message might be lost
-_MAX_MESSAGES = 1000  # limit of kept messages about dropped instances
+NO_LIMIT = INT32_MAX  # clingo's limit of messages: beyond a lower one, a relevant message might be lost
 
 
-def listener(messages: list[str]) -> Callable[[MessageCode, str], None]:
-    """Return a logger for clingo that collects messages about dropped statements or instances."""
+def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode, str], None]:
+    """Return a logger for clingo that collects messages about dropped statements or instances.
+
+    Of more than ``max_kept`` messages, only those of statements are kept.
+    """
 
     def hear(code: MessageCode, text: str) -> None:
         if text.startswith(f"{CHECKS_FILE}:") and code is MessageCode.OperationUndefined:
             return  # the checked rule causes the same message
-        if code not in _HARMLESS and (code is MessageCode.RuntimeError or len(messages) < _MAX_MESSAGES):
+        if code not in _HARMLESS and (code is MessageCode.RuntimeError or len(messages) < max_kept):
             messages.append(text)
 
     return hear

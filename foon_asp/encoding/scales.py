@@ -5,12 +5,10 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.encoding.exact_success import RateScale, problem_scale
+from foon_asp.encoding.exact_success import USUAL_SCALE, RateScale, problem_scale
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, multiplies
-
-_MAX_NUMBER = 2**31 - 1
-_USUAL_SCALE = 10**8  # scale of costs that have to be rounded
+from foon_asp.problem.number import INT32_MAX
 
 
 class CostScale(NamedTuple):
@@ -33,8 +31,8 @@ def cost_scale(costs: Iterable[Fraction]) -> CostScale:
     different = sorted(set(costs))
     greatest = max(different, default=Fraction(0))
     common = math.lcm(*(cost.denominator for cost in different))
-    exact = common * greatest <= _MAX_NUMBER
-    scale = Fraction(common) if exact else min(Fraction(_USUAL_SCALE), _MAX_NUMBER / greatest)
+    exact = common * greatest <= INT32_MAX
+    scale = Fraction(common) if exact else min(Fraction(USUAL_SCALE), INT32_MAX / greatest)
     weights = {cost: math.floor(scale * cost) for cost in different}
     places = {cost: index for index, cost in enumerate(different)}
     return CostScale(scale, exact, weights, places, sum(weights[cost] for cost in costs))
@@ -124,7 +122,7 @@ class Scales:
                 f"the objective {objective} has to be rounded for the solver, so it cannot be bounded: leave "
                 "it out, or the other objective that has to be rounded"
             )
-        if scale.total > _MAX_NUMBER:
+        if scale.total > INT32_MAX:
             raise UserError(
                 f"by the objective {objective} all units together cost more than fits into clingo's numbers, "
                 "which have 32 bits, so no bound can be put on it: leave it out, or take fewer digits"

@@ -22,11 +22,6 @@ from foon_asp.engines.offered_engine import offered_engine
 from foon_asp.offered.offer import find_offers, offers_by_name
 from foon_asp.problem import Costs, Objective, levels, multiplies
 
-# Engines compute logarithms of rates in floats or in millionths: closer than this, relative to costs and for
-# each unit, is equal. Wider, it would hide wrong answers; narrower, it would report rounding as a bug.
-_TOLERANCE_PER_UNIT = 2e-6
-PATIENCE = 60.0  # seconds for each engine, where no time limit says otherwise
-_GRACE_SECONDS = 0.1  # after its time, before an engine that does not stop by itself is stopped
 _EXTRA = "it is not installed (pip install 'foon-asp[cross-check]')"
 
 
@@ -78,7 +73,7 @@ def cross_check(
     """
     if seconds is None:
         remaining = claim.settings.begun.left
-        seconds = PATIENCE if remaining is None else remaining / (1 + len(engines))  # one more: bare clingo
+        seconds = 60.0 if remaining is None else remaining / (1 + len(engines))  # one more: bare clingo
     checks: list[Check] = []
     interrupted = False
     others = () if claim.outcome.problem.items is not None else engines  # they cannot model consumption
@@ -93,7 +88,8 @@ def cross_check(
                 raise NotCheckedError("interrupted")
             if claim.outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
                 raise NotCheckedError("nothing is proved, so there is nothing to check")
-            with Deadline(seconds + _GRACE_SECONDS).watched("asking another engine"):
+            # an engine that does not stop by itself is stopped a little later
+            with Deadline(seconds + 0.1).watched("asking another engine"):
                 objectives = _ask_clingo(claim, seconds) if engine is None else _ask(engine, claim, seconds)
         except NotCheckedError as error:
             reason = str(error)
@@ -171,9 +167,13 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
 
 
 def _is_close(objective: Objective, ours: Costs, theirs: Costs) -> bool:
-    """Return whether an engine that computes in floats may not distinguish the costs of two trees."""
+    """Return whether an engine that computes in floats may not distinguish the costs of two trees.
+
+    It may compute logarithms of rates in millionths, so two millionths for each unit, relative to the costs,
+    are equal. More would hide wrong answers, less would report rounding as a bug.
+    """
     our_cost, their_cost = Fraction(ours.measure(objective)), Fraction(theirs.measure(objective))
-    tolerance = _TOLERANCE_PER_UNIT * (1 + ours.units + theirs.units)
+    tolerance = 2e-6 * (1 + ours.units + theirs.units)
     if not multiplies(objective):
         return not objective.row.whole and abs(our_cost - their_cost) <= tolerance * (1 + abs(our_cost))
     if not our_cost or not their_cost:

@@ -42,7 +42,6 @@ ENGINE_OPTIONS: Final = (
     "--opt-strategy=usc,pmres,disjoint,stratify",
 )  # of the strategies tried, it ended most often
 MAX_KINDS = 10_000  # of trees within the bound: more prove more answers, and take longer to enumerate
-_MAX_MEMORY: Final = 4 * 2**30  # bytes, where no memory limit is smaller
 _EXIT_CODES: Final = {0, 10, 20, 30}  # without a fault: of the Python module, and of the program
 _OUT_OF_MEMORY: Final = (b"bad_alloc", b"MemoryError", b"cannot allocate memory")
 _STRING_OR_WEIGHT = re.compile(r'"(?:\\.|[^"\\])*"|(?<![\w\'])(?:risk\(|cost\((\w+),)(\d+),(\d+)\)')
@@ -68,12 +67,13 @@ class ClingoAnswer(NamedTuple):
 
 
 class Clingo:
-    """Runs of clingo on one program, which together take at most ``seconds``, and ``memory`` bytes each."""
+    """Runs of clingo on one program: ``seconds`` at most in all, and ``memory`` bytes each, of up to 4 GB."""
 
     def __init__(self, program: BareProgram, seconds: float, memory: int | None) -> None:
         self._program, self._seconds = program, seconds
         self._end = time.monotonic() + seconds
-        self._memory = _MAX_MEMORY if memory is None else min(memory, _MAX_MEMORY)
+        max_memory = 4 * 2**30
+        self._memory = max_memory if memory is None else min(memory, max_memory)
 
     def best(self, extra_facts: str = "", with_second_opinion: bool = True) -> ClingoAnswer | None:
         """Return an optimal answer, or ``None`` where no answer exists.

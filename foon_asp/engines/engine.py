@@ -10,8 +10,6 @@ from foon_asp.problem import Objective, Problem, backwards, executable_order, mu
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.rules.passed_constraint import Constraint
 
-_MAX_UNIT_COST = 10**9  # in sums with a larger cost, floats of 53 bits lose small ones
-
 
 class Asked(NamedTuple):
     """An answer to be checked: the outcome, and the settings under which it was found.
@@ -137,7 +135,7 @@ def cost(problem: Problem, objective: Objective, unit: int) -> float:
         rate = problem.rate(unit)
         return math.log(rate.denominator) - math.log(rate.numerator)
     figure = problem.figure(objective, unit)
-    if figure > _MAX_UNIT_COST:
+    if figure > 10**9:  # beside it in a sum, floats of 53 bits lose small costs
         raise NotCheckedError("a unit costs more than its floats hold beside others")
     return float(figure)
 

@@ -15,10 +15,9 @@ from typing import Final
 from foon_asp.engines.engine import EngineAnswer, NotCheckedError, cost, kitchen_items, scope_of
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
+from foon_asp.problem.number import INT32_MAX
 
 FAST_DOWNWARD = "Fast Downward"
-_FRACTION_SCALE = 10**6  # of fractions and logarithms, which it adds as integers: a finer one overflows
-_MAX_INT = 2**31 - 1  # of its integers
 _MEMORY_LIMIT = "4G"
 _UNSOLVABLE = ("Completely explored state space", "Initial state is a dead end", "unsolvable")
 
@@ -78,7 +77,7 @@ def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> 
     scope = scope_of(problem, forbidden)
     items = kitchen_items(problem, scope.units) if objective.row.item else []
     variables = {o: variable for variable, o in enumerate([*scope.objects, *items])}
-    scale = 1 if objective.row.whole else _FRACTION_SCALE
+    scale = 1 if objective.row.whole else 10**6  # it adds integers: a finer one overflows
     operators = [_operator(f"take {o}", [], [variables[o]], 1) for o in items]
     total = len(items)
     for unit in scope.units:
@@ -90,7 +89,7 @@ def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> 
             total += weight
             facts = [variables[o] for o in preconditions], [variables[o] for o in added]
             operators.append(_operator(f"use {unit}", *facts, weight))
-    if total > _MAX_INT:
+    if total > INT32_MAX:
         raise NotCheckedError("the costs add up to more than its whole numbers hold")
     return _TASK.format(
         number=len(variables),

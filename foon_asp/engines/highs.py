@@ -15,7 +15,6 @@ from foon_asp.hypergraph.highs_run import libraries, silent_highs
 from foon_asp.problem import Objective, Problem
 
 HIGHS: Final = "HiGHS"
-_ROW_TOLERANCE: Final = 1e-6  # of a sum of fractions or logarithms: HiGHS keeps a row within it
 _HIGHS_OPTIONS: Final = {
     "threads": 1,
     "mip_rel_gap": 0.0,
@@ -95,7 +94,9 @@ class _Program:
         """Add the row that no solution is worse by an objective than the current one."""
         values, costs = self._highs.getSolution().col_value, self._costs(objective)
         max_cost = sum(weight * round(values[variable.index]) for variable, weight in costs)
-        max_cost += 0.5 if objective.row.whole else _ROW_TOLERANCE
+        max_cost += (
+            0.5 if objective.row.whole else 1e-6
+        )  # the tolerance of HiGHS, of logarithms and fractions
         columns = self._numpy.array([variable.index for variable, _ in costs], dtype="int32")
         weights = self._numpy.array([weight for _, weight in costs])
         # not as a constraint of an expression, which refuses weights close to 0

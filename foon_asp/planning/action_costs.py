@@ -8,8 +8,8 @@ from typing import NamedTuple
 from foon_asp.encoding.exact_success import problem_scale
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.problem.number import INT32_MAX
 
-LARGEST = 2**31 - 1  # planners add up costs in signed integers of 32 bits
 _MAX_FACTOR = 10**6  # of costs that are rounded: more digits of a logarithm, but a smaller range of sums
 
 
@@ -59,16 +59,16 @@ def action_costs(
     item, weight = 0, 1
     scales: list[Scale] = []
     for objective in reversed(objectives):
-        max_cost = LARGEST // (2 * weight * repeats)
+        max_cost = INT32_MAX // (2 * weight * repeats)
         costs, factor, rounded = _integer_costs(problem, objective, units, tree, max_cost)
         scales.insert(0, Scale(objective, factor * weight, rounded))
         for unit, cost in costs.items():
             total[unit] += cost * weight
         item += objective.row.item * weight
         upper_bound = sum(total[unit] for unit in tree) + max(total.values(), default=0)
-        if upper_bound * repeats + items * item > LARGEST:
+        if upper_bound * repeats + items * item > INT32_MAX:
             raise UserError(
-                f"by {', '.join(objectives)} plans cost more than the {LARGEST:,} that planners add up to: "
+                f"by {', '.join(objectives)} plans cost more than the {INT32_MAX:,} that planners add up to: "
                 "name fewer objectives, or costs with fewer digits"
             )
         weight = 1 + sum(total.values()) + items * item

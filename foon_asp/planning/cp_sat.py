@@ -12,8 +12,6 @@ from foon_asp.planning.schedule_task import ScheduleTask
 from foon_asp.processes.pipe import receive, requests, send
 from foon_asp.proof.timetable import ToolName
 
-_SEARCH_WORKERS = 1  # more find no schedule sooner for plans of some hundred steps, and are not deterministic
-
 
 def serve() -> None:
     """Solve tasks from standard input, and write schedules, bounds and a status to the pipe of answers."""
@@ -102,6 +100,7 @@ class _Model:
 
     def _solver(self) -> Any:
         solver = self._library.CpSolver()
-        solver.parameters.num_workers = _SEARCH_WORKERS
+        # more workers find no schedule sooner for plans of some hundred steps, and are not deterministic
+        solver.parameters.num_workers = 1
         solver.parameters.random_seed = 1
         return solver

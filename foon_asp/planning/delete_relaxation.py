@@ -16,8 +16,6 @@ from foon_asp.network import Source
 from foon_asp.planning.sas_reader import SasAxiom, SasOperator, SasTask
 from foon_asp.planning.strips_task import DERIVED, StripsAction, StripsTask
 
-_MAX_VARIANTS = 1000  # actions made of one operator, one for each set of its conditional effects
-
 
 def relaxed(task: SasTask) -> StripsTask:
     """Return the delete relaxation of a task.
@@ -98,8 +96,13 @@ class _Relaxation:
                     return True
         return False
 
-    def _variants(self, operator: SasOperator, useful: set[int]) -> Iterator[StripsAction]:
-        """Return an operator as actions without conditional effects: one for each set that can occur."""
+    def _variants(
+        self, operator: SasOperator, useful: set[int], max_variants: int = 1000
+    ) -> Iterator[StripsAction]:
+        """Yield an operator as actions without conditional effects: one for each set that can occur.
+
+        Raises :class:`UserError` for more than ``max_variants`` sets, whose number may be exponential.
+        """
         holding = self._start.union(operator.preconditions)
         always: dict[int, None] = {}
         conditional: dict[frozenset[int], list[int]] = {}
@@ -112,10 +115,10 @@ class _Relaxation:
         triggers: dict[frozenset[int], None] = {frozenset(): None}
         for condition in conditional:
             triggers.update(dict.fromkeys([trigger | condition for trigger in triggers]))
-            if len(triggers) > _MAX_VARIANTS:
+            if len(triggers) > max_variants:
                 raise UserError(
                     f"{self._task.file}: found the action {operator.name} with effects under "
-                    f"{len(conditional)} conditions, in more than {_MAX_VARIANTS} combinations, which is "
+                    f"{len(conditional)} conditions, in more than {max_variants} combinations, which is "
                     "beyond a delete relaxation here: make several actions of it"
                 )
         cost = Fraction(operator.cost if self._task.costed else 1)

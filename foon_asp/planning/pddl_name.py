@@ -1,9 +1,8 @@
-"""Identifiers of PDDL: a letter for the kind, a number, and readable words."""
+"""Identifiers of PDDL: a letter for the kind, a number, and readable words of up to 60 letters."""
 
 import re
 import unicodedata
 
-_MAX_WORDS_LENGTH = 60  # letters of the readable words
 _SEPARATOR = re.compile("[^a-z0-9]+")
 
 
@@ -13,5 +12,5 @@ def pddl_name(kind: str, number: int, words: str) -> str:
     PDDL ignores the case of letters, and allows only ASCII letters, digits and dashes.
     """
     plain = unicodedata.normalize("NFKD", words).encode("ascii", "ignore").decode().lower()
-    suffix = _SEPARATOR.sub("-", plain).strip("-")[:_MAX_WORDS_LENGTH].rstrip("-")
+    suffix = _SEPARATOR.sub("-", plain).strip("-")[:60].rstrip("-")
     return f"{kind}{number}-{suffix}" if suffix else f"{kind}{number}"

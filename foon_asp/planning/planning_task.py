@@ -10,8 +10,6 @@ from foon_asp.planning.action_costs import ActionCosts, action_costs
 from foon_asp.planning.pddl_name import pddl_name
 from foon_asp.problem import Flow, Objective, Problem, first_tree, reach, relevant, relevant_to_plans
 
-_MAX_COST_RATIO = 50  # of a plan in which items are used up to a tree: larger ratios round costs more
-
 
 class Action(NamedTuple):
     """An action: to execute a ``unit``, or to take an ``item`` from the kitchen; the other is ``None``.
@@ -114,7 +112,8 @@ def planning_task(
     needed = {o for unit in units for o in problem.needs[unit]}
     items = sorted(needed & bought)
     tree = first_tree(problem, reached) or units
-    repeats = 1 if problem.items is None else _MAX_COST_RATIO
+    # a plan with items used up may cost 50 times as much as a tree; a larger ratio would round costs more
+    repeats = 1 if problem.items is None else 50
     costs = action_costs(problem, objectives, units, len(items), {*tree} & {*units}, repeats)
     goals = tuple(goal for goal in problem.goals if goal not in bought)
     nodes = {*goals, *needed, *(o for unit in units for o in add_effects[unit])}

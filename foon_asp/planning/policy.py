@@ -17,9 +17,21 @@ from typing import NamedTuple
 
 from foon_asp.problem import Problem
 
-MAX_STATES = 10_000  # of the dynamic program, some seconds; thirteen bundled goals need fewer than 3,000
-_MAX_DEPTH = 150  # units, one of which is added by each call of the dynamic program
-_MAX_POLICIES = 300  # the policies compared; each is evaluated exactly
+
+class PolicyLimits(NamedTuple):
+    """How long the best policy is looked for.
+
+    ``states`` of the dynamic program, some seconds; thirteen bundled goals need fewer than 3,000.
+    ``units``: each call of the dynamic program adds one, and Python limits the depth of calls.
+    ``policies`` that are compared; each is evaluated exactly.
+    """
+
+    states: int = 10_000
+    units: int = 150
+    policies: int = 300
+
+
+LIMITS = PolicyLimits()
 
 State = frozenset[int]
 """The object nodes that are there, by id, without the kitchen."""
@@ -46,14 +58,14 @@ class Policy(NamedTuple):
 
 
 class _TooManyStates(Exception):  # noqa: N818 (is caught here)
-    """There are more states than :data:`MAX_STATES`."""
+    """There are more states or units than :class:`PolicyLimits` allows."""
 
 
 def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int) -> Policy:
     """Return the policy with the greatest chance of those that follow some trees one after the other.
 
-    Among equal chances, one with fewer branches is returned. If there are more than :data:`_MAX_POLICIES`,
-    only those with the fewest branches are compared.
+    Among equal chances, one with fewer branches is returned. Of more than
+    :attr:`PolicyLimits.policies`, only those with the fewest branches are compared.
 
     Parameters:
         problem: The problem, whose items last, with rates.
@@ -66,7 +78,7 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
     except _TooManyStates:
         bound, is_exact = _bound(problem, units, retries), False
     best: Policy | None = None
-    for branches in itertools.islice(_candidates(trees, retries + 1), _MAX_POLICIES):
+    for branches in itertools.islice(_candidates(trees, retries + 1), LIMITS.policies):
         chance = _chance(problem, branches)
         if best is None or chance > best.chance:
             best = Policy(branches, chance, bound, is_exact)
@@ -156,7 +168,7 @@ class _Optimum:
     def __init__(self, problem: Problem, units: Sequence[int], retries: int) -> None:
         self._world, self._units, self._retries = _World(problem), units, retries
         self._values: dict[State, tuple[Fraction, ...]] = {}
-        if len(units) > _MAX_DEPTH:
+        if len(units) > LIMITS.units:
             raise _TooManyStates
         self.chance = self._value(frozenset())[retries]
 
@@ -165,7 +177,7 @@ class _Optimum:
         if self._world.goals <= state:
             return (Fraction(1),) * (self._retries + 1)
         if state not in self._values:
-            if len(self._values) == MAX_STATES:
+            if len(self._values) == LIMITS.states:
                 raise _TooManyStates
             self._values[state] = ()  # counts while it is being computed
             after = [

@@ -10,7 +10,6 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.plain_file import split_lines
 
 BEGINNING = "begin_version"
-_FORMAT_VERSION = 3
 _ATOM = re.compile(r"(?P<negated>Negated)?Atom (?P<predicate>[^\s()]+)\((?P<terms>[^()]*)\)")
 
 
@@ -78,8 +77,8 @@ class _Reader:
     def read(self) -> SasTask:
         """Return the task of the whole file."""
         self._expect("begin_version")
-        if self._number() != _FORMAT_VERSION:
-            self._fault(f"found another version, expected {_FORMAT_VERSION}")
+        if self._number() != 3:
+            self._fault("found another version, expected 3")
         self._expect("end_version", "begin_metric")
         costed = bool(self._number())
         self._expect("end_metric")

@@ -11,8 +11,6 @@ from foon_asp.problem import Problem
 from foon_asp.proof.replay import Copy, Replay, readers, waits
 from foon_asp.proof.timetable import Means, ToolName, tools_asked
 
-_MAX_TICKS = 10**12  # of all steps together: CP-SAT's integers have 64 bits
-
 
 class Use(NamedTuple):
     """One use of a tool from the kitchen by ``steps``, which do not overlap.
@@ -72,7 +70,7 @@ def schedule_task(
     seconds = [Fraction(means.durations[unit.motion].seconds) for unit in plan]
     ticks_per_second = lcm(*(duration.denominator for duration in seconds))
     lengths = tuple(int(duration * ticks_per_second) for duration in seconds)
-    if sum(lengths) > _MAX_TICKS:
+    if sum(lengths) > 10**12:  # CP-SAT's integers have 64 bits
         raise UserError("the durations are too fine for so long a plan: round them")
     uses = _uses(problem, replay, means)
     return ScheduleTask(

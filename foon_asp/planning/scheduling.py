@@ -16,7 +16,6 @@ from foon_asp.proof.timetable import TimedStep, Tool, ToolName
 
 _NOT_INSTALLED = "a schedule needs OR-Tools: pip install 'foon-asp[schedule]'"
 _WORKER_KEY = "foon_asp.planning.cp_sat"
-_TICK_TOLERANCE = 1e-6  # of a bound in ticks, which is a float: so little above a whole number is that number
 
 
 class BestSchedule(NamedTuple):
@@ -57,7 +56,9 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
 
     def raise_bound(value: float) -> None:
         nonlocal bound
-        bound = max(bound, ceil(value - _TICK_TOLERANCE))
+        bound = max(
+            bound, ceil(value - 1e-6)
+        )  # a float, in ticks: so little above a whole number is that number
 
     worker = take(_WORKER_KEY, lambda: Worker(_WORKER_KEY, "schedules are found"))
     try:

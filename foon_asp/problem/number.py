@@ -9,19 +9,20 @@ from foon_asp.errors import UserError
 Number = int | str | float | Decimal | Fraction
 """An exact number; a float is the decimal that it is printed as, so that 0.9 is nine tenths."""
 
+INT32_MAX = 2**31 - 1
+"""The greatest integer of clingo, which wraps silently above it, and of planners."""
 
-_MAX_PRICE_BITS = 3322  # of numerator and denominator: a thousand digits
+_MAX_DIGITS = 1000  # of a number: those of 1e999999999 take hours to compute
 _EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
-_MAX_EXPONENT = 1000  # of 10: the digits of 1e999999999 take hours to compute
 
 
 def exact(number: Number, quantity: str) -> Fraction:
     """Return a number as an exact fraction; raises :class:`UserError` about the ``quantity``."""
     try:
         power = _EXPONENT.search(str(number)) if isinstance(number, str | Decimal) else None
-        if power and abs(int(power[1])) > _MAX_EXPONENT:
+        if power and abs(int(power[1])) > _MAX_DIGITS:
             raise UserError(
-                f"found {str(number)[:40]} for {quantity}, expected an exponent of at most {_MAX_EXPONENT:,}"
+                f"found {str(number)[:40]} for {quantity}, expected an exponent of at most {_MAX_DIGITS:,}"
             )
         return Fraction(repr(number) if isinstance(number, float) else number)
     except (ValueError, ZeroDivisionError, OverflowError):
@@ -31,9 +32,10 @@ def exact(number: Number, quantity: str) -> Fraction:
 def unit_price(number: Number, quantity: str) -> Fraction:
     """Return an exact price, from 0; raises :class:`UserError` about the ``quantity`` for others."""
     price = exact(number, quantity)
-    if price < 0 or max(price.numerator, price.denominator).bit_length() > _MAX_PRICE_BITS:
+    if price < 0 or max(price.numerator, price.denominator) >= 10**_MAX_DIGITS:
         raise UserError(
-            f"found {str(number)[:40]} for {quantity}, expected a price from 0, of at most 1,000 digits"
+            f"found {str(number)[:40]} for {quantity}, expected a price from 0, of at most "
+            f"{_MAX_DIGITS:,} digits"
         )
     return price
 

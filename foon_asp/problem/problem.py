@@ -37,9 +37,6 @@ from foon_asp.problem.objective import Known, Measured, Objective
 from foon_asp.problem.restriction import Restriction
 from foon_asp.typed import typed
 
-_MAX_MOTIONS_NAMED = 4  # in a remark, which should be short
-_MAX_LINES = 10  # of an error that lists motions
-
 Names = str | ObjectNode | Iterable[str | ObjectNode]
 """One object node or several: labels, one-line notation (``ice; crushed; in [drinking glass]``), or nodes."""
 
@@ -675,14 +672,14 @@ def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpric
     return list(by_motion.values())
 
 
-def _unpriced_text(lacking: Sequence[Unpriced]) -> str:
+def _unpriced_text(lacking: Sequence[Unpriced], max_lines: int = 10) -> str:
     """Return the message that units have no price, with advice."""
     lines = []
-    for motion, units, source in lacking[:_MAX_LINES]:
+    for motion, units, source in lacking[:max_lines]:
         others = "" if units == 1 else f", nor have {units - 1} more with this motion"
         lines.append(f"{source}:1: error: the unit {motion!r} has no price{others}")
-    if len(lacking) > _MAX_LINES:
-        lines.append(f"... and units of {len(lacking) - _MAX_LINES} more motions")
+    if len(lacking) > max_lines:
+        lines.append(f"... and units of {len(lacking) - max_lines} more motions")
     lines.append(
         "add a line with the motion, a tab and its price to the file of prices (unit_prices.txt), or one for "
         "the single unit (docs/formats.md)"
@@ -696,10 +693,12 @@ def first_places(network: Network) -> Iterable[tuple[str, Source]]:
         yield motion, copies[0] if copies else Source("-", 0)
 
 
-def unrated_text(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> str:
-    """Return the message that lists every motion without a success rate, with its source; empty without any.
+def unrated_text(
+    motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction], max_lines: int = 10
+) -> str:
+    """Return the message that motions have no success rate, with the source of each; empty without any.
 
-    ``motions`` may have a motion several times; its first source is shown.
+    It lists ``max_lines`` of them. ``motions`` may have a motion several times; its first source is shown.
     """
     missing: dict[str, Source] = {}
     for motion, source in motions:
@@ -709,10 +708,10 @@ def unrated_text(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Frac
         return ""
     lines = [
         f"{source}:1: error: the motion {motion!r} has no success rate"
-        for motion, source in list(missing.items())[:_MAX_LINES]
+        for motion, source in list(missing.items())[:max_lines]
     ]
-    if len(missing) > _MAX_LINES:
-        lines.append(f"... and {len(missing) - _MAX_LINES} more motions")
+    if len(missing) > max_lines:
+        lines.append(f"... and {len(missing) - max_lines} more motions")
     lines.append("add a line with the motion, a tab and its rate to the rates file (motion.txt)")
     return "\n".join(lines)
 
@@ -724,7 +723,7 @@ def unrated_remarks(motions: Iterable[tuple[str, Source]], rates: Mapping[str, F
     ]
     if not lacking:
         return []
-    named = ", ".join(lacking[:_MAX_MOTIONS_NAMED])
-    if len(lacking) > _MAX_MOTIONS_NAMED:
-        named += f" and {len(lacking) - _MAX_MOTIONS_NAMED} more"
+    named = ", ".join(lacking[:4])
+    if len(lacking) > 4:
+        named += f" and {len(lacking) - 4} more"
     return [f"warning: no success is known, since the rates file has no rate for {named}"]

@@ -8,7 +8,6 @@ from foon_asp.problem.dead_ends import Blocked, DeadEnds, Root, h_add
 from foon_asp.problem.problem import Problem
 
 _FRESH_STATES = frozenset({"empty", "clean"})
-_ITEM_COST = 2**20  # of an item on a short list, in second choices: more than a list can have of them
 
 
 class Offer(StrEnum):
@@ -87,7 +86,8 @@ class Shop:
         where all goals are reachable.
         """
         for _, offer in self.offers(ends.roots):
-            sources = {o: _ITEM_COST + self.is_second_choice(o) for o in offer if o in ends.makers}
+            # an item costs more than all second choices of a list
+            sources = {o: 2**20 + self.is_second_choice(o) for o in offer if o in ends.makers}
             costs, cheapest = h_add(ends.makers, sources)
             if costs.keys() >= set(ends.goals):
                 break

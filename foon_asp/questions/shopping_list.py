@@ -22,6 +22,7 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.network import ObjectNode, Source, counted
 from foon_asp.problem import Costs, Number, Objective, Problem, exact, levels
 from foon_asp.problem.dead_ends import dead_ends
+from foon_asp.problem.number import INT32_MAX
 from foon_asp.problem.purchases import Purchases
 from foon_asp.problem.shop import Offer, Shop
 from foon_asp.questions.answer import Answer, WithAnswer
@@ -465,7 +466,7 @@ def _lists_under_rules(
     If trees are ``compared`` by more than their size, all lists of the last price are found, too.
     """
     scale = math.lcm(*(price.denominator for price in sold.values()))
-    if any(price * scale >= 2**31 for price in sold.values()):
+    if any(price * scale > INT32_MAX for price in sold.values()):
         raise UserError("prices this far apart do not fit clingo, whose numbers have 32 bits")
     prices = {o: int(price * scale) for o, price in sold.items()}
     facts = write_for_sale(prices, second_choices)
