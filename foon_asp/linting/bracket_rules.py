@@ -12,7 +12,6 @@ from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import StateLine
 
 _LETTERS = {Kind.STATE: "S", Kind.OBJECT: "O"}
-_MAX_WORDS = 3  # of a relation: attached to, on top of
 
 
 @rule("other-bracket", WARNING, "a bracket of another kind than the word has elsewhere")
@@ -107,7 +106,7 @@ def misread_line(context: Context) -> Iterator[Diagnostic]:
 def _bracketed(state: str, context: Context) -> str:
     """Return the relation or contents that a state is probably meant to be; empty for a state."""
     all_names, words = context.all_names, state.split(" ")
-    for length in range(min(_MAX_WORDS, len(words) - 1), 0, -1):
+    for length in range(min(3, len(words) - 1), 0, -1):  # a relation has up to three words: on top of
         word, objects = " ".join(words[:length]), " ".join(words[length:])
         brackets = list(all_names.brackets(word))
         if not brackets or objects in all_names.names[Kind.STATE]:

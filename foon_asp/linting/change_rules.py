@@ -8,12 +8,10 @@ from foon_asp.linting.rule import WARNING, rule
 from foon_asp.network import ObjectNode
 from foon_asp.text.diagnostics import Diagnostic
 
-_MIN_UNITS = 3  # of a motion, before its habits count
-_SELDOM = 8  # a change in at most one of 8 units is no habit
-
 
 def _is_seldom(often: int, of: int) -> bool:
-    return of >= _MIN_UNITS and _SELDOM * often <= of
+    """Whether a change is no habit of a motion: ``often`` is at most an eighth ``of`` three units or more."""
+    return of >= 3 and 8 * often <= of
 
 
 def _units(context: Context) -> Iterator[tuple[int, str, Changes, Habit]]:

@@ -8,8 +8,6 @@ from foon_asp.network import counted
 from foon_asp.network.dead_cycles import dead_cycles
 from foon_asp.text.diagnostics import Diagnostic
 
-_MAX_SHOWN_STEPS = 4
-
 
 @rule("dead-cycle", NOTE, "objects that are made only by units that need them")
 def dead_cycle(context: Context) -> Iterator[Diagnostic]:
@@ -30,9 +28,8 @@ def dead_cycle(context: Context) -> Iterator[Diagnostic]:
             step_copy = context.files.copies[unit][0]
             location = sheets[step_copy.sheet].where(step_copy.at, sheets[copy.sheet])
             steps.append(f"{network.motions[unit]!r} ({location}) makes {str(network.objects[node])!r}")
-        if len(steps) > _MAX_SHOWN_STEPS:
-            hidden = counted(len(steps) - _MAX_SHOWN_STEPS, "more step")
-            steps[_MAX_SHOWN_STEPS - 1 : -1] = [hidden]
+        if len(steps) > 4:
+            steps[3:-1] = [counted(len(steps) - 4, "more step")]
         others = ""
         if len(cycle.nodes) > len(cycle.steps):
             others = f"; {len(cycle.nodes)} objects wait for each other"

@@ -3,13 +3,12 @@
 from collections.abc import Iterator
 
 from foon_asp.linting.context import Context
+from foon_asp.linting.names import is_of_another_network
 from foon_asp.linting.rule import NOTE, WARNING, rule
 from foon_asp.linting.sheet import Sheet
 from foon_asp.network import Network
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import ObjectLine
-
-_MAX_UNKNOWN = 10  # unknown entries of a list; more than these are reported together
 
 
 @rule("unmade-goal", WARNING, "a goal that no unit makes")
@@ -71,7 +70,7 @@ def _unknown(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
     """Yield a finding for each entry of a list that is no object node, or a single one if most are none."""
     entries = sheet.entries or ()
     unknown = [entry for entry in entries if not network.find(entry.pattern)]
-    if len(unknown) > _MAX_UNKNOWN and 2 * len(unknown) > len(entries):
+    if is_of_another_network(len(unknown), len(entries)):
         pattern, index = unknown[0]
         message = (
             f"{len(unknown)} of the {len(entries)} entries are no object nodes of the network, "

@@ -11,8 +11,6 @@ from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import ObjectLine, name_of
 
 _KINDS = {"O": "object", "S": "state", "M": "motion"}
-_NEARLY_ALL = 20  # lines with an id for one without
-_MAX_NAMES = 4  # names of one id; with more it means nothing, and they are reported together
 
 
 class _Use(NamedTuple):
@@ -49,8 +47,8 @@ def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
     for sheet in context.sheets:
         for letter, id_, uses in _shared(sheet, by_id=True):
             usual, *others = uses
-            if len(uses) >= _MAX_NAMES:
-                shown = ", ".join(f"{use.text!r} ({use.often})" for use in uses[: _MAX_NAMES - 1])
+            if len(uses) >= 4:  # the id means nothing
+                shown = ", ".join(f"{use.text!r} ({use.often})" for use in uses[:3])
                 message = (
                     f"the {_KINDS[letter]} id {letter}{id_} is that of {len(uses)} names: {shown}, ...; "
                     "ids should tell names apart, or be left out"
@@ -84,14 +82,14 @@ def name_of_two_ids(context: Context) -> Iterator[Diagnostic]:
 def missing_field(context: Context) -> Iterator[Diagnostic]:
     """Ids and motion flags are optional, but a file has them everywhere or nowhere.
 
-    A line without an id is reported where nearly all lines have one. Where most object lines have a motion
+    A line without an id is reported where 19 of 20 lines have one. Where most object lines have a motion
     flag, one finding covers all that have none.
     """
     for sheet in context.sheets:
         lines = sheet.distinct_lines
         without_id = [written for written in lines if not written.line.id]
         count = sum(written.often for written in without_id)
-        if _NEARLY_ALL * count <= sum(written.often for written in lines):
+        if 20 * count <= sum(written.often for written in lines):
             for written in without_id:
                 letter = sheet.lines[written.first][0]
                 message = f"no {_KINDS[letter]} id behind {letter}; nearly all lines of the file have ids"

@@ -9,11 +9,15 @@ from foon_asp.linting.sheet import Sheet
 from foon_asp.network import ObjectNode
 from foon_asp.text.line import Line, NameKind, ObjectLine, line_names
 
-_ALIKE = 3  # labels that are suggested where another may be meant
-_WORDS = 4  # at the end of a label, which are compared
-
-
 Kind = NameKind
+
+
+def is_of_another_network(unknown: int, total: int) -> bool:
+    """Return whether a list or table is probably for another network: of ``total`` names, most are unknown.
+
+    Up to ten unknown names are probably slips, which are reported one by one.
+    """
+    return unknown > 10 and 2 * unknown > total
 
 
 class Mention(NamedTuple):
@@ -68,15 +72,15 @@ class Names:
         """
         singular = _singular(name)
         alike = self._by_ending.get(singular, [])
-        return [label for label in alike if _singular(label) == singular] or alike[:_ALIKE]
+        return [label for label in alike if _singular(label) == singular] or alike[:3]
 
     @cached_property
     def _by_ending(self) -> dict[str, list[str]]:
-        """Labels by their last words in the singular, and by all of their words."""
+        """Labels by their last one to four words in the singular, and by all of their words."""
         endings: dict[str, list[str]] = {}
         for label in sorted(self.objects, key=lambda label: (-self.objects[label], label)):
             words = _singular(label).split(" ")
-            for start in {0, *range(max(1, len(words) - _WORDS), len(words))}:
+            for start in {0, *range(max(1, len(words) - 4), len(words))}:
                 endings.setdefault(" ".join(words[start:]), []).append(label)
         return endings
 

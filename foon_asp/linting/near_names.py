@@ -2,18 +2,38 @@
 
 import re
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from foon_asp.network.spelling import joined, one_letter_apart, without_doubles
 
-_LONGEST_NAME = 60  # letters; longer texts are no names, and slow to compare
-_SHORTEST_DOUBLED = 5  # letters: off and of, bell and bel are words of their own
 _PLURAL_ENDING = re.compile(r"e?s$")
 _VERB_ENDING = re.compile(r"(?:e?[sdr]|[ey])$")  # juice, juiced; flakes, flaked; mix, mixer; salt, salty
-_RARE, _VERY_RARE = 5, 2  # mentions
-_RATIO, _HIGH_RATIO, _HIGHEST_RATIO = 3, 20, 100  # how much more often the other name stands
-_SHORT, _MEDIUM, _LONG = 3, 4, 5  # letters of the shorter word
-_SHORT_KNOWN = 4  # letters of a word that may be a slip for one that is known
-_COMPARED = 3  # names with the same letters but one: only the most frequent are compared
+
+
+class _Slips(NamedTuple):
+    """From which frequencies and lengths on a name counts as a slip for another.
+
+    ``rare``, ``very_rare``: mentions of the slip, at most. ``ratio``, ``high_ratio``, ``highest_ratio``: how
+    many times as often the other name is mentioned, at least. ``short``, ``medium``, ``long``: letters of the
+    shorter word, at least; shorter ones are mostly words of their own (off and of, bell and bel). More slips
+    are found with lower limits, and more words are wrongly reported.
+    ``compared``: names with the same letters but one; only the most frequent are compared.
+    ``name_letters``: of a name; longer texts are no names, and slow to compare.
+    """
+
+    rare: int = 5
+    very_rare: int = 2
+    ratio: int = 3
+    high_ratio: int = 20
+    highest_ratio: int = 100
+    short: int = 3
+    medium: int = 4
+    long: int = 5
+    compared: int = 3
+    name_letters: int = 60
+
+
+_SLIPS = _Slips()
 
 
 def near_names(
@@ -45,17 +65,17 @@ def near_names(
     rare_names = [
         name
         for name, count in counts.items()
-        if name not in paired and (count <= _RARE or name in loose or _unknown(name, known_words))
+        if name not in paired and (count <= _SLIPS.rare or name in loose or _unknown(name, known_words))
     ]
     if not rare_names:
         return
     frequent: dict[str, list[str]] = {}
     for name in sorted(counts, key=lambda name: (-counts[name], name)):
-        if counts[name] < _RATIO and name in loose and _unknown(name, known_words):
+        if counts[name] < _SLIPS.ratio and name in loose and _unknown(name, known_words):
             continue
         for shortened in _without_a_letter(name):
             sharing = frequent.setdefault(shortened, [])
-            if len(sharing) < _COMPARED:
+            if len(sharing) < _SLIPS.compared:
                 sharing.append(name)
     for name in rare_names:
         candidates = {
@@ -73,20 +93,20 @@ def _spelt_two_ways(counts: dict[str, int], known_words: Collection[str]) -> Ite
     """Yield pairs that are equal but for doubled letters, capitals and blanks, the rarer name first."""
     spellings: dict[str, list[str]] = {}
     for name in counts:
-        if len(name) <= _LONGEST_NAME:
+        if len(name) <= _SLIPS.name_letters:
             spellings.setdefault(without_doubles(name), []).append(name)
     for skeleton, names in spellings.items():
         if len(names) < 2:
             continue
         usual = max(names, key=lambda name: (not _unknown(name, known_words), counts[name]))
         for name in names:
-            if name != usual and (len(skeleton) >= _SHORTEST_DOUBLED or joined(name) == joined(usual)):
+            if name != usual and (len(skeleton) >= _SLIPS.long or joined(name) == joined(usual)):
                 yield name, usual
 
 
 def _without_a_letter(name: str) -> Iterable[str]:
     """Return the deletion neighbourhood of a name: itself, and the texts without one of its letters."""
-    if len(name) > _LONGEST_NAME:
+    if len(name) > _SLIPS.name_letters:
         return ()
     return {name, *(name[:position] + name[position + 1 :] for position in range(len(name)))}
 
@@ -96,7 +116,7 @@ def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) ->
 
     ``deletions`` is the :func:`deletion_index` of the known words.
     """
-    if not _SHORT_KNOWN <= len(word) <= _LONGEST_NAME:
+    if not _SLIPS.medium <= len(word) <= _SLIPS.name_letters:
         return None
     if word + "ed" in deletions:
         return word + "ed"
@@ -112,7 +132,7 @@ def deletion_index(words: Iterable[str]) -> dict[str, list[str]]:
     """Return words by themselves and by the texts without one of their letters."""
     deletions: dict[str, list[str]] = {}
     for word in words:
-        if len(word) >= _SHORT_KNOWN:
+        if len(word) >= _SLIPS.medium:
             for shortened in _without_a_letter(word):
                 deletions.setdefault(shortened, []).append(word)
     return deletions
@@ -151,20 +171,20 @@ def _is_slip(
     if known_words and (
         word in known_words or other in known_words or (rare in loose and frequent not in loose)
     ):
-        return word not in known_words and shortest >= _SHORT
-    return counts[rare] <= _RARE and _is_rare_beside(word, other, counts[rare], counts[frequent])
+        return word not in known_words and shortest >= _SLIPS.short
+    return counts[rare] <= _SLIPS.rare and _is_rare_beside(word, other, counts[rare], counts[frequent])
 
 
 def _is_rare_beside(word: str, other: str, rare: int, frequent: int) -> bool:
     """Whether a word is so much rarer than a similar word that it is probably a slip."""
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     shortest, ratio = min(len(word), len(other)), frequent / rare
-    if frequent < _RATIO:
+    if frequent < _SLIPS.ratio:
         return False
     if sorted(word) == sorted(other):  # letters have changed places
-        return shortest >= _MEDIUM and ratio >= _RATIO
+        return shortest >= _SLIPS.medium and ratio >= _SLIPS.ratio
     if len(word) == len(other):
-        return shortest >= _LONG and ratio >= _HIGH_RATIO and rare <= _VERY_RARE
-    if ratio >= _HIGHEST_RATIO:
-        return shortest >= _SHORT
-    return shortest >= _LONG and ratio >= _RATIO
+        return shortest >= _SLIPS.long and ratio >= _SLIPS.high_ratio and rare <= _SLIPS.very_rare
+    if ratio >= _SLIPS.highest_ratio:
+        return shortest >= _SLIPS.short
+    return shortest >= _SLIPS.long and ratio >= _SLIPS.ratio

@@ -9,7 +9,6 @@ from foon_asp.network import ObjectNode
 from foon_asp.text.diagnostics import Diagnostic
 
 _PLACES = {"in", "on"}
-_USUAL = 2  # objects with a place for each without
 Faults = Iterator[tuple[ObjectNode, str]]
 """The faulty nodes of a side of a unit, each with the message."""
 
@@ -105,7 +104,7 @@ def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Faul
 
 
 def _places_are_usual(context: Context) -> bool:
-    """Whether contents of a container are mostly stated to be in or on it."""
+    """Whether contents of a container are stated to be in or on it more than twice as often as not."""
     placed = unplaced = 0
     for side in context.sides:
         for holder in side.nodes:
@@ -113,7 +112,7 @@ def _places_are_usual(context: Context) -> bool:
                 if node.label in content_names(holder):
                     placed += any(related_object == holder.label for _, related_object in node.relations)
                     unplaced += not node.relations
-    return placed > _USUAL * unplaced
+    return placed > 2 * unplaced
 
 
 def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Faults:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from foon_asp.linting.context import Context
-from foon_asp.linting.names import Kind
+from foon_asp.linting.names import Kind, is_of_another_network
 from foon_asp.linting.rule import ERROR, WARNING, rule
 from foon_asp.linting.sheet import Sheet
 from foon_asp.network import counted
@@ -13,7 +13,6 @@ from foon_asp.text.diagnostics import Diagnostic, InputError
 from foon_asp.text.side_table import TABLES
 
 _RATES = "motion.txt"
-_MAX_UNKNOWN = 10  # unknown rows; if a table has more, and mostly unknown ones, they are reported together
 
 
 @rule("table", ERROR, "a row of a table beside the network that cannot be read")
@@ -44,7 +43,7 @@ def unknown_row(context: Context) -> Iterator[Diagnostic]:
         known_names = context.vocabulary.names[kind] if kind is Kind.OBJECT else set()
         rows = _rows(sheet)
         unknown = [name for name in rows if name not in network_names and name not in known_names]
-        if len(unknown) > _MAX_UNKNOWN and 2 * len(unknown) > len(rows):
+        if is_of_another_network(len(unknown), len(rows)):
             message = (
                 f"{len(unknown)} of the {len(rows)} names are no {kind} of the network, {unknown[0]!r} "
                 "first; is the table for another network?"

@@ -17,7 +17,6 @@ _CLOCK_TIME = re.compile(r"\d+:\d\d(?::\d\d)?")
 _SPAN = re.compile(rf"({_CLOCK_TIME.pattern}) ?- ?({_CLOCK_TIME.pattern})")
 _HOUR, _LONG, _MINUTE = 3600, 1200, 60  # seconds
 _LATER, _MUCH_LATER = 2, 4  # times as late as the latest time of another form, and as the median
-_MUCH_LONGER = 20  # times as long as the median step
 
 
 class _Clock(NamedTuple):
@@ -116,7 +115,7 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
     def odd_span(start: _Clock, end: _Clock) -> str:
         if end.seconds < start.seconds:
             return f"the step ends at {end.text}, before it begins at {start.text}"
-        if end.seconds - start.seconds >= max(_LONG, _MUCH_LONGER * length):
+        if end.seconds - start.seconds >= max(_LONG, 20 * length):
             return f"the step lasts from {start.text} to {end.text}, much longer than others here"
         return ""
 

@@ -23,7 +23,6 @@ _NUMBERS = {
     HABIT: len(Habit._fields),
 }
 """The kinds of rows in a vocabulary, with the number of numbers behind a name."""
-_MIN_LINES = 3  # with a word, before its usual bracket counts
 _Row = tuple[str, str, Sequence[int]]
 
 
@@ -122,10 +121,10 @@ class Vocabulary:
         return dict(sorted(counts.items(), key=lambda entry: -entry[1]))
 
     def usual_bracket(self, word: str) -> Bracket | None:
-        """Return the bracket that a word nearly always has, ``None`` if it has no such bracket."""
+        """Return the bracket that a word has in three lines or more, ten times as often as others, if any."""
         for bracket, often in self.brackets(word).items():
             others = sum(self.brackets(word).values()) - often
-            return bracket if often >= max(_MIN_LINES, 10 * others) else None
+            return bracket if often >= max(3, 10 * others) else None
         return None
 
     def text(self) -> str:

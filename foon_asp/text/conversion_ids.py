@@ -2,8 +2,6 @@
 
 from foon_asp.text.line import Line, name_of
 
-_MAX_ID_DIGITS = 15  # longer ids do not count for the highest one
-
 
 class Numbering:
     """A numbering of names, which adds ids to lines: objects by label, states by word, motions by label.
@@ -24,7 +22,7 @@ class Numbering:
         kind = type(line)
         self._ids.setdefault((kind, name_of(line)), line.id)
         self._used_ids.add((kind, line.id))
-        if len(line.id) <= _MAX_ID_DIGITS:
+        if len(line.id) <= 15:  # ids after a longer one would be as long
             self._highest[kind] = max(self._highest.get(kind, 0), int(line.id))
 
     def number(self, line: Line) -> Line:

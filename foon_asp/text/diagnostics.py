@@ -10,9 +10,6 @@ from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 from foon_asp.network import Source, counted
 
-_MAX_ERRORS = 40  # errors in a message
-_BRIEF = 6  # lines that warnings may take before they are counted
-
 
 class Severity(StrEnum):
     """The severity of a diagnostic: an error stops the reading, a warning says what was assumed.
@@ -72,21 +69,21 @@ def excerpt_with_caret(line: str, column: int, width: int = 100) -> str:
 
 
 class InputError(UserError):
-    """Input that could not be read; carries every error found, in file order, and shows the first ones."""
+    """Input that could not be read; carries every error found, in file order, and shows the first 40."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
-        lines = [str(diagnostic) for diagnostic in diagnostics[:_MAX_ERRORS]]
-        if len(diagnostics) > _MAX_ERRORS:
-            others = counted(len(diagnostics) - _MAX_ERRORS, "more error")
+        lines = [str(diagnostic) for diagnostic in diagnostics[:40]]
+        if len(diagnostics) > 40:
+            others = counted(len(diagnostics) - 40, "more error")
             lines.append(f"... and {others}; foon-asp lint lists them all")
         super().__init__("\n".join(lines))
         self.diagnostics = tuple(diagnostics)
 
 
 def in_brief(diagnostics: Sequence[Diagnostic]) -> list[str]:
-    """Return warnings as :func:`summarize` does if these are only a few lines, else their number."""
+    """Return warnings as :func:`summarize` does if these are up to six lines, else their number."""
     summary = summarize(diagnostics)
-    if sum(1 + text.count("\n") for text in summary) <= _BRIEF:
+    if sum(1 + text.count("\n") for text in summary) <= 6:
         return summary
     kinds = Counter(diagnostic.code for diagnostic in diagnostics)
     counts = ", ".join(f"{count} {code}" for code, count in kinds.most_common())

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from foon_asp.network import NodePattern, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from foon_asp.text.conversion_ids import Numbering
     from foon_asp.text.renaming import Renaming
 
-_PIECE = 1_000_000  # letters of a file read at a time
 _BLANKS = {"outer-space", "space-for-tab"}
 
 Rewrite = Callable[[Line, str], str]
@@ -33,6 +32,8 @@ class FoonText(Format):
     dialects: tuple[Dialect, ...] = (Dialect.PLAIN, Dialect.NO_IDS, Dialect.IDS)
     suffix = list_suffix = ".txt"
     has_comments = True
+    piece_letters: ClassVar[int] = 1_000_000
+    """Letters of a file that are read at a time."""
 
     def recognises(self, text: str, file: str) -> bool:
         """Return true, since any text may be FOON text."""
@@ -55,7 +56,7 @@ class FoonText(Format):
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
         """Yield the units of a file, read in pieces."""
-        return TextUnits(text_pieces(file, _PIECE), str(file), reading).units()
+        return TextUnits(text_pieces(file, self.piece_letters), str(file), reading).units()
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
         """Yield the units of a text in order."""

@@ -13,7 +13,6 @@ from foon_asp.text.line_parser import parse_name
 from foon_asp.text.object_list import ListedObject
 
 _MAX_CANDIDATES = 12  # candidates in a message
-_MAX_SIMILAR = 3  # labels shown that are similar to an unknown one
 _IN_QUOTES = re.compile(r' *"(?:\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4})|[^"\\])*("?)')  # closed or not
 
 
@@ -192,9 +191,7 @@ def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames
 
 def _unknown(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
     """Return the error about an unknown node, with some nodes of each similar label."""
-    labels = dict.fromkeys(
-        (*names.beginning(node.label, _MAX_CANDIDATES), *names.near(node.label, _MAX_SIMILAR))
-    )
+    labels = dict.fromkeys((*names.beginning(node.label, _MAX_CANDIDATES), *names.near(node.label, 3)))
     counted_nodes = [names.labelled(label) for label in labels]
     if not counted_nodes:
         return GoalError(message)

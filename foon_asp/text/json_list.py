@@ -13,7 +13,6 @@ from foon_asp.text.plain_file import FENCE
 _SPACE = re.compile(r"[ \t\r\n]*")
 _COMMA_BEFORE_END = re.compile(r",[ \t\r\n]*([\]}])")
 _BLANKS = " \t\r\n"
-_SEARCHED_LETTERS = 2_000  # letters of a text that are searched for JSON
 _JSON_LINE = re.compile(r"^[ \t]*[\[{]", re.MULTILINE)
 _FOON_LINE = re.compile(r"[OSM]\d*[ \t]|//|#")
 
@@ -182,8 +181,11 @@ def begins_json(text: str) -> bool:
 
 
 def before_json(text: str) -> str:
-    """Return an error message about text before JSON; empty for other texts."""
-    begins = text[:_SEARCHED_LETTERS].lstrip(_BLANKS)
+    """Return an error message about text before JSON; empty for other texts.
+
+    JSON is searched for in the first 2,000 letters.
+    """
+    begins = text[:2_000].lstrip(_BLANKS)
     first = begins.split("\n", 1)[0].rstrip()
     if not _JSON_LINE.search(begins) or begins_json(begins) or _FOON_LINE.match(first):
         return ""

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.network import MAX_AMOUNT, Contents, NodePattern, ObjectNode, Relation, Source
-from foon_asp.text.exact_number import LONGEST, read_price
+from foon_asp.text.exact_number import MAX_LETTERS, read_price
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import json_line
@@ -190,8 +190,10 @@ def price_of(value: object, exponents: bool = False) -> str:
         raise ValueError('found no number as "price", expected a price from 0, as a decimal such as 1.99')
     if exponents and isinstance(value, JsonNumber) and "e" in written.lower():
         exact = Decimal(written)
-        if abs(exact.adjusted()) + len(written) >= LONGEST:
-            raise ValueError(f'found {written[:40]!r} as "price", expected one of at most {LONGEST} letters')
+        if abs(exact.adjusted()) + len(written) >= MAX_LETTERS:
+            raise ValueError(
+                f'found {written[:40]!r} as "price", expected one of at most {MAX_LETTERS} letters'
+            )
         written = f"{exact:f}"
     try:
         read_price(written)

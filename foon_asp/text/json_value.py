@@ -9,7 +9,6 @@ Json = dict[str, Any]
 """An object as plain values, in the order in which JSON has them."""
 
 _encode = json.JSONEncoder(ensure_ascii=False).encode
-_LINE_WIDTH = 95  # of a line of a text, without the key before it
 _FOLDER = re.compile(r'"/[^"]*/')  # of a file; its folder does not affect line breaks
 _VERSIONS = {"verify": 2}  # 1 for all others; changing or removing a key needs a new version
 
@@ -38,7 +37,7 @@ def _laid_out(value: object, newline: str) -> str:
     else:
         return json_line(value)
     line = f"{opening}{', '.join(items)}{closing}"
-    if "\n" not in line and len(newline) + len(_FOLDER.sub('"', line)) <= _LINE_WIDTH:
+    if "\n" not in line and len(newline) + len(_FOLDER.sub('"', line)) <= 95:  # without the key before it
         return line
     return f"{opening}{inner}{f',{inner}'.join(items)}{newline}{closing}"
 

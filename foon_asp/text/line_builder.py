@@ -23,7 +23,6 @@ from foon_asp.text.motion_times import MotionFields, is_time, mended_time
 from foon_asp.text.plain_file import FENCE
 
 _GRAMMAR = Path(__file__).with_name("foon.lark")
-_MAX_NAME_LENGTH = 40  # letters of a line that may be a name
 _ITEM = re.compile(r' *"(?:\\.|[^"\\])*" *|[^,]+')  # between commas, which quotes may hold too
 _TERMINALS = {
     "OBJECT": "an object line (O, tab, label)",
@@ -305,6 +304,6 @@ def _advice(line: str) -> str:
         return "remove this line: a code fence is no part of FOON text"
     if begins := re.match(r"([osm]\d*)[ \t]+(\S.*)", line):
         return f"write {begins[1].upper()}, a tab, and {begins[2]}"
-    if re.fullmatch(r"[^\W\d_][^\t\[\]{};:]*", line) and len(line) <= _MAX_NAME_LENGTH:
+    if re.fullmatch(r"[^\W\d_][^\t\[\]{};:]{,39}", line):
         return f"an object is written O, a tab, and {line}"
     return ""

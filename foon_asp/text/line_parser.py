@@ -11,8 +11,6 @@ from foon_asp.network import ObjectNode
 from foon_asp.text.clean_line import clean_line, clean_node
 from foon_asp.text.line import Line, LineError, StateLine
 
-_MAX_LINE = 1_000_000  # letters of a line
-
 
 def parse_line(text: str) -> Line:
     """Read an object, state or motion line, given without its line end.
@@ -25,9 +23,10 @@ def parse_line(text: str) -> Line:
 @lru_cache(50_000)  # of the 35,576 lines of the universal FOON, 2,123 are different
 def read_line(text: str) -> Line | LineError:
     """Return the parsed line of a text, or its error."""
+    max_letters = 1_000_000
     try:
-        if len(text) > _MAX_LINE:
-            raise LineError(_MAX_LINE + 1, f"a line of {len(text)} letters", (f"at most {_MAX_LINE}",))
+        if len(text) > max_letters:
+            raise LineError(max_letters + 1, f"a line of {len(text)} letters", (f"at most {max_letters}",))
         return parse_line(text)
     except LineError as error:
         return error.kept()

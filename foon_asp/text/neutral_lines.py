@@ -22,14 +22,13 @@ from foon_asp.text.json_object import amount_of, check_keys, price_of, shown
 from foon_asp.text.line import Mention, MotionLine, ObjectLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
 from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, not_utf_8, opened, split_lines, usual_line_end
-from foon_asp.text.reading import Reading, progress_report
+from foon_asp.text.reading import REPORT_BYTES, Reading, progress_report
 
 if TYPE_CHECKING:
     from foon_asp.text.conversion_ids import Numbering
 
 _NEEDED = {"id", "inputs", "outputs"}
 _KEYS = {*_NEEDED, "price"}
-_REPORT_BYTES = 65_536  # bytes from one report of progress to the next
 
 
 class NeutralLines(FoonJson):
@@ -121,7 +120,7 @@ def _lines_of(file: Path) -> Iterator[str]:
     with opened(file) as lines:
         for number, line in enumerate(lines, 1):
             unreported += len(line)
-            if report and unreported >= _REPORT_BYTES:
+            if report and unreported >= REPORT_BYTES:
                 report(unreported)
                 unreported = 0
             try:

@@ -13,7 +13,6 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 STORE_SUFFIX = ".foon"
 NEUTRAL_SUFFIXES = (".jsonl", ".ndjson")
-_SNIFFED_BYTES = 1_000_000  # bytes; a unit of the neutral form may be that long
 _LINE = re.compile(r"([^\r\n]*)(\r\n|\r|\n|\Z)")
 _LINE_END = re.compile(r"\r\n|\r|\n")
 FENCE = "```"
@@ -106,9 +105,12 @@ def with_own_mark(text: str) -> str:
     return f"\ufeff{text}" if text.startswith("\ufeff") else text
 
 
-def beginning(file: Path) -> str:
-    """Return the beginning of a file as text, long enough to recognise its format."""
-    return read_beginning(file, _SNIFFED_BYTES).decode("utf-8-sig", errors="replace")
+def beginning(file: Path, max_bytes: int = 1_000_000) -> str:
+    """Return the beginning of a file as text, by which its format is recognised.
+
+    A unit of the neutral form may have ``max_bytes``.
+    """
+    return read_beginning(file, max_bytes).decode("utf-8-sig", errors="replace")
 
 
 def read_plain_text(file: Path) -> str:

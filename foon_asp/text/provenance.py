@@ -8,7 +8,6 @@ from foon_asp.network import Source
 
 _VIDEO = "# Source:"
 _COPY = "# From:"
-_MAX_LINE_DIGITS = 9  # of a line number
 
 
 def read_video(comment: str) -> str | None:
@@ -29,7 +28,7 @@ def read_copy(comment: str) -> Source | None:
         return None
     position, *videos = comment[len(_COPY) :].lstrip("\t ").split("\t")
     file, colon, line = (position if videos else position.rstrip()).rpartition(":")
-    if not (file and colon and line.isascii() and line.isdigit() and len(line) <= _MAX_LINE_DIGITS):
+    if not (file and colon and line.isascii() and line.isdigit() and len(line) <= 9):
         return None
     return Source(file, int(line), 1, tuple(_fields("\t".join(videos))))
 

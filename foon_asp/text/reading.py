@@ -14,6 +14,9 @@ from foon_asp.text.stated_prices import StatedPrices
 Report = Callable[[int], None]
 """Is called with the number of bytes read since its last call."""
 
+REPORT_BYTES = 65_536
+"""Bytes that are read from one report to the next, at least."""
+
 _report: ContextVar[Report | None] = ContextVar("_report", default=None)
 
 

@@ -21,7 +21,6 @@ _DURATION = "a number of seconds such as 90 or 1.5, or of minutes or hours such 
 _PRICE = re.compile(r"\d{1,9}(\.\d{1,6})?", re.ASCII)
 _TOOLS = re.compile(r"[1-9]\d{0,5}", re.ASCII)
 _COPIES = re.compile(r"\d+", re.ASCII)
-_MAX_COPIES = 1_000_000  # of a node; clingo's integers are limited
 _STAYS = {"stays": True, "used-up": False}
 _OBJECT_LINE = re.compile(r"^(?:\ufeff)?O\d*[\t ]", re.MULTILINE)
 
@@ -105,8 +104,9 @@ def _stays(name: str, value: str, column: int) -> tuple[str | ObjectNode, bool]:
 
 
 def _copies(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
-    if not _COPIES.fullmatch(value) or len(value) > len(str(_MAX_COPIES)) or int(value) > _MAX_COPIES:
-        raise LineError(column, repr(value), (f"a number of copies, from 0 to {_MAX_COPIES}",))
+    max_copies = 1_000_000  # of a node; clingo's integers are limited
+    if not _COPIES.fullmatch(value) or len(value) > len(str(max_copies)) or int(value) > max_copies:
+        raise LineError(column, repr(value), (f"a number of copies, from 0 to {max_copies}",))
     return parse_node(name), int(value)
 
 

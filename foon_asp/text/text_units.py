@@ -16,11 +16,10 @@ from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit, node_of
 from foon_asp.text.plain_file import split_lines
 from foon_asp.text.provenance import is_video, read_copy, read_video
-from foon_asp.text.reading import Reading, progress_report
+from foon_asp.text.reading import REPORT_BYTES, Reading, progress_report
 from foon_asp.text.writer import write_line
 
 _SEPARATOR = "\n//\n"
-_REPORT_BYTES = 65_536  # bytes from one report of progress to the next
 
 _OpenBlock = tuple[ObjectLine, list[StateLine], Source]  # an object block, while lines may still be added
 
@@ -100,7 +99,7 @@ class TextUnits:
                 self._number += chunk.count("\n") + 2
                 if report:
                     unreported += len(chunk.encode()) + len(_SEPARATOR)
-                    if unreported >= _REPORT_BYTES:
+                    if unreported >= REPORT_BYTES:
                         report(unreported)
                         unreported = 0
         yield pieces[0], True

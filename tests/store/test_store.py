@@ -33,9 +33,9 @@ from foon_asp.store.starting_kitchen import StoredStartingKitchen
 from foon_asp.store.store import Store
 from foon_asp.store.store_tables import VERSION
 from foon_asp.store.stored_ids import StoredIds
-from foon_asp.text import foon_text
 from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
 from foon_asp.text.diagnostics import InputError
+from foon_asp.text.foon_text import FoonText
 from foon_asp.text.goal_name import find_goal
 from foon_asp.text.writer import write_units
 from tests.conftest import ROOT, Cli, Ran
@@ -236,7 +236,7 @@ def test_an_import_that_remembers_little(tmp_path: Path, monkeypatch: pytest.Mon
     import_files(find_data(KITCHEN), stores[0])
     monkeypatch.setattr(builder, "_MAX_CACHED_NODES", 3)
     monkeypatch.setattr(builder, "_ROWS_PER_WRITE", 3)
-    monkeypatch.setattr(foon_text, "_PIECE", 50)
+    monkeypatch.setattr(FoonText, "piece_letters", 50)
     import_files(find_data(KITCHEN), stores[1])
     assert_holds(stores[1], read_data(find_data(KITCHEN)))
     assert content(stores[0]) == content(stores[1])
