@@ -14,7 +14,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from types import TracebackType
-from typing import Self
+from typing import NamedTuple, Self
 
 from foon_asp.aside import Aside
 from foon_asp.errors import UserError
@@ -26,18 +26,34 @@ _ADVICE = {
     "grounding": "rules that were added may be endless, as in p(f(X)) :- p(X), or have too many instances: "
     "check them, or raise the limit",
 }
-# Seconds after a limit until work is overdue and interrupted; half of it after a cancel. More lets work end
-# with an answer, less ends sooner. Memory is short, and so is its tolerance.
-_TOLERANCE_SECONDS = 0.5
-_MEMORY_TOLERANCE_SECONDS = 0.1
-_GRACE_SECONDS = 0.25  # the least time for a last piece of work that begins at a limit
 _CANCELLED = "a cancel"
 _PROVED, _INTERRUPTED = "a proof", "ctrl-C"
-_MAX_INTERRUPTS, _INTERRUPT_SECONDS = 5, 3.0  # since destructors lose some, and seconds between them
-_MAX_WAITS = 50  # polls until a sent interrupt counts as lost: a second
-_POLL_SECONDS = 0.02  # between two looks at the memory: longer ones overshoot the limit, shorter cost time
-_INTERRUPT_DELAY_SECONDS = 0.001  # between two checks whether another thread has sent its interrupt
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
+
+
+class _Pace(NamedTuple):
+    """How long work may go on after a limit, and how often limits are looked at.
+
+    ``tolerance_seconds``: after a limit until work is overdue and interrupted; half of it after a cancel.
+    More lets work end with an answer, less ends sooner. ``memory_tolerance_seconds``: the same where memory
+    is short. ``grace_seconds``: the least time for a last piece of work that begins at a limit.
+    ``poll_seconds``: between two looks at the memory; longer ones overshoot the limit, shorter cost time.
+    ``interrupts``: sent at most, since destructors lose some. ``interrupt_seconds``: between two of them.
+    ``lost_polls``: polls until a sent interrupt counts as lost, a second.
+    ``handover_seconds``: between two looks at whether another thread has sent its interrupt.
+    """
+
+    tolerance_seconds: float = 0.5
+    memory_tolerance_seconds: float = 0.1
+    grace_seconds: float = 0.25
+    poll_seconds: float = 0.02
+    interrupts: int = 5
+    interrupt_seconds: float = 3.0
+    lost_polls: int = 50
+    handover_seconds: float = 0.001
+
+
+_PACE = _Pace()
 
 
 class StoppedError(Exception):
@@ -171,7 +187,7 @@ class Deadline:
         self._memory_polled = 0.0
         self._stopped_by: str | None = None
         self._token = _CANCEL.get()
-        self._tolerance = _TOLERANCE_SECONDS
+        self._tolerance = _PACE.tolerance_seconds
         self._noticed: float | None = None  # when ``overdue`` first saw that the deadline has passed
 
     @property
@@ -201,7 +217,7 @@ class Deadline:
         now = time.monotonic()
         if self._end is not None and now >= self._end:
             self._stopped_by = self._time_words
-        elif self.memory is not None and now >= self._memory_polled + _POLL_SECONDS:
+        elif self.memory is not None and now >= self._memory_polled + _PACE.poll_seconds:
             self._memory_polled = now
             if self.memory_in_use() > self.memory:
                 self.out_of_memory()
@@ -234,7 +250,7 @@ class Deadline:
             return now >= self._end + self._tolerance
         if self._noticed is None:
             self._noticed = now
-        return now >= self._noticed + (_MEMORY_TOLERANCE_SECONDS if self.full else self._tolerance)
+        return now >= self._noticed + (_PACE.memory_tolerance_seconds if self.full else self._tolerance)
 
     @property
     def full(self) -> bool:
@@ -280,7 +296,7 @@ class Deadline:
     def slice(self, longest: float = 0.2) -> float:
         """Return the seconds to wait until the next check of the deadline, at most ``longest``."""
         if self.memory is not None:
-            longest = min(longest, 2 * _POLL_SECONDS)
+            longest = min(longest, 2 * _PACE.poll_seconds)
         remaining = self.left
         return longest if remaining is None else min(longest, remaining)
 
@@ -316,7 +332,7 @@ def resend_lost_interrupts() -> Iterator[None]:
     main = threading.main_thread().ident or 0
 
     def send_again() -> None:
-        time.sleep(_POLL_SECONDS)
+        time.sleep(_PACE.poll_seconds)
         signal.pthread_kill(main, signal.SIGINT)
 
     def hook(lost: "sys.UnraisableHookArgs") -> None:
@@ -350,7 +366,7 @@ def uninterrupted() -> Iterator[None]:
             signal.signal(signal.SIGINT, lambda number, _: deferred.append(number))
         _shields[shield] = thread
         while thread in _targets:  # a watch is sending an interrupt
-            time.sleep(_INTERRUPT_DELAY_SECONDS)
+            time.sleep(_PACE.handover_seconds)
         yield
     finally:
         while True:  # ctrl-C may interrupt as soon as the handler is restored
@@ -382,7 +398,7 @@ class Watch:
 
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
         self._deadline, self._doing, self._late = deadline, doing, late
-        self._earliest = time.monotonic() + _GRACE_SECONDS if grace else -math.inf
+        self._earliest = time.monotonic() + _PACE.grace_seconds if grace else -math.inf
         self._begins = grace  # also at a deadline that has passed
         self._thread = threading.get_ident()
         self._finished = self._interrupted = False
@@ -411,8 +427,8 @@ class Watch:
             try:
                 self._end()
                 if self._interrupted and not received:
-                    for _ in range(_MAX_WAITS):
-                        time.sleep(_POLL_SECONDS)
+                    for _ in range(_PACE.lost_polls):
+                        time.sleep(_PACE.poll_seconds)
                 break
             except KeyboardInterrupt:
                 received = True
@@ -428,7 +444,7 @@ class Watch:
         self._finished = True
         self._wake.put(None)
         while self._thread in _targets:  # an interrupt is being sent
-            time.sleep(_INTERRUPT_DELAY_SECONDS)
+            time.sleep(_PACE.handover_seconds)
 
     @property
     def _due(self) -> bool:
@@ -440,21 +456,21 @@ class Watch:
 
         Returns the seconds until the next poll and the number of interrupts sent, or ``None`` after the last.
         """
-        if self._finished or interrupts == _MAX_INTERRUPTS:
+        if self._finished or interrupts == _PACE.interrupts:
             return None
         if not self._due:
-            return max(_POLL_SECONDS, self._deadline.slice()), interrupts
+            return max(_PACE.poll_seconds, self._deadline.slice()), interrupts
         _targets.append(self._thread)
         try:
             if self._finished:
                 return None
             if self._thread in _shields.values():
-                return _POLL_SECONDS, interrupts
+                return _PACE.poll_seconds, interrupts
             self._interrupted = True
             self._interrupt()
         finally:
             _targets.remove(self._thread)
-        return _INTERRUPT_SECONDS, interrupts + 1
+        return _PACE.interrupt_seconds, interrupts + 1
 
     @property
     def _is_woken_by_signals(self) -> bool:
@@ -477,7 +493,7 @@ class Watch:
 
 def _watch(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
     """Poll a watch until its end, or until it is garbage because an interrupt prevented its end."""
-    pause, interrupts = _POLL_SECONDS, 0
+    pause, interrupts = _PACE.poll_seconds, 0
     while True:
         with contextlib.suppress(Empty):
             wake.get(timeout=pause)

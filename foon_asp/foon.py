@@ -236,7 +236,7 @@ def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[
     A node that is listed several times is meant several times, which ``amounts`` records. ``tell`` is called
     with the number of units added since the last call.
     """
-    builder, number = NetworkBuilder(), 0
+    builder, number, reported = NetworkBuilder(), 0, 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
         raise UserError(f"found units={units!r}, expected several units; {_UNIT}")
     for number, unit in enumerate(units, 1):
@@ -258,10 +258,11 @@ def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[
         builder.add(motion, *sides, source)
         if counted := counted_amounts(*([(node, 1) for node in side] for side in sides)):
             amounts.add(FunctionalUnit.of(motion, *sides), counted, source)
-        if number % _REPORT_EVERY == 0:
-            tell(_REPORT_EVERY)
-    if number % _REPORT_EVERY:
-        tell(number % _REPORT_EVERY)
+        if number - reported == 100:
+            tell(number - reported)
+            reported = number
+    if number > reported:
+        tell(number - reported)
     return builder.build()
 
 
@@ -283,7 +284,6 @@ def _nodes(names: object, number: int) -> Iterator[ObjectNode]:
             raise UserError(f"found {name!r} in unit {number}, expected an object node; {_UNIT}")
 
 
-_REPORT_EVERY = 100  # units between two reports of progress
 _UNIT = "a unit is its motion, its inputs and its outputs: ('pour', ['water; hot', 'tea bag'], ['tea; hot'])"
 
 

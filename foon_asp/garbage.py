@@ -4,9 +4,6 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-_MANY_OBJECTS = 1_000_000  # new ones, of which a collection takes a tenth of a second or more
-_MAX_FROZEN = 10_000  # objects that may be unfrozen at no cost: Python 3.12 itself starts with some hundreds
-
 
 @contextmanager
 def uncollected() -> Iterator[None]:
@@ -21,7 +18,8 @@ def uncollected() -> Iterator[None]:
         yield
     finally:
         if collecting:
-            if gc.get_count()[0] > _MANY_OBJECTS and gc.get_freeze_count() < _MAX_FROZEN:
+            # collecting a million objects takes 0.1 s; Python 3.12 itself freezes some hundreds
+            if gc.get_count()[0] > 1_000_000 and gc.get_freeze_count() < 10_000:
                 gc.freeze()
                 gc.unfreeze()  # moves all objects to the oldest generation
             gc.enable()

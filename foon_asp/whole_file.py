@@ -18,7 +18,6 @@ except ImportError:  # Windows has no such locks, so what a kill left there stay
     fcntl = None  # type: ignore[assignment]
 
 _PARTIAL = re.compile(r"\.foon-asp\.[0-9a-f]{16}")
-_HELD = 500  # files that are open at once: a process may have 1,024, and rename writes many
 
 
 def write_whole(file: Path, content: bytes) -> None:
@@ -105,7 +104,8 @@ def _staged(target: Path, content: bytes) -> Iterator[Path]:
             os.fsync(written.fileno())
             if old is not None:
                 pass_on(old, partial)
-            if fcntl is None or written.fileno() > _HELD:  # Windows renames no open file
+            # Windows renames no open file; and a process may have 1,024 open, and rename writes many
+            if fcntl is None or written.fileno() > 500:
                 written.close()
             yield partial
         if old is not None:

@@ -6,6 +6,7 @@ from itertools import chain
 
 import click
 
+from foon_asp.cli.completion_command import MAX_COMPLETIONS
 from foon_asp.dataset import Dataset
 from foon_asp.foon import load
 from foon_asp.problem import Objective
@@ -13,7 +14,6 @@ from foon_asp.rules.constraint_library import library_constraints
 from foon_asp.text.goal_name import entry_names, nodes_beginning
 
 _TABLES = ("kitchen", "rates", "utensils", "goals", "unit_prices", "unit_amounts")
-_MAX_NAMES = 200  # of a completion: a shell cannot list more in a readable way
 
 # Endings of the names of constants whose values are motions, or labels.
 _MOTIONS, _LABELS = "_motion", ("_object", "_intermediate", "_ingredient")
@@ -41,7 +41,7 @@ def _goals(context: click.Context, prefix: str) -> Iterable[str]:
     dataset = _dataset(context)
     names = dataset.names
     listed = _beginning(entry_names(dataset.listed, names), prefix)
-    return chain(listed, (str(names.node(o)) for o in nodes_beginning(prefix, names, _MAX_NAMES)))
+    return chain(listed, (str(names.node(o)) for o in nodes_beginning(prefix, names, MAX_COMPLETIONS)))
 
 
 def _objectives(context: click.Context, prefix: str) -> Iterable[str]:
@@ -78,7 +78,7 @@ def _constants_of(constraint: str, context: click.Context, prefix: str) -> Itera
     if name.endswith(_MOTIONS):
         values = _beginning(_dataset(context).motions, value)
     elif name.endswith(_LABELS):
-        values = _dataset(context).names.beginning(value, _MAX_NAMES)
+        values = _dataset(context).names.beginning(value, MAX_COMPLETIONS)
     return (f"{name}={value}" for value in values)
 
 

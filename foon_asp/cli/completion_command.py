@@ -18,7 +18,9 @@ from foon_asp.cli.verbs import SHELL_REQUEST
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 
-_MAX_WORDS = 200  # of a completion: a shell cannot list more in a readable way
+MAX_COMPLETIONS = 200
+"""Words that complete a line, at most: a shell cannot list more in a readable way."""
+
 _LINE_VARIABLE = "FOON_ASP_LINE"  # in the environment: the line up to the cursor
 
 
@@ -45,7 +47,7 @@ class _Shell(ShellComplete):
         words = dict.fromkeys(
             f"{option * bool(equals)}{equals}{item.value}" for item in items if item.type == "plain"
         )
-        return [CompletionItem(word) for word in [*words][:_MAX_WORDS]]
+        return [CompletionItem(word) for word in [*words][:MAX_COMPLETIONS]]
 
     def format_completion(self, item: CompletionItem[str]) -> str:
         """Return a completion as the line that is printed."""

@@ -8,7 +8,6 @@ import _signal as signal  # type: ignore[import-not-found]  # needs no other mod
 import os
 
 _MESSAGE = b"interrupted before there was an answer\n"
-_LIMIT_CODE = 3  # ``ExitCode.LIMIT``, which is imported later
 
 
 def end_at_ctrl_c() -> None:
@@ -27,4 +26,4 @@ def _end(*_: object) -> None:
     try:
         os.write(2, _MESSAGE)
     finally:
-        os._exit(_LIMIT_CODE)
+        os._exit(3)  # ``ExitCode.LIMIT``, which is imported later

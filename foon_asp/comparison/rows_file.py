@@ -18,9 +18,6 @@ else:
 Row = TypeVar("Row")
 Value = TypeVar("Value")
 
-# In bytes, beyond the end of any file: on Windows, a locked byte cannot be read by other processes.
-_LOCK_OFFSET = 1 << 40
-
 
 class RowForm(NamedTuple, Generic[Row]):
     """The format of rows of a ``kind``: how they are written, read and identified.
@@ -164,7 +161,8 @@ def _lock(file: IO[bytes]) -> bool:
     """
     try:
         if sys.platform == "win32":
-            os.lseek(file.fileno(), _LOCK_OFFSET, os.SEEK_SET)
+            # a byte beyond the end of any file, since no other process could read a locked one
+            os.lseek(file.fileno(), 1 << 40, os.SEEK_SET)
             msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
         else:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

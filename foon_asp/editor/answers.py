@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from foon_asp.editor.checked_text import CheckedText
 from foon_asp.editor.edited_text import EditedText
 from foon_asp.editor.field import NAME_KINDS, Field, field_at
-from foon_asp.editor.json_rpc import INVALID_PARAMETERS, RequestError, parameter
+from foon_asp.editor.json_rpc import ErrorCode, RequestError, parameter
 from foon_asp.errors import UserError
 from foon_asp.linting.names import Names
 from foon_asp.linting.noqa import silencing
@@ -24,7 +24,6 @@ from foon_asp.text.plain_file import split_lines
 from foon_asp.text.renaming import Renaming, is_name
 
 _MAX_ITEMS = 100  # names or fixes in an answer: more are slower, and the next letter typed selects among them
-_MAX_UNITS_SHOWN = 8  # of a node, in its hover
 _SEVERITIES = {Severity.ERROR: 1, Severity.WARNING: 2, Severity.NOTE: 3}
 _SYMBOL_FUNCTION, _ITEM_KEYWORD = 12, 14  # numbers that the protocol gives to kinds of symbols and of items
 _ITEM_KINDS = {NameKind.OBJECT: 6, NameKind.STATE: 10, NameKind.WORD: _ITEM_KEYWORD, NameKind.MOTION: 3}
@@ -197,11 +196,11 @@ def _achievers_and_consumers(
     return lines_of(achievers), lines_of(network.consumers[id_])
 
 
-def _units(units: list[_UnitLine]) -> str:
+def _units(units: list[_UnitLine], max_shown: int = 8) -> str:
     """Return units in words, by their motions and lines."""
-    shown = [f"{_plain(motion)} (line {line + 1})" for line, motion in units[:_MAX_UNITS_SHOWN]]
-    if len(units) > _MAX_UNITS_SHOWN:
-        shown.append(f"{len(units) - _MAX_UNITS_SHOWN} more")
+    shown = [f"{_plain(motion)} (line {line + 1})" for line, motion in units[:max_shown]]
+    if len(units) > max_shown:
+        shown.append(f"{len(units) - max_shown} more")
     return ", ".join(shown) or "no unit"
 
 
@@ -274,7 +273,7 @@ def _rename(checked: CheckedText, parameters: object) -> Json:
     line, letter = checked.text.position_of(parameters)
     field, new = field_at(checked.text.lines[line], letter), parameter(parameters, "newName", str)
     if not field or not field.name or not is_name(field.kinds[0], new):
-        raise RequestError(INVALID_PARAMETERS, f"found {new!r}, which cannot be a name there")
+        raise RequestError(ErrorCode.INVALID_PARAMETERS, f"found {new!r}, which cannot be a name there")
     return {"changes": {checked.text.uri: _renamed(checked, Rename(field.kinds[0], field.name, new))}}
 
 

@@ -1,20 +1,29 @@
 """JSON-RPC 2.0 with a Content-Length before each message, the transport of language servers."""
 
 import contextlib
+from enum import IntEnum
 from typing import Any, BinaryIO, TypeVar
 
 from foon_asp.text.json_value import Json, json_line, read_json
 
-INVALID_REQUEST, METHOD_NOT_FOUND, INVALID_PARAMETERS, INTERNAL_ERROR = -32600, -32601, -32602, -32603
-CONTENT_MODIFIED = -32801
-
 Value = TypeVar("Value")
 
 
-class RequestError(Exception):
-    """A request is refused; ``code`` is the error code of the protocol."""
+class ErrorCode(IntEnum):
+    """Why there is no result; the numbers are those of the protocol."""
 
-    def __init__(self, code: int, message: str) -> None:
+    INVALID_REQUEST = -32600
+    METHOD_NOT_FOUND = -32601
+    INVALID_PARAMETERS = -32602
+    INTERNAL_ERROR = -32603
+    CONTENT_MODIFIED = -32801
+    """The text has changed since the request."""
+
+
+class RequestError(Exception):
+    """A request is refused with an error code."""
+
+    def __init__(self, code: ErrorCode, message: str) -> None:
         super().__init__(message)
         self.code = code
 
@@ -50,5 +59,7 @@ def parameter(parameters: object, path: str, kind: type[Value]) -> Value:
     for key in path.split("."):
         value = value.get(key) if isinstance(value, dict) else None
     if type(value) is not kind or (isinstance(value, int) and value < 0):
-        raise RequestError(INVALID_PARAMETERS, f"found {value!r:.40}, expected {kind.__name__} as {path}")
+        raise RequestError(
+            ErrorCode.INVALID_PARAMETERS, f"found {value!r:.40}, expected {kind.__name__} as {path}"
+        )
     return value

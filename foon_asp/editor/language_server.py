@@ -11,11 +11,7 @@ from foon_asp.editor import answers
 from foon_asp.editor.checked_text import CheckedText, check
 from foon_asp.editor.edited_text import EditedText
 from foon_asp.editor.json_rpc import (
-    CONTENT_MODIFIED,
-    INTERNAL_ERROR,
-    INVALID_PARAMETERS,
-    INVALID_REQUEST,
-    METHOD_NOT_FOUND,
+    ErrorCode,
     RequestError,
     parameter,
     read_message,
@@ -23,8 +19,6 @@ from foon_asp.editor.json_rpc import (
 )
 from foon_asp.text.json_value import Json
 
-_DEBOUNCE_SECONDS = 0.25  # without a change, before a text is checked: less checks while somebody types
-_SWITCH_SECONDS = 0.0005  # until the thread that checks yields to an answer: less makes checking slower
 _CAPABILITIES = {
     "textDocumentSync": {"openClose": True, "change": 1},  # the whole text
     "completionProvider": {"triggerCharacters": ["\t", "[", "{", ","]},
@@ -77,14 +71,14 @@ class LanguageServer:
         try:
             if is_request and (id_ is None or self._ending or message.get("jsonrpc") != "2.0"):
                 reason = "found no request of JSON-RPC 2.0, or one after the editor has ended the server"
-                raise RequestError(INVALID_REQUEST, reason)
+                raise RequestError(ErrorCode.INVALID_REQUEST, reason)
             response: Json = {"result": await self._result(str(message.get("method")), message.get("params"))}
         except RequestError as error:
             response = _error(error.code, str(error))
         except asyncio.CancelledError:
-            response = _error(CONTENT_MODIFIED, "the text has changed")
+            response = _error(ErrorCode.CONTENT_MODIFIED, "the text has changed")
         except Exception as error:  # the editor waits for an answer
-            response = _error(INTERNAL_ERROR, repr(error))
+            response = _error(ErrorCode.INTERNAL_ERROR, repr(error))
         if is_request:
             write_message(self._out, {"id": id_, **response})
 
@@ -98,7 +92,7 @@ class LanguageServer:
             return answers.completion(text, checked.names, parameters)
         if answer := answers.ANSWERS.get(method):
             return answer(await self._checks[self._text(parameters).uri], parameters)
-        raise RequestError(METHOD_NOT_FOUND, f"there is no method {method}")
+        raise RequestError(ErrorCode.METHOD_NOT_FOUND, f"there is no method {method}")
 
     def _initialize(self, parameters: object) -> Json:
         parameter(parameters, "capabilities", dict)
@@ -114,7 +108,8 @@ class LanguageServer:
     def _change(self, parameters: object) -> None:
         text = self._text(parameters)
         for change in parameter(parameters, "contentChanges", list):
-            self._begin(EditedText(text.uri, parameter(change, "text", str)), _DEBOUNCE_SECONDS)
+            # sooner, texts would be checked while somebody types
+            self._begin(EditedText(text.uri, parameter(change, "text", str)), 0.25)
 
     def _close(self, parameters: object) -> None:
         uri = self._text(parameters).uri
@@ -127,7 +122,7 @@ class LanguageServer:
         """Return the text that a message is about; raises :class:`RequestError` where it is not open."""
         uri = parameter(parameters, "textDocument.uri", str)
         if uri not in self._texts:
-            raise RequestError(INVALID_PARAMETERS, f"found {uri}, expected a text that is open")
+            raise RequestError(ErrorCode.INVALID_PARAMETERS, f"found {uri}, expected a text that is open")
         return self._texts[uri]
 
     def _begin(self, text: EditedText, seconds: float) -> None:
@@ -153,11 +148,11 @@ class LanguageServer:
         write_message(self._out, {"method": method, "params": parameters})
 
 
-def _error(code: int, message: str) -> Json:
+def _error(code: ErrorCode, message: str) -> Json:
     return {"error": {"code": code, "message": message}}
 
 
 def serve() -> bool:
     """Serve an editor over standard input and output; return whether it sent shutdown before exit."""
-    sys.setswitchinterval(_SWITCH_SECONDS)
+    sys.setswitchinterval(0.0005)  # until checking yields to an answer: less makes it slower
     return asyncio.run(LanguageServer(sys.stdin.buffer, sys.stdout.buffer).run())

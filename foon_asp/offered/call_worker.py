@@ -10,8 +10,6 @@ from typing import Any
 from foon_asp.offered.offer import Offer
 from foon_asp.processes.pipe import receive_packed, requests, write
 
-_MAX_MESSAGE_LETTERS = 1000  # of an exception: some contain all data
-
 
 def serve() -> None:
     """Call the functions that requests on standard input name, and send their replies."""
@@ -63,13 +61,18 @@ def _in_words(error: BaseException) -> str:
 
 def _message(error: BaseException) -> str:
     try:
-        return str(error)[:_MAX_MESSAGE_LETTERS]
+        return _shortened(str(error))
     except Exception:
         return ""
 
 
 def _shown(value: object) -> str:
     try:
-        return repr(value)[:_MAX_MESSAGE_LETTERS]
+        return _shortened(repr(value))
     except Exception:
         return f"a {type(value).__name__}"
+
+
+def _shortened(message: str, max_letters: int = 1000) -> str:
+    """Return the beginning of a message: some contain all data."""
+    return message[:max_letters]

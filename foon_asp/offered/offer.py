@@ -8,7 +8,6 @@ from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 
 _OFFER_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9])?", re.ASCII)
-_MAX_FAULT_LETTERS = 300  # of an error: a package may print any amount
 
 
 class Raised(NamedTuple):
@@ -43,8 +42,8 @@ class Offer(NamedTuple):
 
     def fault(self, what: str, trace: str = "") -> UserError:
         """Return the error that an offer is at fault, with ``what`` it did; ``--debug`` shows the trace."""
-        if len(what) > _MAX_FAULT_LETTERS:
-            what = f"{what[:_MAX_FAULT_LETTERS]}..."
+        if len(what) > 300:  # a package may say any amount
+            what = f"{what[:300]}..."
         error = UserError(
             f"{escaped(self.package)}: {escaped(self.name)} ({self.group}, {escaped(self.function)}): "
             f"{escaped(what)}\n"

@@ -11,11 +11,8 @@ from typing import Any
 
 from foon_asp.deadline import Deadline
 from foon_asp.offered.offer import Offer, Raised
-from foon_asp.processes.pipe import packed
+from foon_asp.processes.pipe import CHUNK_BYTES, packed
 from foon_asp.processes.worker import DiedError, Worker, give_back, take
-
-_MAX_REPLY_BYTES = 64 * 2**20  # a tree of a million units has some megabytes; more would fill the memory
-_CHUNK_BYTES = 1 << 20  # read at once
 
 
 def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
@@ -47,17 +44,19 @@ def _start() -> Worker:
     return Worker("foon_asp.offered.call_worker", "what other packages offer is run", read=_line)
 
 
-def _line(pipe: RawIOBase) -> tuple[str, bytes]:
-    """Return a line of a pipe as a message; its kind is ``endless`` for a line that is too long.
+def _line(pipe: RawIOBase, max_bytes: int = 64 * 2**20) -> tuple[str, bytes]:
+    """Return a line of a pipe as a message; its kind is ``endless`` for a line of more than ``max_bytes``.
+
+    A tree of a million units takes some megabytes; an endless line would fill the memory.
 
     Raises ``EOFError`` where the pipe ends within the line.
     """
     line = bytearray()
     while not line.endswith(b"\n"):
-        if len(line) > _MAX_REPLY_BYTES:
+        if len(line) > max_bytes:
             return "endless", b""
         try:
-            chunk = pipe.read(_CHUNK_BYTES)
+            chunk = pipe.read(CHUNK_BYTES)
         except (OSError, ValueError):  # closed
             chunk = None
         if not chunk:

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 # Okabe and Ito's colors, which people with any of the common color deficiencies can tell apart.
 COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
 
-_WIDTH_INCHES = 7.15  # both columns of a printed page
 _SUFFIXES = (".svg", ".png")
 _INK = "#333333"  # of text and axes
 _MATPLOTLIB_STYLE: dict[Any, Any] = {  # by the names that matplotlib has for its settings
@@ -60,7 +59,8 @@ def write_chart(file: Path, title: str, height: float, draw: "Callable[[Figure, 
     """
     check_suffix(file)
     picture = BytesIO()
-    with new_figure(_WIDTH_INCHES, height, layout="constrained") as figure:
+    # as wide as both columns of a printed page
+    with new_figure(7.15, height, layout="constrained") as figure:
         figure.suptitle(title, wrap=True)
         draw(figure, figure.subplots())
         figure.savefig(picture, format=file.suffix.lower().removeprefix("."), metadata={"Date": None})

@@ -16,9 +16,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _BLUE, _ORANGE = COLORS[:2]
-_GOLDEN_RATIO = 0.6180339887  # fractional parts of its multiples spread evenly from 0 to 1
-_SPREAD = 0.32  # of points to either side of the middle of their box, where boxes are 1 apart
-_POINT_AREA = 14  # square points of typography
 # By how a tree executes: the emptier its point looks, the less the tree is worth.
 _POINT_COLORS = {Verdict.AS_LISTED: _BLUE, Verdict.REORDERED: "#BFDCEC", Verdict.NEVER: "#FFFFFF"}
 
@@ -59,16 +56,17 @@ def _draw(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> 
         axes.boxplot(
             [ratios],
             positions=[position],
-            widths=2.4 * _SPREAD,
+            widths=0.768,  # boxes are 1 apart, and their points lie within
             showfliers=False,
             showmeans=True,
             meanprops={"marker": "D", "markerfacecolor": _ORANGE, "markeredgecolor": "white", "zorder": 4},
             medianprops={"color": _ORANGE, "linewidth": 2, "zorder": 3},
         )
-        offsets = [2 * (number * _GOLDEN_RATIO % 1) - 1 for number in range(len(points))]
-        xs = [position + _SPREAD * offset for offset in offsets]
+        # fractional parts of multiples of the golden ratio spread evenly from 0 to 1
+        offsets = [2 * (number * 0.6180339887 % 1) - 1 for number in range(len(points))]
+        xs = [position + 0.32 * offset for offset in offsets]
         colors = [_POINT_COLORS[verdict] for verdict in verdicts]
-        axes.scatter(xs, ratios, _POINT_AREA, colors, edgecolors=_BLUE, linewidths=0.7)
+        _scatter(axes, xs, ratios, colors)
     figure.set_size_inches(max(figure.get_figwidth(), len(trees)), figure.get_figheight())
     axes.set_xlim(-0.6, len(trees) - 0.4)
     axes.set_xticks(range(len(trees)), labels)
@@ -76,8 +74,15 @@ def _draw(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> 
     axes.axhline(1, color="black", linewidth=1, zorder=1)
     axes.set_ylabel("units / units of the optimum")
     for verdict, color in _POINT_COLORS.items():
-        axes.scatter([], [], _POINT_AREA, color, edgecolors=_BLUE, linewidths=0.7, label=str(verdict))
+        _scatter(axes, [], [], [color], str(verdict))
     axes.plot([], [], color="black", linewidth=1, label="optimum")
     axes.plot([], [], color=_ORANGE, linewidth=2, label="median")
     axes.plot([], [], "D", color=_ORANGE, label="mean")
     figure.legend(loc="outside lower center", ncols=3)
+
+
+def _scatter(
+    axes: "Axes", xs: Sequence[float], ys: Sequence[float], colors: Sequence[str], label: str | None = None
+) -> None:
+    """Draw points with an outline."""
+    axes.scatter(xs, ys, 14, colors, edgecolors=_BLUE, linewidths=0.7, label=label)

@@ -14,9 +14,8 @@ from foon_asp.pictures.drawing import Box, Drawing, Role
 # another font still fits its box.
 FONT = "DejaVu Sans"
 
-BOXED_UNITS = 300  # the most units in boxes: more take minutes to lay out, and are too many to read
-_MAX_CAPTION_LETTERS = 90  # in a line
-_NAMED_NODES = 24  # of a large network, by degree: names of more would overlap
+BOXED_UNITS = 300
+"""Units of a drawing with boxes, at most: more take minutes to lay out, and are too many to read."""
 
 # Objects are green and motions red, as in the FOON literature. For readers with a color deficiency, motions
 # are dark and have corners, and objects are light and rounded.
@@ -48,14 +47,15 @@ def dot_text(drawing: Drawing) -> str:
     return _text(drawing, _BOX_DEFAULTS, [*_legend(drawing), *labels])
 
 
-def graph_text(drawing: Drawing) -> str:
+def graph_text(drawing: Drawing, max_names: int = 24) -> str:
     """Return a network in DOT as squares and circles, for a force-directed layout.
 
-    The whole text of a node is its tooltip; the object nodes of the highest degree show their names.
+    The whole text of a node is its tooltip; the object nodes of the highest degree show their names, at most
+    ``max_names``: more would overlap.
     """
     degrees = Counter(name for arrow in drawing.arrows for name in arrow)
     objects = [box for box in drawing.boxes if box.node is not None]
-    named = {box.name for box in sorted(objects, key=lambda box: -degrees[box.name])[:_NAMED_NODES]}
+    named = {box.name for box in sorted(objects, key=lambda box: -degrees[box.name])[:max_names]}
     motions = [box.name for box in drawing.boxes if box.node is None]
     lines = [f"  {' -> '.join(motions)} [style=invis]"]  # neighbours in a file are close to each other
     for box in sorted(drawing.boxes, key=lambda box: box.name in named):  # names are painted last
@@ -69,7 +69,7 @@ def graph_text(drawing: Drawing) -> str:
 
 
 def _text(drawing: Drawing, defaults: str, nodes: Iterable[str]) -> str:
-    caption = _quoted([line for text in drawing.caption for line in wrap(text, _MAX_CAPTION_LETTERS)])
+    caption = _quoted([line for text in drawing.caption for line in wrap(text, width=90)])
     arrows = (f"  {tail} -> {head}" for tail, head in drawing.arrows)
     return "\n".join(("digraph foon {", defaults, f"  label={caption}", *nodes, *arrows, "}\n"))
 

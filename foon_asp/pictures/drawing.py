@@ -9,9 +9,6 @@ from typing import NamedTuple
 from foon_asp.escapes import UNSAFE
 from foon_asp.network import FunctionalUnit, ObjectNode
 
-_MAX_LINE_LETTERS = 22  # in a line of a box: more make drawings wider, fewer make them higher
-_MAX_HEAD_LETTERS = 20  # in a line of bold text, which is wider
-
 _NONCHARACTERS = re.compile("[\ufffe\uffff]")
 
 
@@ -37,7 +34,7 @@ class Box(NamedTuple):
     @property
     def head(self) -> tuple[str, ...]:
         """The lines of the label."""
-        return _lines(self.label, _MAX_HEAD_LETTERS)
+        return _lines(self.label, 20)  # letters; bold text is wider
 
     @property
     def details(self) -> tuple[str, ...]:
@@ -47,7 +44,8 @@ class Box(NamedTuple):
             texts = [", ".join(sorted(self.node.states))] if self.node.states else []
             texts += map(str, sorted(self.node.relations))
             texts += (f"{word} {{{', '.join(items)}}}" for word, items in self.node.contents)
-        return tuple(line for text in texts for line in _lines(text, _MAX_LINE_LETTERS))
+        # with more letters in a line, drawings are wider, with fewer, higher
+        return tuple(line for text in texts for line in _lines(text, 22))
 
 
 class Drawing(NamedTuple):

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MARKERS = "osD^vPX"
-_LOG_SCALE_RATIO = 50  # of the largest to the smallest success, above which a linear scale hides the smallest
 
 
 class Plotted(NamedTuple):
@@ -63,7 +62,7 @@ def write_front_chart(front: Plotted, file: Path) -> None:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
         if not upwards:
             axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-        elif 0 < min(columns[y]) * _LOG_SCALE_RATIO < max(columns[y]):
+        elif 0 < 50 * min(columns[y]) < max(columns[y]):  # a linear scale would hide the smallest success
             axes.set_yscale("log")
         for number, value in enumerate(series_values):
             style: dict[str, Any] = {"color": f"C{number}", "zorder": 2 - number / len(series_values)}

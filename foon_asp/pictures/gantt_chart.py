@@ -16,7 +16,6 @@ _ROW_INCHES, _MARGIN_INCHES = 0.17, 1.2  # of height
 
 # Seconds between two ticks of the axis; above them, any number of days.
 _TICK_SECONDS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 43200, 86400)
-_MAX_INTERVALS = 8  # between ticks: more labels would overlap
 
 
 def write_gantt(gantt: Gantt, file: Path) -> None:
@@ -54,7 +53,7 @@ def _draw(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
 
 def _ticks(makespan: Fraction) -> list[Fraction]:
     """Return the ticks of the time axis, in seconds."""
-    min_interval = makespan / _MAX_INTERVALS
+    min_interval = makespan / 8  # more labels would overlap
     days = Fraction(86400 * (min_interval // 86400 + 1))
     interval = next((Fraction(seconds) for seconds in _TICK_SECONDS if seconds >= min_interval), days)
     if makespan <= 2:

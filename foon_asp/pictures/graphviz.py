@@ -13,8 +13,8 @@ from foon_asp.pictures.dot import BOXED_UNITS, FONT, dot_text, graph_text
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.text.json_value import read_json
 
-MAX_UNITS = 10_000  # of a network: 2,376 are laid out in 4 s, 9,504 in 30 s, 19,008 in 78 s
-_PAGE_UNITS_PER_INCH = 180  # coordinates on the page for an inch of Graphviz: fewer make nodes overlap
+MAX_UNITS = 10_000
+"""Units of a network that is laid out, at most: 2,376 take 4 s, 9,504 take 30 s, 19,008 take 78 s."""
 
 # What DOT cannot express: the head of a label, its first lines, is bold; and where the font is missing,
 # another sans-serif one is used.
@@ -54,7 +54,7 @@ def coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
     """
     lines = _laid_out(drawing, graph_text(drawing), "plain").decode().splitlines()
     nodes = (line.split(" ", 4) for line in lines if line.startswith("node "))
-    scale = _PAGE_UNITS_PER_INCH
+    scale = 180  # coordinates on the page for an inch of Graphviz: fewer make nodes overlap
     return {name: (scale * float(x), scale * float(y)) for _, name, x, y, _ in nodes}
 
 

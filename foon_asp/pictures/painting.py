@@ -11,9 +11,6 @@ from foon_asp.pictures.graphviz import layout
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_DOTS_PER_INCH = 144  # of a PNG: more are sharper in print, and larger files
-_MAX_PIXELS = 40e6  # of a PNG: viewers refuse larger ones
-
 
 def painted(drawing: Drawing, form: Literal["png", "pdf"]) -> bytes:
     """Return a drawing as PNG or PDF, with the font of matplotlib.
@@ -27,7 +24,8 @@ def painted(drawing: Drawing, form: Literal["png", "pdf"]) -> bytes:
         axes = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
         axes.set_axis_off()
         _paint(axes, [graph, *graph.get("edges", []), *graph.get("objects", [])])
-        dpi = min(_DOTS_PER_INCH, 72 * (_MAX_PIXELS / width / height) ** 0.5)
+        # more dots per inch are sharper in print, and larger files; viewers refuse more than 40 million dots
+        dpi = min(144, 72 * (40e6 / width / height) ** 0.5)
         metadata = {"CreationDate": None} if form == "pdf" else None
         figure.savefig(picture, format=form, dpi=dpi, metadata=metadata, bbox_inches="tight", pad_inches=0.15)
     return picture.getvalue()

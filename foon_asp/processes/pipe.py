@@ -18,8 +18,10 @@ T = TypeVar("T")
 OUT_OF_MEMORY = 77
 """The exit code of a process that ran out of memory."""
 
+CHUNK_BYTES = 1 << 20
+"""Bytes of a pipe that are read at once: memory is allocated as content arrives."""
+
 _LENGTH_HEADER = struct.Struct("!Q")
-_CHUNK_BYTES = 1 << 20  # read at once, so that memory is allocated as content arrives
 
 
 def packed(value: object) -> bytes:
@@ -89,7 +91,7 @@ def _exactly(pipe: RawIOBase, size: int) -> bytes:
     chunks: list[bytes] = []
     while size:
         try:
-            chunk = pipe.read(min(size, _CHUNK_BYTES))
+            chunk = pipe.read(min(size, CHUNK_BYTES))
         except (OSError, ValueError):  # closed
             chunk = None
         if not chunk:

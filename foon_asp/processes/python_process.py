@@ -16,7 +16,6 @@ from foon_asp.aside import Aside
 from foon_asp.deadline import uninterrupted
 from foon_asp.errors import UserError
 
-_END_SECONDS = 5.0  # to wait for threads and exit codes after the end of a process
 _PACKAGES = str(Path(__file__).resolve().parents[2])
 
 # A process group of its own: ctrl-C at a terminal reaches only this process, which ends the child.
@@ -78,14 +77,14 @@ class PythonProcess:
             self._process.kill()
             code = self._process.wait()
         for thread in self._threads:
-            thread.ended(_END_SECONDS)  # before another file gets the descriptor that it reads
+            thread.ended(5.0)  # before another file gets the descriptor that it reads
         self._close()
         return code
 
     def died(self) -> int:
         """Return the exit code of a process that has closed its output; one that does not end is killed."""
         with uninterrupted(), contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(_END_SECONDS)
+            self._process.wait(5.0)
         return self.end()
 
     def abandon(self) -> None:

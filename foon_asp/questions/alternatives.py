@@ -32,9 +32,6 @@ from foon_asp.results.values import CostedTree, Mention, Node, Value, step_lines
 from foon_asp.results.values_of import costed_tree, head_of, mention_of, node_of
 from foon_asp.text.json_value import schema_name
 
-_MAX_SHOWN_TREES = 20  # trees that are listed one by one for people
-_MAX_PICTURES = 4  # trees drawn in a notebook
-
 
 class Way(Value, frozen=True):
     """One way to make an object node.
@@ -109,8 +106,9 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
         """Return the number of trees, the costs of each, and its differences from the first tree."""
         yield from self.goal_lines()
         yield from self._claim()
+        max_shown = 20
         for number, (tree, task_tree) in enumerate(
-            zip(self.trees[:_MAX_SHOWN_TREES], self.task_trees, strict=False), 1
+            zip(self.trees[:max_shown], self.task_trees, strict=False), 1
         ):
             yield task_tree.claim
             yield from used_up_note(self.problem, task_tree)
@@ -119,8 +117,8 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
                 continue
             yield from step_lines(steps_not_in(self.trees[0].units, tree.units), "-")
             yield from step_lines(steps_not_in(tree.units, self.trees[0].units), "+")
-        if len(self.trees) > _MAX_SHOWN_TREES:
-            others = counted(len(self.trees) - _MAX_SHOWN_TREES, "more tree")
+        if len(self.trees) > max_shown:
+            others = counted(len(self.trees) - max_shown, "more tree")
             yield f"... and {others}; --format json lists all"
 
     def _claim(self) -> Iterator[str]:
@@ -182,8 +180,8 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
         return self.task_trees[0].drawing() if self.trees else None
 
     def _in_notebook(self) -> dict[str, str]:
-        """Return the notebook display by media type: the text, and the pictures of the first trees."""
-        return page_bundle(self, (tree.drawing() for tree in self.task_trees[:_MAX_PICTURES]))
+        """Return the notebook display by media type: the text, and pictures of the first four trees."""
+        return page_bundle(self, (tree.drawing() for tree in self.task_trees[:4]))
 
 
 class _Listed(NamedTuple):

@@ -14,8 +14,6 @@ if TYPE_CHECKING:  # takes clingo along, which `verify` must not load
     from foon_asp.asp import Outcome
     from foon_asp.certificate import Certificate
 
-_MAX_NAMED = 20  # units of a limit that are listed
-
 
 def trusted_text(user_rules: Rule, of_tree: bool) -> str:
     """Return the assumptions of a certificate about user rules, with the names of the rule files.
@@ -47,7 +45,7 @@ def trusted_text(user_rules: Rule, of_tree: bool) -> str:
 
 def _limited(units: list[int], bound: int, alike: bool) -> str:
     """Return a limit on some units in words; the units have different weights unless they are ``alike``."""
-    named = f"the units {', '.join(map(str, units))}" if len(units) <= _MAX_NAMED else f"{len(units)} units"
+    named = f"the units {', '.join(map(str, units))}" if len(units) <= 20 else f"{len(units)} units"
     if not alike:
         return f"what {named} count comes to {bound} at most"
     return f"no tree has {'all' if bound == len(units) - 1 else f'more than {bound}'} of {named}"

@@ -9,7 +9,6 @@ _PROBLEM = (
     "The problem to ask about, made by :meth:`foon_asp.Foon.problem`; or the path of a recipe or a folder, "
     "or data that were loaded."
 )
-_WIDTH = 100
 _ENTRY = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
 
 
@@ -45,5 +44,5 @@ def complete_docstring(
 
 
 def _entry(name: str, text: str) -> str:
-    lines = textwrap.wrap(f"{name}: {text}", _WIDTH, break_on_hyphens=False, subsequent_indent=" " * 4)
+    lines = textwrap.wrap(f"{name}: {text}", width=100, break_on_hyphens=False, subsequent_indent=" " * 4)
     return textwrap.indent("\n".join(lines), " " * 4) + "\n"

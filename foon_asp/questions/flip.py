@@ -6,8 +6,6 @@ from typing import NamedTuple
 
 from foon_asp.problem.root import Root
 
-_MIN_DIGITS = 4  # of a rate, at least; of a change, at first
-_PERCENT_DIGITS = 3
 _SHORT = Fraction(1, 10**9)  # smallest number that is written without an exponent
 
 
@@ -23,8 +21,8 @@ class Flip(NamedTuple):
 
     @property
     def inwards(self) -> Fraction:
-        """The rate of the flip, rounded to a decimal on the side of the given rate."""
-        digits = _MIN_DIGITS
+        """The rate of the flip, rounded to a decimal of four digits or more on the side of the given rate."""
+        digits = 4
         if self.at.rational == self.rate:
             return self.rate
         while True:
@@ -35,14 +33,14 @@ class Flip(NamedTuple):
 
     @property
     def percent(self) -> str:
-        """The relative change of the rate in percent, rounded to 0."""
-        digits = _MIN_DIGITS
+        """The relative change of the rate in percent, in three digits, rounded to 0."""
+        digits = 4
         while True:
             low, high = self.change(digits)
             if low == high == 0:
                 return "0 %"
             if low > 0:
-                shown = {Root(1, 100 * end).below(_PERCENT_DIGITS) for end in (low, high)}
+                shown = {Root(1, 100 * end).below(3) for end in (low, high)}
                 if len(shown) == 1:
                     return f"{'+' if self.above else '-'}{decimal_text(shown.pop())} %"
             digits *= 2
@@ -67,7 +65,7 @@ class Flip(NamedTuple):
         assert isinstance(other, Flip)
         if self.at.over(self.rate) == other.at.over(other.rate):
             return False  # on one side, or both at the rate itself
-        digits = _MIN_DIGITS
+        digits = 4
         while True:
             (low, high), (others_low, others_high) = self.change(digits), other.change(digits)
             if high < others_low or others_high <= low:

@@ -26,8 +26,6 @@ from foon_asp.text.folder_files import foon_files
 from foon_asp.text.json_value import Json, json_text, schema_name
 from foon_asp.typed import typed
 
-_MAX_TEXT = 1000  # letters of a line: thousands of findings on one would repeat it thousands of times
-
 
 class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
     r"""The findings of the linter in FOON files.
@@ -103,8 +101,9 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
         return json_text(sarif(self.findings, version("foon-asp")))
 
 
-def _short(line: str | None) -> str | None:
-    return line if line is not None and len(line) <= _MAX_TEXT else None
+def _short(line: str | None, max_letters: int = 1000) -> str | None:
+    """Return a line unless it is long: thousands of findings on one would repeat it thousands of times."""
+    return line if line is not None and len(line) <= max_letters else None
 
 
 class Findings(NamedTuple):

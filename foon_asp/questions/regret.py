@@ -46,7 +46,6 @@ _TITLES = {
     Removal.ITEM: "without from the kitchen",
     Removal.PAIR: "without both from the kitchen, where each alone can be done without",
 }
-_LOSS_WIDTH = 8  # columns of a loss
 
 
 class Regret(Value, frozen=True):
@@ -136,7 +135,7 @@ class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
             if regrets:
                 yield from ("", title)
             for regret in regrets:
-                yield f"  {regret.loss_text(self.objectives[0], what).ljust(_LOSS_WIDTH)}    {regret}"
+                yield f"  {regret.loss_text(self.objectives[0], what).ljust(8)}    {regret}"
                 if regret.costs is not None and regret.costs != self.answer.costs:
                     yield f"       the best is then {costs_text(regret.costs, self.objectives)}"
 

@@ -11,8 +11,6 @@ from foon_asp.questions.caller import asked_by, caller
 from foon_asp.questions.common_options import CommonOptions
 from foon_asp.results.values_of import costed_tree
 
-_MAX_TREES = 4  # that a policy follows: the best one, and the next by success
-
 
 def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unpack[CommonOptions]) -> Answer:
     """Return an answer with the policy of greatest chance over its tree and the best trees by success.
@@ -26,6 +24,7 @@ def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unp
         settings: The settings of the question, whose time has begun.
         options: The rules that the trees keep to.
     """
+    max_trees = 4  # that a policy follows
     problem = answer.problem
     problem.require_known_for([Objective.SUCCESS])
     if answer.ids is None:
@@ -33,11 +32,11 @@ def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unp
     for limit in ("time_limit", "memory_limit"):  # hold for the whole question
         options.pop(limit, None)  # type: ignore[misc]
     with asked_by(caller()._replace(deadline=settings.begun)):
-        others = alternatives(problem, Objective.SUCCESS, best=_MAX_TREES, **options)
+        others = alternatives(problem, Objective.SUCCESS, best=max_trees, **options)
     trees = [answer.ids]
     for tree in others.trees:
         units = problem.network.units_of_numbers(tree.ids)
-        if len(trees) < _MAX_TREES and set(units) not in map(set, trees):
+        if len(trees) < max_trees and set(units) not in map(set, trees):
             trees.append(units)
     try:
         with settings.begun.watched("comparing policies"):

@@ -26,8 +26,6 @@ from foon_asp.results.values_of import node_as, node_of, nodes_of, unit_of
 from foon_asp.text.data_folder import Data
 from foon_asp.text.json_value import schema_name
 
-_MAX_SHOWN = 10  # rows of each list in the text
-
 # Heading, row name, and the figure of one level.
 _ROWS: tuple[tuple[str, str, Callable[[Statistics], object]], ...] = (
     ("", "functional units", lambda s: s.units),
@@ -141,8 +139,8 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
         network = data.network
         sources = [source for copies in network.sources for source in copies]
         labels, objects = (
-            most_connected_labels(network, _MAX_SHOWN),
-            most_connected_objects(network, _MAX_SHOWN),
+            most_connected_labels(network, 10),
+            most_connected_objects(network, 10),
         )
         return cls(
             units_read=len(sources),
@@ -176,11 +174,11 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
         for node in self.most_connected_objects:
             yield f"  {node.needed_by:>7,} {node.made_by:>7,}  {node.object}"
         if len(self.files) > 1:
-            largest = sorted(self.files, key=lambda file: -file.units)[:_MAX_SHOWN]
+            largest = sorted(self.files, key=lambda file: -file.units)[:10]
             yield from ("", "most units: files")
             yield from (f"  {file.units:>7,}  {escaped(file.file)}" for file in largest)
-        if len(self.files) > _MAX_SHOWN:
-            others = counted(len(self.files) - _MAX_SHOWN, "file", ",")
+        if len(self.files) > 10:
+            others = counted(len(self.files) - 10, "file", ",")
             yield f"  ... and {others} more; --format json lists all"
 
     def _table(self) -> Table:

@@ -34,7 +34,8 @@ from foon_asp.text.plain_file import read_beginning
 if TYPE_CHECKING:  # takes the solver and linear programs along, which `verify` must not load
     from foon_asp.certificate import Certificate
 
-_SECONDS = 60.0  # time limit of each check by clingo
+CLINGO_SECONDS = 60.0
+"""Time limit of each check of user rules by clingo: they are untrusted input."""
 _NAMED_BY = {
     "stand-ins": "--stand-ins, and the files of stand-ins",
     "network": "--network FILE",
@@ -386,7 +387,7 @@ def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool, proved: b
         if user_rules is not None:
             from foon_asp.certificate.own_rules import check_with_clingo  # noqa: PLC0415 (the solver)
 
-            check_with_clingo(content, user_rules, problem, Deadline(_SECONDS))
+            check_with_clingo(content, user_rules, problem, Deadline(CLINGO_SECONDS))
     by_proved_checker = proved_checker.ask(content, subject) if proved else None
     starting = None
     if not subject.trusted and dataset.data.starting:
@@ -463,7 +464,7 @@ def _check_with_clingo(problem: Problem, verified: proof.Verified) -> None:
 
     for measure in verified.trusted:
         rules = Measure(measure.name, measure.rules, f"the rules of {measure.name}")
-        deadline = Deadline(_SECONDS)  # the rules are untrusted input
+        deadline = Deadline(CLINGO_SECONDS)
         try:
             wrong = wrong_cost(rules, problem, measure.costs, deadline)
         except UserError as error:

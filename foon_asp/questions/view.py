@@ -48,7 +48,6 @@ from foon_asp.results.proof_cases import ProofCases
 from foon_asp.text.json_value import Json
 from foon_asp.whole_file import utf_8, write_whole
 
-_BEST = 5  # trees listed as alternatives, the optimal one included
 _MERMAID_PAGE = ".md"
 _SHOWN = (
     *("answer", "searches", "lasting", "without_rules"),
@@ -476,7 +475,7 @@ def pages(
         yield page
     if PagePart.ALTERNATIVES in wanted:
         page = structs.replace(
-            page, alternatives=alternatives(problem, chosen, best=_BEST, **rules, **remaining_limits())
+            page, alternatives=alternatives(problem, chosen, best=5, **rules, **remaining_limits())
         )
         yield page
     if PagePart.FRONT in wanted:

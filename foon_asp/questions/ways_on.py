@@ -23,8 +23,6 @@ from foon_asp.results.values_of import head_of, node_of, nodes_of, unit_as
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.line_parser import parse_node
 
-_MAX_SHOWN = 10  # units that are listed for people
-
 
 class WayOn(Unit, frozen=True, kw_only=True):
     """A unit that leads to the goals.
@@ -81,9 +79,9 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
         now = [unit for unit in self.units if not unit.lacks]
         number = counted(len(now), "unit") if now else "no unit"
         yield f"{number} that can run now lead{'' if len(now) > 1 else 's'} to the goals"
-        yield from (f"  {unit.id}  {unit.motion}    [{unit.source[0]}]" for unit in now[:_MAX_SHOWN])
-        if len(now) > _MAX_SHOWN:
-            yield f"  ... and {len(now) - _MAX_SHOWN} more"
+        yield from (f"  {unit.id}  {unit.motion}    [{unit.source[0]}]" for unit in now[:10])
+        if len(now) > 10:
+            yield f"  ... and {len(now) - 10} more"
         if later := len(self.units) - len(now):
             yield f"{counted(later, 'unit')} that cannot run yet; --format json says what each lacks"
         if self.answer is not None:

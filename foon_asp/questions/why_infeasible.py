@@ -6,8 +6,6 @@ from foon_asp.deadline import Deadline
 from foon_asp.network import counted
 from foon_asp.problem import Problem, reach
 
-_MAX_CYCLE = 3  # object nodes of a cycle that are named after the first
-
 
 def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterator[str]:
     """Return lines with the reasons why there is no tree, if these are found by the deadline."""
@@ -69,8 +67,8 @@ def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
             continue
         first, *others = [str(objects[o]) for o, _ in reversed(root.cycle.steps)]
         back = (*others, first)
-        cycle_text = "".join(f", and that only from {other}" for other in back[1:_MAX_CYCLE])
-        if len(back) > _MAX_CYCLE:
+        cycle_text = "".join(f", and that only from {other}" for other in back[1:3])
+        if len(back) > 3:
             cycle_text += f", and so on: {len(back)} object nodes wait for each other"
         yield f"the cause: {first} can only be made from {back[0]}{cycle_text}"
     if len(roots) > shown:

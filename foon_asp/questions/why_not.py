@@ -2,7 +2,7 @@
 
 import contextlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Unpack
+from typing import TYPE_CHECKING, Annotated, NamedTuple, Unpack
 
 from msgspec import UNSET, UnsetType
 from msgspec.structs import replace
@@ -32,14 +32,25 @@ if TYPE_CHECKING:  # takes clingo along, which only rules need
     from foon_asp.asp import Settings
     from foon_asp.questions.clash import Clash
 
-_MAX_ALIKE = 2  # nodes with the same label that are named beside a missing one
-_MAX_OBJECTS = 12  # dead ends that are opened up in the text
-_MAX_OTHERS = 2  # other units that are named beside the first
-_MAX_ROOTS = 8  # causes explained in the text
-_MAX_STEPS = 6  # of a cycle in the text
-_MAX_STOPS = 3  # units named in one line
-_MAX_FIX_ITEMS = 4  # named in one line
-_LEVEL_OF_STAND_INS = 3
+
+class _MaxShown(NamedTuple):
+    """How much of an explanation is shown as text; JSON has all of it.
+
+    ``roots``: causes that are explained. ``dead_ends`` that are opened up. ``other_units`` that could make a
+    node, beside the first. ``steps`` of a cycle. ``units`` in one line. ``fix_items``: nodes to add to the
+    kitchen. ``alike``: nodes with the same label as a missing one.
+    """
+
+    roots: int = 8
+    dead_ends: int = 12
+    other_units: int = 2
+    steps: int = 6
+    units: int = 3
+    fix_items: int = 4
+    alike: int = 2
+
+
+_MAX_SHOWN = _MaxShown()
 
 
 class NearName(Value, frozen=True):
@@ -139,11 +150,11 @@ class Root(Value, frozen=True):
         if self.cycle is not None:
             yield "can only be made from itself, in a cycle:"
             made = [*(step.object for step in self.cycle[1:]), self.cycle[0].object]
-            for step, node in list(zip(self.cycle, made, strict=True))[:_MAX_STEPS]:
+            for step, node in list(zip(self.cycle, made, strict=True))[: _MAX_SHOWN.steps]:
                 yield f"  {step.needed_by} makes {node}"
                 yield f"    and needs {step.object}"
-            if len(made) > _MAX_STEPS:
-                yield f"  and {counted(len(made) - _MAX_STEPS, 'more step')}"
+            if len(made) > _MAX_SHOWN.steps:
+                yield f"  and {counted(len(made) - _MAX_SHOWN.steps, 'more step')}"
             return
         if self.handed_on_by:
             yield f"not in the kitchen, and what gives it needs it too: {_units(self.handed_on_by)}"
@@ -236,11 +247,11 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
         for number, root in enumerate(self.roots, 1):
             numbers |= dict.fromkeys((root.object, *root.cycle_objects), number)
         yield from ("", *_tree(self, numbers), "", "in the way:")
-        for root in shown[:_MAX_ROOTS]:
+        for root in shown[: _MAX_SHOWN.roots]:
             yield f"  ({numbers[root.object]}) {root.object}"
             yield from (f"      {line}" for line in root.lines())
-        if len(self.roots) > min(len(shown), _MAX_ROOTS):
-            others = len(self.roots) - min(len(shown), _MAX_ROOTS)
+        if len(self.roots) > min(len(shown), _MAX_SHOWN.roots):
+            others = len(self.roots) - min(len(shown), _MAX_SHOWN.roots)
             yield f"{others} more behind other units; --format json lists all"
         yield self._fix_line()
         if isinstance(self.stand_ins, tuple):
@@ -252,7 +263,7 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
     def _fix_line(self) -> str:
         if self.fix is None:
             return "foon-asp shopping-list with the same options says what to add to the kitchen"
-        named = [str(node) for node in self.fix[:_MAX_FIX_ITEMS]]
+        named = [str(node) for node in self.fix[: _MAX_SHOWN.fix_items]]
         if len(self.fix) > len(named):
             named.append(f"{len(self.fix) - len(named)} more")
         return f"try adding {' and '.join(named)} (foon-asp shopping-list proves the shortest list)"
@@ -355,7 +366,7 @@ def why_not(
 def _stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn, ...] | UnsetType:
     """Return the cheapest stand-ins with which there is a tree, if any are enough."""
     level, has_motion = problem.network.level, STAND_IN in problem.network.different_motions
-    if level < _LEVEL_OF_STAND_INS or problem.items is not None or has_motion:
+    if level < 3 or problem.items is not None or has_motion:
         return UNSET
     from foon_asp.asp.optimum import solve  # noqa: PLC0415 (only where there is no tree)
 
@@ -388,7 +399,7 @@ def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]
         nodes_near = {near_name.name for near_name in near_names if near_name.kitchen_entry is None}
         alike = tuple(
             node_as(AlikeNode, network, had[other], in_kitchen=had[other] in kitchen)
-            for other in nearest(node, had, _MAX_ALIKE)
+            for other in nearest(node, had, _MAX_SHOWN.alike)
             if str(other) not in nodes_near
         )
         yield replace(value, near=near_names, alike=alike)
@@ -404,7 +415,7 @@ def _tree(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str
     opened: set[Node] = set()
     frontier = list(explanation.unreachable_goals)
     for node in frontier:
-        if node not in opened and node not in numbers and len(opened) < _MAX_OBJECTS:
+        if node not in opened and node not in numbers and len(opened) < _MAX_SHOWN.dead_ends:
             opened.add(node)
             frontier += makers[node][0].lacks
     shown: set[Value] = set()
@@ -420,9 +431,9 @@ def _tree(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str
         shown.update((node, first))
         for lack in () if above else first.lacks:
             yield from lines(lack, f"{margin}    ")
-        yield from (f"{margin}  or {other}" for other in others[:_MAX_OTHERS])
-        if len(others) > _MAX_OTHERS:
-            yield f"{margin}  or {counted(len(others) - _MAX_OTHERS, 'other unit')}"
+        yield from (f"{margin}  or {other}" for other in others[: _MAX_SHOWN.other_units])
+        if len(others) > _MAX_SHOWN.other_units:
+            yield f"{margin}  or {counted(len(others) - _MAX_SHOWN.other_units, 'other unit')}"
 
     for goal in explanation.unreachable_goals:
         yield from lines(goal, "")
@@ -442,9 +453,9 @@ def _causes(roots: Sequence[Root]) -> str:
 
 
 def _units(units: Sequence[Mention]) -> str:
-    places = ", ".join(f"{unit.motion} [{unit.source[0]}]" for unit in units[:_MAX_STOPS])
+    places = ", ".join(f"{unit.motion} [{unit.source[0]}]" for unit in units[: _MAX_SHOWN.units])
     return places + (
-        f" and {counted(len(units) - _MAX_STOPS, 'more unit')}" if len(units) > _MAX_STOPS else ""
+        f" and {counted(len(units) - _MAX_SHOWN.units, 'more unit')}" if len(units) > _MAX_SHOWN.units else ""
     )
 
 

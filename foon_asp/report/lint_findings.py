@@ -15,14 +15,15 @@ from foon_asp.results.table import Block, Table
 from foon_asp.text.diagnostics import Severity
 from foon_asp.text.json_value import Json
 
-_MAX_IN_FULL = 3  # findings of a kind in a file; the lines of the others are named
-_MAX_LINES = 12  # line numbers listed
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "notice"}
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
-def finding_lines(findings: Sequence[Finding]) -> Iterator[Block]:
-    """Yield sorted findings with their lines; many of one kind in a file are folded into a line."""
+def finding_lines(findings: Sequence[Finding], max_in_full: int = 3, max_lines: int = 12) -> Iterator[Block]:
+    """Yield sorted findings with their lines.
+
+    Of one kind in a file, ``max_in_full`` are shown; of the others, up to ``max_lines`` line numbers are.
+    """
     kinds: dict[tuple[str, str], list[Finding]] = {}
     for finding in findings:
         kinds.setdefault((finding.file, finding.code), []).append(finding)
@@ -30,11 +31,11 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[Block]:
     for finding in findings:
         kind = finding.file, finding.code
         shown[kind] += 1
-        if shown[kind] <= _MAX_IN_FULL:
+        if shown[kind] <= max_in_full:
             yield from str(finding).split("\n")
-        if shown[kind] == _MAX_IN_FULL and (others := kinds[kind][_MAX_IN_FULL:]):
+        if shown[kind] == max_in_full and (others := kinds[kind][max_in_full:]):
             numbers = list(dict.fromkeys(str(other.line) for other in others))
-            lines = ", ".join(numbers[:_MAX_LINES]) + (", ..." if len(numbers) > _MAX_LINES else "")
+            lines = ", ".join(numbers[:max_lines]) + (", ..." if len(numbers) > max_lines else "")
             on = "on line" if len(numbers) == 1 else "on lines"
             yield f"    ... and {len(others)} more of this kind in this file, {on} {lines} [{finding.code}]"
 

@@ -8,22 +8,18 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, multiplies
 from foon_asp.results.plain import nearest_float
 
-_MIN_DIGITS = 4  # significant digits of a success
-_MAX_DIGITS = 40  # significant digits of a success
-_SUM_DIGITS = 15  # significant digits of a sum of costs
-
 
 def figure_text(objective: Objective, figure: int | Fraction) -> str:
-    """Return a value by an objective as text: exact, or four digits after ``≈`` if that is too long."""
+    """Return a value by an objective as text: exact in up to 15 digits, else four digits after ``≈``."""
     if multiplies(objective):
         return success_text(Fraction(figure))
     if objective.row.whole:
         return str(figure)
-    context = Context(prec=_SUM_DIGITS)
+    context = Context(prec=15)
     exact = context.divide(*map(Decimal, Fraction(figure).as_integer_ratio()))
     if context.flags[Inexact]:
         return f"≈ {_four_digits(Fraction(figure))}"
-    return f"{exact if exact.adjusted() < _SUM_DIGITS else exact.normalize(context):g}"
+    return f"{exact if exact.adjusted() < 15 else exact.normalize(context):g}"
 
 
 def bound_text(objective: Objective, bound: int | Fraction) -> str:
@@ -62,12 +58,12 @@ def _four_digits(value: Fraction) -> str:
 
 
 def success_texts(values: Sequence[Fraction]) -> list[str]:
-    """Write successes with enough significant digits that different ones look different, at least four.
+    """Write successes with enough significant digits that different ones look different, from 4 to 40.
 
     ``≈`` stands before what is rounded.
     """
-    digits = _MIN_DIGITS
-    while digits < _MAX_DIGITS and len({_rounded(v, digits) for v in values}) < len(set(values)):
+    digits = 4
+    while digits < 40 and len({_rounded(v, digits) for v in values}) < len(set(values)):
         digits += 1
     shown = {value: _rounded(value, digits) for value in values}
     return [f"{shown[v]:g}" if Fraction(shown[v]) == v else f"≈ {shown[v]:g}" for v in values]

@@ -20,7 +20,6 @@ T = TypeVar("T")
 
 _EXACT = "_exact"
 _WRITTEN_NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)
-_SIGNIFICANT_DIGITS = 6  # significant digits of a figure in Markdown
 
 
 def plain(value: object) -> Any:
@@ -216,7 +215,7 @@ def markdown_row(cells: Iterable[str]) -> str:
 
 def _rounded(value: Any) -> str:
     if isinstance(value, float):
-        return str(int(value)) if value.is_integer() else f"{value:.{_SIGNIFICANT_DIGITS}g}"
+        return str(int(value)) if value.is_integer() else f"{value:.6g}"
     return _text(value)
 
 

@@ -7,8 +7,6 @@ from typing import NamedTuple
 
 from foon_asp.escapes import escaped, escaped_lines
 
-STACKED_BELOW = 75  # columns of a terminal: with fewer, a table is stacked
-_MIN_WIDTH = 20  # columns of folded text, at least
 _BEGINS = re.compile(r" *(?:\d+  )?")  # the indent of a line, including its number
 _COLOURS = {"good": "32", "bad": "31", "dim": "2", "strong": "1"}
 
@@ -46,7 +44,7 @@ def rendered(parts: Iterable[Block], width: int | None = None, coloured: bool = 
     Parameters:
         parts: The lines, each one line whatever is named in it, and tables, from top to bottom.
         width: The columns of the terminal; lines that are longer are folded between words, and tables are
-            stacked below :data:`STACKED_BELOW`. Without it, lines are as long as they are.
+            stacked below 75. Without it, lines are as long as they are.
         coloured: Whether cells are coloured.
     """
     lines: list[str] = []
@@ -54,7 +52,7 @@ def rendered(parts: Iterable[Block], width: int | None = None, coloured: bool = 
         if isinstance(block, Table):
             lines += (
                 _stacked(block, width)
-                if width is not None and width < STACKED_BELOW
+                if width is not None and width < 75
                 else _aligned(block, width, coloured)
             )
         else:
@@ -112,12 +110,12 @@ def _coloured(text: str, cell: str | Cell, coloured: bool, heading: bool) -> str
 
 
 def _folded(line: str, width: int | None) -> list[str]:
-    """Return a line wrapped between words to the width of the terminal; continuation lines are indented."""
+    """Return a line wrapped between words to a width, at least 20; continuation lines are indented."""
     if width is None or len(line) <= width:
         return [line]
     begins = _BEGINS.match(line)
     assert begins
     inner = " " * min(begins.end() + 2, width // 2)
     return textwrap.wrap(
-        line, max(_MIN_WIDTH, width), subsequent_indent=inner, break_on_hyphens=False, break_long_words=False
+        line, max(20, width), subsequent_indent=inner, break_on_hyphens=False, break_long_words=False
     )

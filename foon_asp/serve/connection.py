@@ -1,12 +1,9 @@
 """Connections of browsers, with a limit on the time that they wait for a request, and on their number."""
 
 import asyncio
-from typing import Any
+from typing import Any, ClassVar
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
-
-_REQUEST_SECONDS = 10.0  # for a request to arrive completely: fewer refuse slow browsers
-_MAX_WAITING = 64  # connections that may wait for a request at once; a browser has six
 
 
 class Connection(H11Protocol):  # type: ignore[misc]
@@ -14,7 +11,13 @@ class Connection(H11Protocol):  # type: ignore[misc]
 
     So no program that opens connections and sends nothing, or half of a request, locks the owner out.
     ``waiting_since`` is a time of the event loop, in seconds.
+
+    ``request_seconds``: for a request to arrive completely; fewer refuse slow browsers.
+    ``max_waiting``: connections that wait at once; a browser has six.
     """
+
+    request_seconds: ClassVar[float] = 10.0
+    max_waiting: ClassVar[int] = 64
 
     waiting_since = 0.0
     _timer: asyncio.TimerHandle | None = None
@@ -25,7 +28,7 @@ class Connection(H11Protocol):  # type: ignore[misc]
         self._start_timer()
         connections = (other for other in self.connections if isinstance(other, Connection))
         waiting = [connection for connection in connections if connection.waits]
-        if len(waiting) > _MAX_WAITING:
+        if len(waiting) > self.max_waiting:
             min(waiting, key=lambda connection: connection.waiting_since).end()
 
     def data_received(self, data: bytes) -> None:
@@ -61,7 +64,7 @@ class Connection(H11Protocol):  # type: ignore[misc]
     def _start_timer(self) -> None:
         self._stop_timer()
         self.waiting_since = self.loop.time()
-        self._timer = self.loop.call_later(_REQUEST_SECONDS, self.end)
+        self._timer = self.loop.call_later(self.request_seconds, self.end)
 
     def _stop_timer(self) -> None:
         if self._timer is not None:

@@ -23,9 +23,6 @@ from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import entry_names, nodes_beginning
 from foon_asp.text.json_value import Json
 
-_KEPT_PAGES = 4  # answers that can still be shown: each keeps its problem in memory
-_MAX_COMPLETIONS = 30  # of a name
-
 Tell = Callable[[Json], object]
 """Sends an event to the browser."""
 Rules = tuple[Constraint, ...]
@@ -116,9 +113,9 @@ class Desk:
         ]
 
     def names(self, start: str) -> list[str]:
-        """Return object nodes whose names begin with ``start``, in one-line notation."""
+        """Return up to 30 object nodes whose names begin with ``start``, in one-line notation."""
         names = self._foon.dataset.names
-        return [str(names.node(o)) for o in nodes_beginning(start, names, _MAX_COMPLETIONS)]
+        return [str(names.node(o)) for o in nodes_beginning(start, names, 30)]
 
     def page(self, number: int) -> str | None:
         """Return the HTML of a page by its number; ``None`` where it is no longer kept."""
@@ -192,10 +189,10 @@ class Desk:
         self._run(answer, token, tell)
 
     def _keep(self, page: View, rules: Rules) -> int:
-        """Keep a page instead of the oldest one, and return its number."""
+        """Keep a page, and its problem in memory, instead of the fourth before it; return its number."""
         self._number += 1
         self._pages[self._number] = page, rules
-        self._pages.pop(self._number - _KEPT_PAGES, None)
+        self._pages.pop(self._number - 4, None)
         return self._number
 
     def _run(self, answer: Callable[[Deadline, _EventReporter], None], token: Cancel, tell: Tell) -> None:

@@ -28,7 +28,6 @@ from foon_asp.text.json_value import Json, json_line
 
 Asgi = Callable[[Any, Any, Any], Any]
 
-_MAX_BODY_BYTES = 1_000_000  # of a question: longer ones are refused before they fill the memory
 _PAGE_NUMBER = re.compile("[0-9]{1,18}")  # ``int`` raises for thousands of digits
 _WEB = Path(__file__).resolve().parent / "web"
 _HEADERS = {
@@ -127,7 +126,7 @@ async def _stream(
     body = b""
     async for chunk in request.stream():
         body += chunk
-        if len(body) > _MAX_BODY_BYTES:
+        if len(body) > 1_000_000:  # before it fills the memory
             return PlainTextResponse("this question is too long", 413)
     try:
         answer = read(body)

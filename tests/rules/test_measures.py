@@ -497,7 +497,7 @@ def test_what_is_taken_on_trust_is_checked_with_clingo(tmp_path: Path, cli: Cli)
 
 
 def test_rules_of_a_stranger_are_stopped(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("foon_asp.questions.verify._SECONDS", 0.3)
+    monkeypatch.setattr("foon_asp.questions.verify.CLINGO_SECONDS", 0.3)
     problem = measured(random_problem(1, RULES[0]), MINE)
     found = foon_asp.solve(problem, "mine", certificate=tmp_path / "proof.json").certificate
     assert found is not None
