@@ -25,7 +25,7 @@ from foon_asp.asp import Settings, Status, solve
 from foon_asp.problem import Objective, Problem
 from foon_asp.rules.measure import read_measures
 from foon_asp.text.data_folder import find_data, read_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 
 SAME = "same"
 RANDOM = "random"

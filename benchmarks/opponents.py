@@ -50,7 +50,7 @@ from foon_asp.hypergraph import reduce
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, executable_order, levels
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.text.data_folder import Data, find_data, read_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 
 OURS = "foon-asp"
 OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.INPUTS_AND_INGREDIENTS, Objective.SUCCESS)

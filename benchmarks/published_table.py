@@ -21,7 +21,7 @@ from foon_asp.problem import ContainerRule, Problem
 from foon_asp.resources import published_table
 from foon_asp.searches import SEARCHES, Count, SearchSettings, Ties
 from foon_asp.text.data_folder import find_data, read_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 
 # The published procedure with a free choice among equally good units: an object that is needed and not in
 # the kitchen is made by exactly one of its candidates, whose needed inputs are needed in turn. It takes the

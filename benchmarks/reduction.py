@@ -26,7 +26,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import ALL, NONE, reduce
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.text.data_folder import find_data, read_data
-from foon_asp.text.goal_name import listed_nodes
+from foon_asp.text.node_lookup import listed_nodes
 
 COLUMNS = (
     "data",

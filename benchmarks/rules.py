@@ -48,7 +48,7 @@ from foon_asp.processes.python_process import _end_all
 from foon_asp.questions.answer import answered_under
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles, find_data, read_data
-from foon_asp.text.goal_name import listed_nodes
+from foon_asp.text.node_lookup import listed_nodes
 from foon_asp.text.writer import write_units
 
 COLUMNS = (

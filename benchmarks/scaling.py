@@ -41,7 +41,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem, reach, relevant
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import find_data, read_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 
 STEPS = ("reading", "import", "indexing", "cone", "reduction", "search")
 MEMORY = ("text", "import", "store")

@@ -31,7 +31,7 @@ from pathlib import Path
 from foon_asp.asp import solve
 from foon_asp.problem import ContainerRule, Problem, parse_objectives
 from foon_asp.text.data_folder import find_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 from foon_asp.text.tables import read_utensils
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.tables import RATES

@@ -28,7 +28,7 @@ from typing import NamedTuple
 from foon_asp.problem import ContainerRule
 from foon_asp.store.store import Store
 from foon_asp.store.stored_ids import StoredIds
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 
 READ = """
 import gc, sys

@@ -16,7 +16,7 @@ from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import NamedTuple, Self
 
-from foon_asp.aside import Aside
+from foon_asp.daemon_thread import DaemonThread
 from foon_asp.errors import UserError
 
 _STATM = Path("/proc/self/statm")
@@ -342,7 +342,7 @@ def resend_lost_interrupts() -> Iterator[None]:
         if not issubclass(lost.exc_type, KeyboardInterrupt):
             previous_hook(lost)
         elif threading.get_ident() == main and hasattr(signal, "pthread_kill"):
-            Aside(send_again)
+            DaemonThread(send_again)
 
     sys.unraisablehook = hook
     try:
@@ -413,7 +413,7 @@ class Watch:
             try:
                 if not self._is_woken_by_signals:
                     import ctypes  # noqa: F401, PLC0415 (imported before it is needed for an interrupt)
-                Aside(_watch, weakref.ref(self), self._wake)
+                DaemonThread(_watch, weakref.ref(self), self._wake)
             except BaseException:
                 self._end()
                 raise

@@ -7,6 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Self
 
+from foon_asp.argument_checks import typed
 from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.item_options import Stays, Stock, items_of, wanted_of
 from foon_asp.dataset.named_ids import in_python, node_ids
@@ -29,12 +30,11 @@ from foon_asp.rules.measure import read_measures
 from foon_asp.standins.table_file import read_stand_ins
 from foon_asp.text.assumed_goals import LAST, as_entry, last_goals
 from foon_asp.text.data_folder import STARTING, Data, find_data
-from foon_asp.text.goal_name import GoalError
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_node
+from foon_asp.text.node_lookup import GoalError
 from foon_asp.text.reading import reporting_to, size_of
 from foon_asp.text.stated_amounts import StatedAmounts, counted_amounts
-from foon_asp.typed import typed
 from foon_asp.warning import warn
 
 

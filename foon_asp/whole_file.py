@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from foon_asp.errors import UserError
-from foon_asp.replacing import pass_on, warn_of_replaced
+from foon_asp.file_permissions import pass_on, warn_of_replaced
 
 try:
     import fcntl

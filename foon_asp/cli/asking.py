@@ -19,11 +19,11 @@ from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.questions.caller import Caller, asked_by
-from foon_asp.questions.contract import Question, Role, question_of
 from foon_asp.questions.each_goal import EachGoal
 from foon_asp.questions.index import module_name, question_name
 from foon_asp.questions.posing import no_data, one_problem
 from foon_asp.questions.posing_plan import a_plan, a_plan_or_state, settle_data
+from foon_asp.questions.question import Question, Role, question_of
 from foon_asp.questions.result import Result
 from foon_asp.questions.tree import read_answer
 
@@ -113,7 +113,7 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
     if {goal for problem in problems for goal in problem.goal_nodes} != set(goals):
         goals = []  # the question has other goals, which are not assumed
     if problems and (goals or not command.dataset.has_kitchen):
-        from foon_asp.dataset.assumed import goal_lines, kitchen_lines
+        from foon_asp.dataset.assumption_lines import goal_lines, kitchen_lines
 
         lines = [*goal_lines(command.dataset, goals, shared_options.is_verbose())] if goals else []
         if not command.dataset.has_kitchen:

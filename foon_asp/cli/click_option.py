@@ -9,7 +9,7 @@ import click
 
 from foon_asp.cli.named_path import NamedPath, WrittenPath
 from foon_asp.deadline import memory_size, seconds
-from foon_asp.questions.contract import Kind, Option, Role
+from foon_asp.questions.question import Kind, Option, Role
 from foon_asp.rules.passed_constraint import Constraint, RuleText, named_constraint
 
 Command = TypeVar("Command", bound=Callable[..., object])

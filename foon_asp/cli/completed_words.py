@@ -6,12 +6,14 @@ from itertools import chain
 
 import click
 
-from foon_asp.cli.completion_command import MAX_COMPLETIONS
 from foon_asp.dataset import Dataset
 from foon_asp.foon import load
 from foon_asp.problem import Objective
 from foon_asp.rules.constraint_library import library_constraints
-from foon_asp.text.goal_name import entry_names, nodes_beginning
+from foon_asp.text.node_lookup import entry_names, nodes_beginning
+
+MAX_COMPLETIONS = 200
+"""Words that complete a line, at most: a shell cannot list more in a readable way."""
 
 _TABLES = ("kitchen", "rates", "utensils", "goals", "unit_prices", "unit_amounts")
 

@@ -18,9 +18,6 @@ from foon_asp.cli.verbs import SHELL_REQUEST
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 
-MAX_COMPLETIONS = 200
-"""Words that complete a line, at most: a shell cannot list more in a readable way."""
-
 _LINE_VARIABLE = "FOON_ASP_LINE"  # in the environment: the line up to the cursor
 
 
@@ -39,6 +36,8 @@ class _Shell(ShellComplete):
 
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
         """Return the completions; none where the data that the line names cannot be read."""
+        from foon_asp.cli.completed_words import MAX_COMPLETIONS
+
         option, equals, _ = incomplete.partition("=") if incomplete.startswith("-") else ("", "", "")
         try:
             items = super().get_completions(args, incomplete)

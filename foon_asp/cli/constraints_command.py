@@ -9,8 +9,8 @@ from foon_asp.cli.output import write_parts
 from foon_asp.cli.progress_line import Progress
 from foon_asp.errors import UserError
 from foon_asp.questions.constraint_list import list_constraints
-from foon_asp.questions.contract import TABLES, Role
 from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, RULE
+from foon_asp.questions.question import TABLES, Role
 from foon_asp.results.document import Document
 from foon_asp.rules.passed_constraint import Constraint, RuleText
 

@@ -10,7 +10,7 @@ from foon_asp.cli import shared_options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
-from foon_asp.dataset.assumed import goal_lines, kitchen_lines
+from foon_asp.dataset.assumption_lines import goal_lines, kitchen_lines
 from foon_asp.dataset.item_options import items_of
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives

@@ -21,8 +21,8 @@ from foon_asp.linting.linted_files import LintedFiles
 from foon_asp.linting.mending import is_mendable, mended
 from foon_asp.linting.vocabulary import Vocabulary
 from foon_asp.network import counted
-from foon_asp.questions.contract import TABLES
 from foon_asp.questions.lint import Findings, Linted, find, linted_files
+from foon_asp.questions.question import TABLES
 from foon_asp.questions.result import Ending
 from foon_asp.report.lint_findings import explained
 from foon_asp.results.plain import plain

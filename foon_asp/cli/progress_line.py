@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Self
 
 import click
 
-from foon_asp.aside import Aside
 from foon_asp.asp.reporter import Reporter
 from foon_asp.cli.output import console, say
+from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective
 from foon_asp.text.reading import reporting_to, size_of
@@ -36,7 +36,7 @@ class Progress(Reporter):
         self._deadline = deadline
         self._began = time.monotonic()
         self._finished: SimpleQueue[None] = SimpleQueue()
-        self._thread: Aside | None = None
+        self._thread: DaemonThread | None = None
         self._warnings: set[str] = set()
         self._costs: Costs | None = None
         self._bound: tuple[Objective, int | Fraction] | None = None
@@ -58,7 +58,7 @@ class Progress(Reporter):
         """Start the time of the search, and the thread that shows the line."""
         self._began = time.monotonic()
         if sys.stderr.isatty():
-            self._thread = Aside(self._show)
+            self._thread = DaemonThread(self._show)
 
     def _show(self) -> None:
         with contextlib.suppress(Empty):

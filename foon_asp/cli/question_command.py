@@ -22,9 +22,9 @@ from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS
 from foon_asp.questions.caller import Caller, asked_by
-from foon_asp.questions.contract import Question, Role, not_built
 from foon_asp.questions.index import INDEX
 from foon_asp.questions.posing import no_data
+from foon_asp.questions.question import Question, Role, not_built
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result, format_method
 
 _EXIT_CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}

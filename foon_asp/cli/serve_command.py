@@ -15,7 +15,7 @@ from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.problem import parse_objectives
 from foon_asp.questions.common_options import settings_of
-from foon_asp.questions.contract import Question
+from foon_asp.questions.question import Question
 
 _FILE_OPTIONS = {"output": "-o", "format_": "--format"}
 

@@ -45,7 +45,7 @@ from foon_asp.problem import (
     unrated_text,
 )
 from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning
-from foon_asp.text.goal_name import entry_names, find_goal, listed_goal, listed_nodes
+from foon_asp.text.node_lookup import entry_names, find_goal, listed_goal, listed_nodes
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
 

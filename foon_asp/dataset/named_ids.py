@@ -7,9 +7,9 @@ from typing import Protocol
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitPrices, node_at_level
 from foon_asp.problem import Names, Number, UnitPricesNamed, success_rate, unit_price
-from foon_asp.text.goal_name import GoalError, NodeNames, Wording, find_goal
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_name
+from foon_asp.text.node_lookup import GoalError, NodeNames, Wording, find_goal
 from foon_asp.text.object_list import ListedObject
 
 

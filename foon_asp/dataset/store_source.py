@@ -14,9 +14,9 @@ from foon_asp.network import DataAmounts, FunctionalUnit, Network, UnitPrices
 from foon_asp.network import Source as Place
 from foon_asp.problem import ContainerRule, Objective, Unpriced
 from foon_asp.store.cone import Cone
-from foon_asp.store.starting_kitchen import StoredStartingKitchen
 from foon_asp.store.store import Store
 from foon_asp.store.stored_ids import StoredIds
+from foon_asp.store.stored_kitchen import StoredStartingKitchen
 from foon_asp.store.touched_network import TouchedNetwork
 from foon_asp.text.object_list import ListedObject
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any, Final
 
-from foon_asp.aside import Aside
+from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import uninterrupted
 
 _SMALL: Final = 6000  # columns and rows, a run of that many steps takes about a second
@@ -74,7 +74,7 @@ class _Run:
         self._highs.setCallback(self._look, None)
         for name in ("kCallbackSimplexInterrupt", "kCallbackIpmInterrupt", "kCallbackMipInterrupt"):
             self._highs.startCallback(getattr(kinds, name))
-        thread = Aside(self._highs.run)
+        thread = DaemonThread(self._highs.run)
         try:
             while not thread.ended(_LOOKS) and not self._expired():
                 pass

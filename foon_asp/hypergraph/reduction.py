@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from foon_asp.garbage import uncollected
+from foon_asp.garbage_collection import uncollected
 from foon_asp.hypergraph import greedy_stages as greedy
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineError

@@ -22,9 +22,9 @@ from foon_asp.network.stand_in_table import Edit as Edit
 from foon_asp.network.stand_in_table import StandInTable as StandInTable
 from foon_asp.network.stand_in_table import spelled_alike as spelled_alike
 from foon_asp.network.stand_in_table import spelling_key as spelling_key
-from foon_asp.network.starting import StartingKitchen as StartingKitchen
-from foon_asp.network.starting import starting_kitchen as starting_kitchen
-from foon_asp.network.starting import starting_nodes as starting_nodes
+from foon_asp.network.starting_kitchen import StartingKitchen as StartingKitchen
+from foon_asp.network.starting_kitchen import starting_kitchen as starting_kitchen
+from foon_asp.network.starting_kitchen import starting_nodes as starting_nodes
 from foon_asp.network.task_tree import TaskTree as TaskTree
 from foon_asp.network.unit_amounts import MAX_AMOUNT as MAX_AMOUNT
 from foon_asp.network.unit_amounts import NO_AMOUNTS as NO_AMOUNTS

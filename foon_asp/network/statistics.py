@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from foon_asp.network.graph import UNREACHED, cycles, layers, parts
 from foon_asp.network.network import Network
-from foon_asp.network.starting import starting_kitchen
+from foon_asp.network.starting_kitchen import starting_kitchen
 
 MANY = 4  # producers; object nodes with as many or more are counted together
 

@@ -1,10 +1,10 @@
 """Problem: a question over a network, its costs and objectives, and reachability and relevance in it."""
 
-from foon_asp.problem.containers import ContainerRule as ContainerRule
-from foon_asp.problem.containers import conditions as conditions
-from foon_asp.problem.containers import container_rule as container_rule
-from foon_asp.problem.containers import given_outputs as given_outputs
-from foon_asp.problem.containers import needed_inputs as needed_inputs
+from foon_asp.problem.container_rule import ContainerRule as ContainerRule
+from foon_asp.problem.container_rule import conditions as conditions
+from foon_asp.problem.container_rule import container_rule as container_rule
+from foon_asp.problem.container_rule import given_outputs as given_outputs
+from foon_asp.problem.container_rule import needed_inputs as needed_inputs
 from foon_asp.problem.costs import Costs as Costs
 from foon_asp.problem.costs import tree_costs as tree_costs
 from foon_asp.problem.items import ITEMS as ITEMS

@@ -10,6 +10,7 @@ from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
+from foon_asp.argument_checks import typed
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import (
@@ -24,7 +25,7 @@ from foon_asp.network import (
     UnitAmounts,
     UnitPrices,
 )
-from foon_asp.problem.containers import (
+from foon_asp.problem.container_rule import (
     ContainerRule,
     conditions,
     network_makers,
@@ -35,7 +36,6 @@ from foon_asp.problem.items import Flow, UsedUp
 from foon_asp.problem.number import Number
 from foon_asp.problem.objective import Known, Measured, Objective
 from foon_asp.problem.restriction import Restriction
-from foon_asp.typed import typed
 
 Names = str | ObjectNode | Iterable[str | ObjectNode]
 """One object node or several: labels, one-line notation (``ice; crushed; in [drinking glass]``), or nodes."""

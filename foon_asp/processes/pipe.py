@@ -11,7 +11,7 @@ from collections.abc import Callable
 from io import FileIO, RawIOBase
 from typing import Any, TypeVar
 
-from foon_asp.aside import Aside
+from foon_asp.daemon_thread import DaemonThread
 
 T = TypeVar("T")
 
@@ -82,7 +82,7 @@ def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], Fil
             except MemoryError:
                 os._exit(OUT_OF_MEMORY)
 
-    Aside(listen)
+    DaemonThread(listen)
     return received, answers
 
 

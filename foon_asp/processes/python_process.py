@@ -12,7 +12,7 @@ from io import RawIOBase
 from pathlib import Path
 from typing import Any, cast
 
-from foon_asp.aside import Aside
+from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import uninterrupted
 from foon_asp.errors import UserError
 
@@ -53,7 +53,7 @@ class PythonProcess:
         self._out = cast("RawIOBase", self._process.stdin)
         self._in = cast("RawIOBase", self._process.stdout)
         self._group_ended = False  # or not ours: its number may be that of others by now
-        self._threads: list[Aside] = []
+        self._threads: list[DaemonThread] = []
         _all.add(self)
 
     @property
@@ -65,7 +65,7 @@ class PythonProcess:
     def start_thread(self, target: Callable[..., None], *arguments: object) -> None:
         """Start a thread that reads from or writes to the process, and ends with it."""
         self._threads = [thread for thread in self._threads if not thread.ended(0)]
-        self._threads.append(Aside(target, *arguments))
+        self._threads.append(DaemonThread(target, *arguments))
 
     def end(self) -> int:
         """Kill the process and the processes that it has started; return its exit code."""

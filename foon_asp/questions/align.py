@@ -11,8 +11,8 @@ from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import Edit, FunctionalUnit, Network, ObjectNode, StandInTable, counted
-from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.posing import Command, the_data
+from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import ENDINGS, Result
 from foon_asp.questions.stand_in import NodeEdit
 from foon_asp.results.document import Unserialized

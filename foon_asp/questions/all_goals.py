@@ -13,10 +13,10 @@ from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, answered_nearby
-from foon_asp.questions.arguments import asked_with, chosen_objectives, read
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
-from foon_asp.questions.contract import asked_in_python
+from foon_asp.questions.python_arguments import asked_with, chosen_objectives, read
+from foon_asp.questions.question import asked_in_python
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.figure_text import figure_text

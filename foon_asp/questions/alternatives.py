@@ -17,11 +17,11 @@ from foon_asp.pictures.drawing import Drawing
 from foon_asp.pictures.notebook import page_bundle
 from foon_asp.plans.ranked_plans import RankedPlans, best_plans
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
-from foon_asp.questions.arguments import Objectives, asked_with, at_least, chosen_objectives
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
+from foon_asp.questions.python_arguments import Objectives, asked_with, at_least, chosen_objectives
+from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note

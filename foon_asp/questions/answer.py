@@ -15,8 +15,8 @@ from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_n
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.problem.dead_ends import Cause
-from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
+from foon_asp.questions.python_arguments import asked_with, read, reading
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
 from foon_asp.questions.used_up_note import used_up_note

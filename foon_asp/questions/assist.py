@@ -10,12 +10,12 @@ from foon_asp.asp import Outcome, Status
 from foon_asp.dataset.paths import File
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Number, Objective, Problem, success_rate
-from foon_asp.questions.arguments import asked_with, at_least
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.help_search import helped_trees
 from foon_asp.questions.options import CONTAINERS, GOALS
+from foon_asp.questions.python_arguments import asked_with, at_least
+from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note

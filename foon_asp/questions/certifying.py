@@ -20,8 +20,8 @@ from foon_asp.dataset.paths import File
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof.verifier import Subject
 from foon_asp.questions.answer import Answer, answered, answered_nearby
-from foon_asp.questions.arguments import asked_with, reading, whole
 from foon_asp.questions.certificate_text import bound_text, certificate_lines, looked_at
+from foon_asp.questions.python_arguments import asked_with, reading, whole
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
 from foon_asp.results.figure_text import costs_text

@@ -14,12 +14,12 @@ from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_for
-from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import Kind, Option, Role, question
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import a_plan
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree, posed_tree, read_answer
 from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines

@@ -9,9 +9,9 @@ from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel, Deadline, memory_size, seconds
 from foon_asp.network import ObjectNode
 from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.arguments import given_constraints
 from foon_asp.questions.caller import caller
 from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, ENCODINGS, LIMITS, RULE
+from foon_asp.questions.python_arguments import given_constraints
 
 _TIME, _MEMORY = LIMITS
 

@@ -21,16 +21,16 @@ from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.pictures.comparison_chart import write_comparison_chart
 from foon_asp.problem import Problem
-from foon_asp.questions.arguments import asked_with, at_least
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
-from foon_asp.questions.compared import comparison_table, published_table, summary_tables, tidy_rows
-from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
+from foon_asp.questions.comparison_tables import comparison_table, published_table, summary_tables, tidy_rows
 from foon_asp.questions.options import CHART, CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
 from foon_asp.questions.posing import Command, one_problem
+from foon_asp.questions.python_arguments import asked_with, at_least
+from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved
-from foon_asp.questions.searching import COUNT, DEPTH, TIES, known_searches, search_settings, searched
+from foon_asp.questions.search_options import COUNT, DEPTH, TIES, known_searches, search_settings, searched
 from foon_asp.resources import published_table as published_file
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block

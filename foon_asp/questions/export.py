@@ -14,11 +14,11 @@ from foon_asp.planning.pddl_writer import domain_text, items_words, problem_text
 from foon_asp.planning.planning_task import PlanningTask, planning_task
 from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
-from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
 from foon_asp.questions.common_options import Posed, begin
-from foon_asp.questions.contract import Kind, Option, Role, asked_in_python, question
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.question import Kind, Option, Role, asked_in_python, question
 from foon_asp.questions.result import Result
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from msgspec import structs
 
+from foon_asp.argument_checks import typed
 from foon_asp.dataset.paths import File, as_path
 from foon_asp.errors import UserError
 from foon_asp.linting import linter
@@ -24,7 +25,6 @@ from foon_asp.results.table import Block, rendered
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
 from foon_asp.text.json_value import Json, json_text, schema_name
-from foon_asp.typed import typed
 
 
 class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
 
+from foon_asp.argument_checks import typed
 from foon_asp.dataset.paths import File, Files, as_path, files
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder, counted
@@ -18,7 +19,6 @@ from foon_asp.text.json_value import schema_name
 from foon_asp.text.merged_network import merged_text
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.unit_price_list import read_unit_prices
-from foon_asp.typed import typed
 from foon_asp.whole_file import utf_8, write_whole
 
 

@@ -2,7 +2,7 @@
 
 from foon_asp.problem import ITEMS as ITEM_WORDS
 from foon_asp.problem import ContainerRule, Objective
-from foon_asp.questions.contract import Kind, Option, Role
+from foon_asp.questions.question import Kind, Option, Role
 
 GOALS = Option(
     "goals_named",

@@ -15,11 +15,11 @@ from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
-from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, usual_objectives
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import TABLES, Option, question
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
+from foon_asp.questions.python_arguments import Objectives, asked_with, chosen_objectives, usual_objectives
+from foon_asp.questions.question import TABLES, Option, question
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note

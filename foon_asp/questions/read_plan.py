@@ -13,12 +13,12 @@ from foon_asp.planning.plan_file import PlanStep, read_plan_text
 from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import ITEMS, Problem
 from foon_asp.proof.simulation import Verdict
-from foon_asp.questions.arguments import whole
 from foon_asp.questions.check import Checked
 from foon_asp.questions.common_options import Posed, begin
-from foon_asp.questions.contract import Kind, Option, Role, question
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import units_in
+from foon_asp.questions.python_arguments import whole
+from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
 from foon_asp.results.table import Block

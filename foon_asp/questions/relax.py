@@ -18,8 +18,8 @@ from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.questions.answer import Answer, answered, of_status
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import Limits, begin
-from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.posing import no_data
+from foon_asp.questions.question import Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import Unserialized
 from foon_asp.results.plain import fraction_text

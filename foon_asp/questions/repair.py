@@ -18,11 +18,11 @@ from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.rule_meaning import ALL_STEPS
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.answer import of_status
-from foon_asp.questions.arguments import whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certificate_text import certificate_lines
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import asked_in_python
+from foon_asp.questions.python_arguments import whole
+from foon_asp.questions.question import asked_in_python
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
 from foon_asp.questions.tree import Tree, posed_tree

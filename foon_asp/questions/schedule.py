@@ -23,13 +23,13 @@ from foon_asp.proof.timetable import Means, ToolName, timetable_fault
 from foon_asp.proof.timetable import TimedStep as Timed
 from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.questions.answer import of_status
-from foon_asp.questions.arguments import at_least, read_as
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import Posed, begin
-from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
 from foon_asp.questions.durations import Durations, duration_of, stated_durations
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
+from foon_asp.questions.python_arguments import at_least, read_as
+from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
 from foon_asp.results.document import AboutGoals

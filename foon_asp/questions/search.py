@@ -11,9 +11,9 @@ from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof.simulation import Simulation, Verdict
 from foon_asp.questions.common_options import Posed, begin
-from foon_asp.questions.contract import question
+from foon_asp.questions.question import question
 from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.searching import COUNT, DEPTH, TIES, search_settings, searched
+from foon_asp.questions.search_options import COUNT, DEPTH, TIES, search_settings, searched
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines

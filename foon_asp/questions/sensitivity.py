@@ -10,13 +10,13 @@ from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem, success_rate
 from foon_asp.questions.answer import Answer, WithAnswer
-from foon_asp.questions.arguments import asked_with
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import TABLES, question
 from foon_asp.questions.envelope import End, Envelope
 from foon_asp.questions.flip import Flip, decimal_text
 from foon_asp.questions.options import CONTAINERS, GOALS
+from foon_asp.questions.python_arguments import asked_with
+from foon_asp.questions.question import TABLES, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import success_text
 from foon_asp.results.plain import fraction_text

@@ -22,15 +22,15 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.network import ObjectNode, Source, counted
 from foon_asp.problem import Costs, Number, Objective, Problem, exact, levels
 from foon_asp.problem.dead_ends import dead_ends
+from foon_asp.problem.for_sale import Offer, Shop
 from foon_asp.problem.number import INT32_MAX
 from foon_asp.problem.purchases import Purchases
-from foon_asp.problem.shop import Offer, Shop
 from foon_asp.questions.answer import Answer, WithAnswer
-from foon_asp.questions.arguments import Objectives, at_least, chosen_objectives, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.options import TREE
+from foon_asp.questions.python_arguments import Objectives, at_least, chosen_objectives, whole
+from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block

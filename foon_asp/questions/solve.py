@@ -10,7 +10,10 @@ from foon_asp.errors import UserError
 from foon_asp.hypergraph import Reduction, parse_reductions
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, SkippedGoal, answered_under
-from foon_asp.questions.arguments import (
+from foon_asp.questions.common_options import CommonOptions, settings_of
+from foon_asp.questions.durations import Durations, stated_durations
+from foon_asp.questions.options import AMOUNT, ITEMS, SOFT, TREE
+from foon_asp.questions.python_arguments import (
     Objectives,
     asked_with,
     at_least,
@@ -19,10 +22,7 @@ from foon_asp.questions.arguments import (
     read,
     whole,
 )
-from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import TABLES, Kind, Option, Role, not_built, question
-from foon_asp.questions.durations import Durations, stated_durations
-from foon_asp.questions.options import AMOUNT, ITEMS, SOFT, TREE
+from foon_asp.questions.question import TABLES, Kind, Option, Role, not_built, question
 from foon_asp.questions.result import Result
 
 

@@ -8,8 +8,8 @@ from foon_asp.asp import Settings
 from foon_asp.asp.soft import solve_soft as find
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, SoftConstraint
-from foon_asp.questions.arguments import whole
 from foon_asp.questions.caller import caller
+from foon_asp.questions.python_arguments import whole
 from foon_asp.rules.passed_constraint import Constraint
 
 

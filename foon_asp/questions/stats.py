@@ -16,9 +16,9 @@ from foon_asp.network import Network, counted, starting_kitchen
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
 from foon_asp.problem import ContainerRule, UsedUp, container_rule, needed_inputs
 from foon_asp.questions.common_options import Limits, begin
-from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
 from foon_asp.questions.options import CONTAINERS, ITEMS
 from foon_asp.questions.posing import the_data
+from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Result
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Node, Unit, Value, step_lines

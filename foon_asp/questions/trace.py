@@ -15,11 +15,11 @@ from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem, UsedUp
 from foon_asp.proof.replay import Replay, replay_for, replayable
 from foon_asp.questions.answer import Answer, answered
-from foon_asp.questions.arguments import Objectives, chosen_objectives, read_as
 from foon_asp.questions.common_options import Posed, begin
-from foon_asp.questions.contract import TABLES, Kind, Option, Role, question
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan_or_state
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, read_as
+from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
 from foon_asp.results.document import AboutGoals, Unserialized

@@ -9,10 +9,10 @@ from foon_asp.asp.tree_union import tree_union
 from foon_asp.network import counted
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, WithAnswer
-from foon_asp.questions.arguments import Objectives, asked_with, at_least, chosen_objectives
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import asked_in_python, not_built
+from foon_asp.questions.python_arguments import Objectives, asked_with, at_least, chosen_objectives
+from foon_asp.questions.question import asked_in_python, not_built
 from foon_asp.questions.result import Ending
 from foon_asp.results.table import Block
 from foon_asp.results.values import Mention

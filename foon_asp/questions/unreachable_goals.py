@@ -5,7 +5,7 @@ from dataclasses import replace
 from foon_asp.problem import Problem, reach
 from foon_asp.problem.dead_ends import Cause, dead_ends
 from foon_asp.questions.answer import SkippedGoal
-from foon_asp.questions.arguments import read
+from foon_asp.questions.python_arguments import read
 from foon_asp.results.values_of import node_of
 
 

@@ -21,8 +21,8 @@ from foon_asp.proof.rule_meaning import ALL_STEPS, OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.certificate_text import bound_text, looked_at, trusted_text
 from foon_asp.questions.common_options import Limits, begin
-from foon_asp.questions.contract import Kind, Option, Role, question
 from foon_asp.questions.posing import DATA, Command, the_data
+from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Block

@@ -29,18 +29,18 @@ from foon_asp.pictures.whole_network import WholeNetwork
 from foon_asp.problem import ContainerRule, Objective, Problem, container_rule, levels
 from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answered, answered_under
-from foon_asp.questions.arguments import Objectives, asked_with, chosen_objectives, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certifying import certified
 from foon_asp.questions.common_options import CommonOptions, Limits, begin, settings_of
-from foon_asp.questions.contract import Kind, Option, Role, question
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
 from foon_asp.questions.posing import Command, is_for_goals, one_problem, the_data
+from foon_asp.questions.python_arguments import Objectives, asked_with, chosen_objectives, whole
+from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.search import Retrieved, search
-from foon_asp.questions.searching import known_searches
+from foon_asp.questions.search_options import known_searches
 from foon_asp.questions.shopping_list import Shopping, shopping_list
 from foon_asp.questions.tree import posed_tree, read_listed
 from foon_asp.questions.why_not import Explanation, why_not

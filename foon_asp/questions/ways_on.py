@@ -11,10 +11,10 @@ from foon_asp.network import ObjectNode, counted
 from foon_asp.problem import Problem
 from foon_asp.problem.relevance import reach, relevant
 from foon_asp.questions.answer import Answer, WithAnswer, answered
-from foon_asp.questions.arguments import Objectives, chosen_objectives, whole
 from foon_asp.questions.caller import asked_by, caller
 from foon_asp.questions.common_options import Posed, begin
-from foon_asp.questions.contract import asked_in_python, not_built
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.question import asked_in_python, not_built
 from foon_asp.questions.result import Ending
 from foon_asp.questions.shopping_list import shopping_list
 from foon_asp.results.table import Block

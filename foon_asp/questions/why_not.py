@@ -14,11 +14,11 @@ from foon_asp.network.near_nodes import nearest, slip_between
 from foon_asp.problem import Objective, Problem
 from foon_asp.problem.dead_ends import Cause, DeadEnds, dead_ends
 from foon_asp.problem.dead_ends import Root as FoundRoot
-from foon_asp.problem.shop import Shop
-from foon_asp.questions.arguments import constraint_weights, whole
+from foon_asp.problem.for_sale import Shop
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS
+from foon_asp.questions.python_arguments import constraint_weights, whole
+from foon_asp.questions.question import Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_ins_in
 from foon_asp.results.document import AboutGoals

@@ -12,16 +12,16 @@ from foon_asp.deadline import Cancel, Deadline, StoppedError, stoppable
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.problem import Costs, Objective, Problem, UsedUp
-from foon_asp.questions.arguments import chosen_objectives
 from foon_asp.questions.caller import Caller, asked_by
+from foon_asp.questions.python_arguments import chosen_objectives
 from foon_asp.questions.regret import regret_of
 from foon_asp.questions.view import PagePart, View, pages
 from foon_asp.results.figure_text import bound_text, costs_text
 from foon_asp.rules.passed_constraint import Constraint, RuleText, find_constraint
 from foon_asp.serve.form import Form, Without
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.goal_name import entry_names, nodes_beginning
 from foon_asp.text.json_value import Json
+from foon_asp.text.node_lookup import entry_names, nodes_beginning
 
 Tell = Callable[[Json], object]
 """Sends an event to the browser."""

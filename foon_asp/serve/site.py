@@ -18,7 +18,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from foon_asp.aside import Aside
+from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.pictures.page import digest, in_script, web
@@ -148,7 +148,7 @@ async def _stream(
             finally:
                 tell(None)
 
-        Aside(run)
+        DaemonThread(run)
         try:
             while (event := await queue.get()) is not None:
                 yield json_line(event) + "\n"

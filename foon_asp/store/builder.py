@@ -9,7 +9,7 @@ from typing import Any
 
 from foon_asp.network import DataAmounts, FunctionalUnit, ObjectNode, Source
 from foon_asp.network.node_pattern import LookupKey, lookup_keys
-from foon_asp.network.starting import recipe_kitchen
+from foon_asp.network.starting_kitchen import recipe_kitchen
 from foon_asp.store.columns import (
     NodeColumns,
     decoded_label,

@@ -6,7 +6,7 @@ from collections.abc import Container, Iterable, Sequence
 from itertools import chain
 from typing import Protocol
 
-from foon_asp.garbage import uncollected
+from foon_asp.garbage_collection import uncollected
 from foon_asp.problem import ContainerRule
 
 _BATCH_SIZE = 200  # nodes whose producers one query reads; a cone reads those of up to 200 nodes too many

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
+from foon_asp.file_permissions import pass_on, warn_of_replaced
 from foon_asp.network import Source
 from foon_asp.problem import unrated_remarks
-from foon_asp.replacing import pass_on, warn_of_replaced
 from foon_asp.store.builder import StoreBuilder
 from foon_asp.store.digests import append_digest
 from foon_asp.store.store_file import is_store_database

@@ -8,7 +8,7 @@ from itertools import chain, groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from foon_asp.garbage import uncollected
+from foon_asp.garbage_collection import uncollected
 from foon_asp.network import (
     DataAmounts,
     FunctionalUnit,

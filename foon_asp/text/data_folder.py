@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.garbage import uncollected
+from foon_asp.garbage_collection import uncollected
 from foon_asp.network import (
     NO_AMOUNTS,
     DataAmounts,

@@ -4,13 +4,13 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 
+from foon_asp.argument_checks import typed
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
 from foon_asp.network import Contents, FunctionalUnit, ObjectNode, Relation
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.line_parser import parse_line
 from foon_asp.text.listed_unit import node_of
-from foon_asp.typed import typed
 
 
 def write_line(line: Line) -> str:

@@ -26,8 +26,8 @@ from foon_asp.encoding import worker_process
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.processes import worker
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.questions.arguments import chosen_objectives
 from foon_asp.questions.caller import Caller, asked_by, caller
+from foon_asp.questions.python_arguments import chosen_objectives
 from foon_asp.rules.passed_constraint import RuleText
 from foon_asp.text.writer import write_units
 from tests.support.hard_problem import hard_problem

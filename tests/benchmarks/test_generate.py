@@ -12,7 +12,7 @@ import pytest
 from foon_asp.problem import ContainerRule, Problem, first_tree, reach
 from foon_asp.proof.simulation import Verdict, simulate
 from foon_asp.text.data_folder import Data, find_data, read_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reader import FoonReader
 

@@ -24,7 +24,7 @@ from foon_asp.proof.simulation import simulate_for
 from foon_asp.proof.verifier import Verified, read_certificate
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import find_data, read_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 from foon_asp.text.writer import write_units
 from tests.conftest import ROOT, STRUCK_WHILE_READING, Cli
 from tests.oracle import task_trees

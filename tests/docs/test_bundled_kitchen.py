@@ -10,7 +10,7 @@ from foon_asp.asp import Outcome, Status, solve
 from foon_asp.problem import ContainerRule, Problem, parse_objectives
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import Data, find_data, read_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 
 FOLDER = bundled_kitchen()
 FILES = find_data(FOLDER)

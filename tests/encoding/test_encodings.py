@@ -26,7 +26,7 @@ from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import find_data, read_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 from tests.conftest import ROOT, Cli, Ran
 
 FOLDER = ROOT / "encodings"

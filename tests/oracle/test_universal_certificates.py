@@ -13,7 +13,7 @@ from foon_asp.engines import Asked, cross_check
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verifier import read_certificate, verify
 from foon_asp.text.data_folder import Data, find_data, read_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 from tests.conftest import Cli
 
 RULES = list(ContainerRule)

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from foon_asp.cli.verbs import VERBS
-from foon_asp.questions import contract
-from foon_asp.questions.contract import Option, Question, Role
+from foon_asp.questions import question
 from foon_asp.questions.index import INDEX, module_name, question_name
+from foon_asp.questions.question import Option, Question, Role
 from foon_asp.questions.result import Result
 from tests.conftest import Cli
 
@@ -27,13 +27,13 @@ def function_of(verb: str) -> Callable[..., Result]:
 
 
 def question_of(verb: str) -> Question:
-    return contract.question_of(function_of(verb))
+    return question.question_of(function_of(verb))
 
 
 def parameters(verb: str) -> dict[str, inspect.Parameter]:
     """Return the parameters of what a command calls, without those that pose the problem in Python."""
     command, function = question_of(verb).command, function_of(verb)
-    found = dict(contract.expanded_signature(command).parameters)
+    found = dict(question.expanded_signature(command).parameters)
     if any(each.kind is each.VAR_KEYWORD for each in inspect.signature(command).parameters.values()):
         found = {**inspect.signature(function).parameters, **found}  # what it passes on
     posing = {"goal", "containers"} - asked_for(verb).keys()

@@ -14,7 +14,7 @@ from foon_asp.asp import Status
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 from foon_asp.problem import ContainerRule, Problem
-from foon_asp.problem.shop import Offer, Shop
+from foon_asp.problem.for_sale import Offer, Shop
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.tables import PRICES
 from tests.conftest import STRUCK_WHILE_READING, Cli

@@ -18,7 +18,7 @@ from foon_asp.resources import bundled_kitchen, encodings_folder
 from foon_asp.rules.passed_constraint import given_constraint
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 from tests.conftest import Cli
 
 MACARONI = ["solve", "--goal", "macaroni"]

@@ -25,7 +25,7 @@ from foon_asp.searches import (
     iterative_deepening,
 )
 from foon_asp.text.data_folder import Data, find_data, read_data
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 from tests.conftest import Cli
 from tests.oracle import task_trees
 from tests.support.hard_problem import hard_problem

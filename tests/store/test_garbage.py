@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.errors import UserError
-from foon_asp.garbage import uncollected
+from foon_asp.garbage_collection import uncollected
 from foon_asp.store.import_files import import_files
 from foon_asp.store.store import Store
 from foon_asp.text.data_folder import DataFiles, read_data

@@ -29,14 +29,14 @@ from foon_asp.proof.verifier import Subject
 from foon_asp.store import builder, store_tables
 from foon_asp.store.digests import FILE_DIGEST, append_digest
 from foon_asp.store.import_files import import_files
-from foon_asp.store.starting_kitchen import StoredStartingKitchen
 from foon_asp.store.store import Store
 from foon_asp.store.store_tables import VERSION
 from foon_asp.store.stored_ids import StoredIds
+from foon_asp.store.stored_kitchen import StoredStartingKitchen
 from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.foon_text import FoonText
-from foon_asp.text.goal_name import find_goal
+from foon_asp.text.node_lookup import find_goal
 from foon_asp.text.writer import write_units
 from tests.conftest import ROOT, Cli, Ran
 from tests.support.random_problems import random_problem

@@ -7,7 +7,7 @@ import pytest
 
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder, NodePattern, ObjectNode, Source
-from foon_asp.text.goal_name import entry_names, find_goal
+from foon_asp.text.node_lookup import entry_names, find_goal
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.reader import FoonReader
 

@@ -17,8 +17,8 @@ from foon_asp.foon import Foon
 from foon_asp.network import FunctionalUnit, NetworkBuilder, NodePattern, ObjectNode, Source, UnitPrices
 from foon_asp.results.plain import plain
 from foon_asp.results.values_of import named_node
-from foon_asp.text.goal_name import find_goal, nodes_beginning
 from foon_asp.text.line_parser import parse_name, parse_node
+from foon_asp.text.node_lookup import find_goal, nodes_beginning
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.tables import PRICES, STAYS, read_stock

@@ -10,8 +10,8 @@ from typing import NamedTuple, ParamSpec, TypeVar, get_args
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.questions.docstring import complete_docstring, docstring_entries
-from foon_asp.questions.in_hand import HELP, in_hand
 from foon_asp.questions.posing import Pose, one_problem
+from foon_asp.questions.python_call import HELP, called_in_python
 from foon_asp.questions.result import Result
 
 TABLES = ("text", "json", "csv", "markdown")
@@ -151,7 +151,7 @@ def asked_in_python(ask: Callable[P, T], options: Sequence[Option] | None = None
     signature = _without_metadata(expanded_signature(ask))
     described = _options_of(ask) if options is None else options
     texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in described}
-    wrapped = in_hand(ask, signature)
+    wrapped = called_in_python(ask, signature)
     wrapped.__doc__ = complete_docstring(ask, signature, texts)
     return wrapped
 

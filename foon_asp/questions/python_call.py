@@ -9,6 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
+from foon_asp.argument_checks import checker
 from foon_asp.asp.reporter import Reporter
 from foon_asp.deadline import Deadline, stoppable
 from foon_asp.errors import UserError
@@ -16,7 +17,6 @@ from foon_asp.network import ObjectNode
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.problem.progress import OnProgress, Progress
 from foon_asp.questions.caller import asked_by, caller, is_python
-from foon_asp.typed import checker
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -60,7 +60,7 @@ class _Listener(Reporter):
         self._tell(progress)
 
 
-def in_hand(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
+def called_in_python(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
     """Wrap a function so that it takes a path or data for a problem, ``cancel`` and ``on_progress``.
 
     Arguments are checked by the ``signature``.

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from queue import Empty, SimpleQueue
 
 
-class Aside:
+class DaemonThread:
     """A daemon thread that calls a function: the process does not wait for it at exit."""
 
     def __init__(self, function: Callable[..., object], *arguments: object) -> None:

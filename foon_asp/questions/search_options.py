@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 
 from foon_asp.errors import UserError
-from foon_asp.questions.arguments import at_least
-from foon_asp.questions.contract import Kind, Option
+from foon_asp.questions.python_arguments import at_least
+from foon_asp.questions.question import Kind, Option
 from foon_asp.searches import Count, Search, SearchSettings, Ties, find_searches
 
 TIES = Option(

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from foon_asp.network.starting import StartingKitchen
+from foon_asp.network.starting_kitchen import StartingKitchen
 from foon_asp.store.columns import ids_of
 from foon_asp.store.store import Store
 from foon_asp.store.store_file import reporting_damage
