@@ -24,7 +24,7 @@ from foon_asp.network import (
     UnitPrices,
     starting_kitchen,
 )
-from foon_asp.problem import Changes, Names, Number, Problem, UnitPricesNamed
+from foon_asp.problem import DEFAULT_RULE, Changes, Names, Number, Problem, UnitPricesNamed
 from foon_asp.problem.progress import OnProgress, Progress
 from foon_asp.rules.measure import read_measures
 from foon_asp.standins.table_file import read_stand_ins
@@ -345,7 +345,7 @@ class Foon:
     def problem(
         self,
         *goals: str | ObjectNode,
-        containers: str = "strict",
+        containers: str = DEFAULT_RULE.value,
         items: str | None = None,
         stock: Stock | None = None,
         stays: Stays | None = None,

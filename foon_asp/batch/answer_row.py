@@ -15,7 +15,7 @@ from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives, with_dissimilarity
 from foon_asp.proof.used_up_run import used_up_run
-from foon_asp.results.plain import costs_by_name, exact_measures, plain, read_plain
+from foon_asp.results.plain_values import costs_by_name, exact_measures, plain, read_plain
 from foon_asp.results.values import Figure
 
 Figures = dict[str, Figure | None]

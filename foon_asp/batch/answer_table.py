@@ -10,7 +10,8 @@ from foon_asp.batch.answer_row import AnswerRow, Figures
 from foon_asp.batch.batch_question import Goals
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective
-from foon_asp.results.plain import csv_text, flat_row, plain
+from foon_asp.results.plain_values import plain
+from foon_asp.results.table_columns import csv_text, flat_row
 from foon_asp.text.json_value import Json
 from foon_asp.whole_file import write_whole
 

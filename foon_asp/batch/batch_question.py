@@ -5,7 +5,7 @@ from typing import Annotated, Protocol
 
 from msgspec import Meta
 
-from foon_asp.problem import ContainerRule, Problem
+from foon_asp.problem import DEFAULT_RULE, ContainerRule, Problem
 from foon_asp.results.values import Value
 
 Name = Annotated[str, Meta(min_length=1)]
@@ -28,7 +28,7 @@ class BatchQuestion(Value, frozen=True):
 
     goal: Goals
     objective: Name = "units"
-    containers: ContainerRule = ContainerRule.STRICT
+    containers: ContainerRule = DEFAULT_RULE
     items: Name = "lasting"
     kitchen: Name | None = None
     stock: Name | None = None

@@ -24,8 +24,8 @@ from foon_asp.network import counted
 from foon_asp.questions.lint import Findings, Linted, find, linted_files
 from foon_asp.questions.question import TABLES
 from foon_asp.questions.result import Ending
-from foon_asp.report.lint_findings import explained
-from foon_asp.results.plain import plain
+from foon_asp.report.rule_page import rule_page
+from foon_asp.results.plain_values import plain
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.json_value import json_text
 from foon_asp.text.plain_file import plain_text, read_content
@@ -43,7 +43,7 @@ def _explain(context: click.Context, _: click.Parameter, code: str | None) -> No
         return
     if code not in CATALOG:
         raise UserError(unknown_code(code))
-    write_parts(explained(CATALOG[code], example(code)))
+    write_parts(rule_page(CATALOG[code], example(code)))
     context.exit()
 
 

@@ -11,13 +11,12 @@ import click
 
 from foon_asp import __version__
 from foon_asp.cli.ctrl_c import end_at_ctrl_c, raise_at_ctrl_c
-from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.exit_code import ExitCode, code_and_message
 from foon_asp.cli.output import drop_output, safe_streams, show_remarks
 from foon_asp.cli.verbs import FIRST_VERBS, FOR_PROGRAMS, SHELL_REQUEST, VERBS, verb_command, write_verbs
 from foon_asp.cli.whole_process import BEGAN, keep, leave
-from foon_asp.deadline import LimitError, resend_lost_interrupts
+from foon_asp.deadline import resend_lost_interrupts
 from foon_asp.errors import FoonWarning, UserError
-from foon_asp.escapes import escaped
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -146,33 +145,7 @@ def _report_error(error: BaseException, debug: bool) -> ExitCode:
         with ignored_output_errors:
             error.show(sys.stderr)
         return ExitCode.USAGE
-    code, text = _message(error)
+    code, text = code_and_message(error)
     with ignored_output_errors:
         click.echo(text, err=True)
     return code
-
-
-def _message(error: BaseException) -> tuple[ExitCode, str]:
-    """Return the exit code and the message of an error that is not click's."""
-    match error:
-        case LimitError() | click.Abort(__cause__=LimitError()):
-            limit = error.__cause__ if isinstance(error, click.Abort) else error
-            assert isinstance(limit, LimitError)
-            text = (
-                f"unknown: stopped at {limit.stopped}, before there was an answer\nwhat to do: {limit.advice}"
-            )
-            return ExitCode.LIMIT, text
-        case click.Abort() | KeyboardInterrupt():
-            return ExitCode.LIMIT, "interrupted before there was an answer"
-        case MemoryError():
-            return ExitCode.LIMIT, "unknown: out of memory; --memory-limit stops before that"
-        case UserError():
-            text = str(error)
-            return ExitCode.USAGE, text if ": error: " in text else f"error: {text}"
-        case OSError():  # of the system: a full disk, no permission, a folder in place of a file
-            name = "" if error.filename is None else f"{escaped(os.fsdecode(error.filename))}: "
-            return ExitCode.USAGE, f"error: {name}{error.strerror or error}"
-    return ExitCode.BUG, (
-        f"foon-asp has a bug: {type(error).__name__}: {error}\n"
-        "please report it with the command and its input; --debug shows where it happened"
-    )

@@ -13,7 +13,7 @@ from foon_asp.asp.reporter import Reporter
 from foon_asp.cli import shared_options
 from foon_asp.cli.asking import ask, find_question, parameters
 from foon_asp.cli.click_option import Command, click_option
-from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.exit_code import ExitCode, exit_code_of
 from foon_asp.cli.named_path import WrittenPath
 from foon_asp.cli.output import write_data, write_parts
 from foon_asp.cli.output_file import check_outputs
@@ -25,9 +25,8 @@ from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.index import INDEX
 from foon_asp.questions.posing import no_data
 from foon_asp.questions.question import Question, Role, not_built
-from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result, format_method
+from foon_asp.questions.result import NothingToDrawError, NoTreeError, Result, format_method
 
-_EXIT_CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
 _LIMITS = frozenset({"time_limit", "memory_limit"})
 _NOT_FOR_TERMINALS = {"png": "PNG", "pdf": "PDF", "html": "a page of HTML"}
 _ESCAPED_FORMATS = frozenset(
@@ -102,7 +101,7 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
             keep(result)
         except NoTreeError as error:
             click.echo(str(error), err=True)
-            return _EXIT_CODES[error.ending]
+            return exit_code_of(error.ending)
         for chart in charts:
             try:
                 result.write_chart(chart)
@@ -114,7 +113,7 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
                 _show(result, form)
             else:
                 _write(result, form, output)
-        return _EXIT_CODES[result.ending]
+        return exit_code_of(result.ending)
 
     return answer
 

@@ -1,6 +1,5 @@
 """Main loop of the worker process: it executes commands about one program until its input ends."""
 
-import contextlib
 import errno
 import os
 import traceback
@@ -10,6 +9,7 @@ from foon_asp.encoding.derived import derive
 from foon_asp.encoding.ground_program import GroundProgram
 from foon_asp.encoding.run import ProgramError
 from foon_asp.errors import UserError
+from foon_asp.processes.memory_limit import limit_own_memory
 from foon_asp.processes.pipe import OUT_OF_MEMORY, receive, requests, send
 
 
@@ -25,12 +25,12 @@ def serve() -> None:
             folder, *described, memory = parameters
             if folder is not None:
                 os.chdir(folder)
-            _bound_memory(memory)
+            limit_own_memory(memory)
             program = GroundProgram(*described)
             return None
         if command == "derive":
             *described, memory = parameters
-            _bound_memory(memory)
+            limit_own_memory(memory)
             return derive(*described)
         assert program is not None
         if command == "consequences":
@@ -61,14 +61,3 @@ def serve() -> None:
             send(answers, answer)
         except OSError:
             return
-
-
-def _bound_memory(size: int | None) -> None:
-    """Limit the data segment to ``size`` bytes where the system can, since the parent only polls memory."""
-    try:
-        import resource  # noqa: PLC0415 (not on every system)
-    except ImportError:
-        return
-    hard_limit = resource.getrlimit(resource.RLIMIT_DATA)[1]
-    with contextlib.suppress(ValueError, OSError):  # not supported, or above the limit of the user
-        resource.setrlimit(resource.RLIMIT_DATA, (hard_limit if size is None else size, hard_limit))

@@ -11,7 +11,7 @@ from foon_asp.network import FunctionalUnit, Network, ObjectNode
 from foon_asp.planning.planning_task import PlanningTask, taking
 from foon_asp.problem import ITEMS, Objective, UsedUp
 from foon_asp.results.document import AboutGoals
-from foon_asp.results.plain import fraction_text
+from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.values import Copies, Mention, Node, Value
 from foon_asp.results.values_of import copies_of, head_of, mention_of, named_node, node_of
 from foon_asp.text.json_layout import check_json

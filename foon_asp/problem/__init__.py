@@ -1,5 +1,6 @@
 """Problem: a question over a network, its costs and objectives, and reachability and relevance in it."""
 
+from foon_asp.problem.container_rule import DEFAULT_RULE as DEFAULT_RULE
 from foon_asp.problem.container_rule import ContainerRule as ContainerRule
 from foon_asp.problem.container_rule import conditions as conditions
 from foon_asp.problem.container_rule import container_rule as container_rule

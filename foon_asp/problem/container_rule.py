@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from enum import StrEnum
 from functools import lru_cache
+from typing import Final
 
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, node_at_level
@@ -25,6 +26,10 @@ class ContainerRule(StrEnum):
 
     STRICT = "strict"
     IMPLIED = "implied"
+
+
+DEFAULT_RULE: Final = ContainerRule.STRICT
+"""The container rule where none is named."""
 
 
 def container_rule(name: str) -> ContainerRule:

@@ -26,6 +26,7 @@ from foon_asp.network import (
     UnitPrices,
 )
 from foon_asp.problem.container_rule import (
+    DEFAULT_RULE,
     ContainerRule,
     conditions,
     network_makers,
@@ -164,7 +165,7 @@ class Problem:
     goals: tuple[int, ...]
     rates: Mapping[str, Fraction] | None
     utensils: frozenset[str]
-    containers: ContainerRule = ContainerRule.STRICT
+    containers: ContainerRule = DEFAULT_RULE
     own_rates: Mapping[int, Fraction] = field(default_factory=dict)
     origin: Origin | None = field(default=None, kw_only=True)
     as_seen: "Problem | None" = field(default=None, kw_only=True)

@@ -10,8 +10,9 @@ from foon_asp.comparison.summary import Summary
 from foon_asp.network import counted
 from foon_asp.problem import Objective, multiplies
 from foon_asp.proof.simulation import Verdict
-from foon_asp.results.plain import flat_row, plain
+from foon_asp.results.plain_values import plain
 from foon_asp.results.table import Block, Cell, Table
+from foon_asp.results.table_columns import flat_row
 from foon_asp.results.values import Figure
 from foon_asp.text.json_value import Json
 

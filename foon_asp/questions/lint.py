@@ -20,8 +20,9 @@ from foon_asp.linting.lint_settings import find_settings
 from foon_asp.linting.linted_files import with_tables
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.lint_findings import annotations, finding_lines, sarif, statistics, summary
-from foon_asp.results.plain import flat_row, plain
+from foon_asp.results.plain_values import plain
 from foon_asp.results.table import Block, rendered
+from foon_asp.results.table_columns import flat_row
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
 from foon_asp.text.json_value import Json, json_text, schema_name

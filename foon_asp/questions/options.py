@@ -1,7 +1,7 @@
 """The options that questions share."""
 
+from foon_asp.problem import DEFAULT_RULE, ContainerRule, Objective
 from foon_asp.problem import ITEMS as ITEM_WORDS
-from foon_asp.problem import ContainerRule, Objective
 from foon_asp.questions.question import Kind, Option, Role
 
 GOALS = Option(
@@ -21,7 +21,7 @@ CONTAINERS = Option(
     "Whether a unit needs all its inputs (strict), or need not be given a container whose only ingredient is "
     "an input too (implied).",
     role=Role.PROBLEM,
-    default="strict",
+    default=DEFAULT_RULE.value,
     choices=tuple(map(str, ContainerRule)),
 )
 ITEMS = (

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple, ParamSpec, TypeVar, get_args
 
 from foon_asp.errors import UserError
-from foon_asp.problem import Problem
+from foon_asp.problem import DEFAULT_RULE, Problem
 from foon_asp.questions.docstring import complete_docstring, docstring_entries
 from foon_asp.questions.posing import Pose, one_problem
 from foon_asp.questions.python_call import HELP, called_in_python
@@ -17,7 +17,7 @@ from foon_asp.questions.result import Result
 TABLES = ("text", "json", "csv", "markdown")
 """The formats of a result that has rows."""
 
-_DEFAULTS = {"constraints": (), "goal": (), "containers": "strict"}
+_DEFAULTS = {"constraints": (), "goal": (), "containers": DEFAULT_RULE.value}
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -22,7 +22,7 @@ from foon_asp.questions.posing import no_data
 from foon_asp.questions.question import Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import Unserialized
-from foon_asp.results.plain import fraction_text
+from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Value
 from foon_asp.text.json_value import schema_name

@@ -19,7 +19,7 @@ from foon_asp.questions.python_arguments import asked_with
 from foon_asp.questions.question import TABLES, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import success_text
-from foon_asp.results.plain import fraction_text
+from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import CostedTree, Value, changed_motions, steps_not_in
 from foon_asp.results.values_of import costed_tree, head_of

@@ -14,7 +14,7 @@ from foon_asp.escapes import escaped
 from foon_asp.foon import Foon, load
 from foon_asp.network import Network, counted, starting_kitchen
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
-from foon_asp.problem import ContainerRule, UsedUp, container_rule, needed_inputs
+from foon_asp.problem import DEFAULT_RULE, ContainerRule, UsedUp, container_rule, needed_inputs
 from foon_asp.questions.common_options import Limits, begin
 from foon_asp.questions.options import CONTAINERS, ITEMS
 from foon_asp.questions.posing import the_data
@@ -274,7 +274,7 @@ def stats(
     units: bool = False,
     unit: Iterable[int] = (),
     explain_items: bool = False,
-    containers: str = "strict",
+    containers: str = DEFAULT_RULE.value,
     stays: Stays | None = None,
     **limits: Unpack[Limits],
 ) -> Stats | ListedUnits:

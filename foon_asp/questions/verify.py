@@ -14,7 +14,7 @@ from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 from foon_asp.foon import Foon
 from foon_asp.network import Network, StandInTable, counted
-from foon_asp.problem import ContainerRule, Problem, kitchen_needed, parse_objectives
+from foon_asp.problem import DEFAULT_RULE, ContainerRule, Problem, kitchen_needed, parse_objectives
 from foon_asp.proof import proved_checker
 from foon_asp.proof import verifier as proof
 from foon_asp.proof.rule_meaning import ALL_STEPS, OWN, Rule
@@ -407,7 +407,7 @@ def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:
     goals = [goal for goal in goals if 0 <= goal < len(dataset.data.network.objects)]
     objectives, containers = content.get("objective"), content.get("containers")
     everything = bool(content.get("rules")) or (objectives or ["dissimilarity"])[:1] != ["dissimilarity"]
-    rule = containers if containers in [*ContainerRule] else ContainerRule.STRICT
+    rule = containers if containers in [*ContainerRule] else DEFAULT_RULE
     if not goals:
         raise proof.RefusedError("expected goals of the network")
     steps = [unit for unit in steps if 0 <= unit < len(dataset.data.network)]

@@ -26,7 +26,7 @@ from foon_asp.pictures.page import Page
 from foon_asp.pictures.painting import painted
 from foon_asp.pictures.tree_drawing import network_drawing, tree_drawing
 from foon_asp.pictures.whole_network import WholeNetwork
-from foon_asp.problem import ContainerRule, Objective, Problem, container_rule, levels
+from foon_asp.problem import DEFAULT_RULE, ContainerRule, Objective, Problem, container_rule, levels
 from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answered, answered_under
 from foon_asp.questions.caller import caller
@@ -356,7 +356,7 @@ def view(
         return View(about)
     listed = tuple(dict.fromkeys(units))
     rules = {name: options[name] for name in _RULE_OPTIONS if name in options}  # type: ignore[literal-required]
-    rule = options.get("containers", "strict")
+    rule = options.get("containers", DEFAULT_RULE.value)
     if tree is not None and listed:
         raise UserError("a tree and units are two different drawings: give one of them")
     if tree is None and not listed and isinstance(about, Problem):

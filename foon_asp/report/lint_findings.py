@@ -7,9 +7,7 @@ from pathlib import Path
 
 from foon_asp.escapes import UNSAFE, escaped
 from foon_asp.linting.catalog import CATALOG
-from foon_asp.linting.example import Example
 from foon_asp.linting.finding import Finding
-from foon_asp.linting.rule import Rule
 from foon_asp.network import counted
 from foon_asp.results.table import Block, Table
 from foon_asp.text.diagnostics import Severity
@@ -131,19 +129,3 @@ def _sarif_result(finding: Finding, rule: int) -> Json:
         change = {"artifactLocation": location["artifactLocation"], "replacements": [replacement]}
         result["fixes"] = [{"artifactChanges": [change]}]
     return result
-
-
-def explained(rule: Rule, example: Example) -> Iterator[Block]:
-    """Yield the meaning of a rule, its example with tabs drawn as ``→``, and its findings there."""
-    yield f"{rule.code}: {rule.severity}: {rule.meaning}"
-    for paragraph in rule.explanation.split("\n\n"):
-        yield from ("", paragraph.replace("\n", " "))
-    for name, text in example_texts(example):
-        yield from ("", f"{name}:", *(f"    {line}" for line in text.splitlines()))
-    yield from ("", *(line for finding in example.findings for line in str(finding).split("\n")))
-
-
-def example_texts(example: Example) -> Iterator[tuple[str, str]]:
-    """Yield the name and the text of each file of an example, with tabs drawn as ``→``."""
-    for file, content in example.files.items():
-        yield str(file), content.decode(errors="replace").replace("\t", "→")

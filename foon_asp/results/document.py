@@ -7,8 +7,9 @@ from msgspec import Struct
 
 from foon_asp.network import counted
 from foon_asp.problem import ContainerRule, Objective, conditions
-from foon_asp.results.plain import csv_text, flat_row, frame, markdown_text, plain
+from foon_asp.results.plain_values import plain
 from foon_asp.results.table import Block, rendered
+from foon_asp.results.table_columns import csv_text, flat_row, frame, markdown_text
 from foon_asp.results.values import Node
 from foon_asp.text.json_value import Json, json_text, read_json
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, multiplies
-from foon_asp.results.plain import nearest_float
+from foon_asp.results.plain_values import nearest_float
 
 
 def figure_text(objective: Objective, figure: int | Fraction) -> str:

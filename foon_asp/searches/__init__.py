@@ -8,10 +8,10 @@ from foon_asp.searches.iterative_deepening import iterative_deepening as iterati
 from foon_asp.searches.retrieval import Count as Count
 from foon_asp.searches.retrieval import Ending as Ending
 from foon_asp.searches.retrieval import Retrieval as Retrieval
-from foon_asp.searches.retrieval import Ties as Ties
 from foon_asp.searches.search_catalog import SEARCHES as SEARCHES
 from foon_asp.searches.search_catalog import find_searches as find_searches
 from foon_asp.searches.search_catalog import search_names as search_names
 from foon_asp.searches.search_interface import Retrieve as Retrieve
 from foon_asp.searches.search_interface import Search as Search
 from foon_asp.searches.search_interface import SearchSettings as SearchSettings
+from foon_asp.searches.ties import Ties as Ties

@@ -1,8 +1,9 @@
 """Depth-first retrieval: the first achiever of each object, objects from a stack."""
 
 from foon_asp.problem import Problem
-from foon_asp.searches.retrieval import Retrieval, backward, least
+from foon_asp.searches.retrieval import Retrieval, backward
 from foon_asp.searches.search_interface import SearchSettings
+from foon_asp.searches.ties import least
 
 
 def depth_first(problem: Problem, settings: SearchSettings) -> Retrieval:

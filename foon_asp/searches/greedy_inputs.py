@@ -1,8 +1,9 @@
 """Greedy best-first retrieval by the number of inputs (the published heuristic 2)."""
 
 from foon_asp.problem import Problem
-from foon_asp.searches.retrieval import Count, Retrieval, backward, least
+from foon_asp.searches.retrieval import Count, Retrieval, backward
 from foon_asp.searches.search_interface import SearchSettings
+from foon_asp.searches.ties import least
 
 
 def greedy_inputs(problem: Problem, settings: SearchSettings) -> Retrieval:

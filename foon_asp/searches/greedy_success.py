@@ -2,8 +2,9 @@
 
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.searches.retrieval import Retrieval, backward, least
+from foon_asp.searches.retrieval import Retrieval, backward
 from foon_asp.searches.search_interface import SearchSettings
+from foon_asp.searches.ties import least
 
 
 def greedy_success(problem: Problem, settings: SearchSettings) -> Retrieval:

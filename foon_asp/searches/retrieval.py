@@ -1,15 +1,11 @@
 """The result of a search, and the backward retrieval that most published searches share."""
 
 from collections import deque
-from collections.abc import Callable, Sequence
 from enum import StrEnum
-from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.problem import Problem
-
-Choose = Callable[[Sequence[int]], int]
-"""Chooses one of the achievers of an object, which are in file order; at least one exists."""
+from foon_asp.searches.ties import Choose
 
 
 class Ending(StrEnum):
@@ -38,13 +34,6 @@ class Count(StrEnum):
 
     INGREDIENTS = "ingredients"
     NODES = "nodes"
-
-
-class Ties(StrEnum):
-    """The tie-breaking rule: of equally good units, the first or the last in file order is chosen."""
-
-    FIRST = "first"
-    LAST = "last"
 
 
 def backward(problem: Problem, choose: Choose, stack: bool = False) -> Retrieval:
@@ -78,8 +67,3 @@ def backward(problem: Problem, choose: Choose, stack: bool = False) -> Retrieval
             units[unit] = None
             open_objects.extend(problem.needs[unit])
     return Retrieval(Ending.TREE, tuple(reversed(units)))
-
-
-def least(ties: Ties, size: Callable[[int], int | Fraction] = lambda _: 0) -> Choose:
-    """Return a function that chooses the unit of the least ``size``; ties are broken by file order."""
-    return lambda candidates: min(candidates if ties is Ties.FIRST else reversed(candidates), key=size)

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from foon_asp.problem import Problem
-from foon_asp.searches.retrieval import Count, Retrieval, Ties
+from foon_asp.searches.retrieval import Count, Retrieval
+from foon_asp.searches.ties import Ties
 
 
 @dataclass(frozen=True, slots=True)

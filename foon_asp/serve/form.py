@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from foon_asp.errors import UserError
-from foon_asp.problem import ContainerRule
+from foon_asp.problem import DEFAULT_RULE, ContainerRule
 from foon_asp.questions.view import PagePart
 from foon_asp.text.json_value import read_json
 
@@ -22,7 +22,7 @@ class Form(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     goals: Names = ()
     objectives: Names = ("units",)
-    containers: ContainerRule = ContainerRule.STRICT
+    containers: ContainerRule = DEFAULT_RULE
     items: str = "lasting"
     adding: Names = ()
     without: Names = ()

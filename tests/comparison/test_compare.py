@@ -18,7 +18,7 @@ from foon_asp.comparison.summary import Distance, summarize_comparisons
 from foon_asp.problem import Objective
 from foon_asp.proof.simulation import Verdict
 from foon_asp.questions.comparison_tables import summary_tables
-from foon_asp.results.plain import plain
+from foon_asp.results.plain_values import plain
 from foon_asp.results.table import rendered
 from foon_asp.results.values import Node
 from foon_asp.searches import Ending

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from foon_asp.linting.catalog import CATALOG
 from foon_asp.linting.example import Example, example
 from foon_asp.linting.rule import Rule
-from foon_asp.report.lint_findings import example_texts
+from foon_asp.report.rule_page import example_texts
 from tests.conftest import ROOT
 
 FILE = ROOT / "docs" / "lint.md"

@@ -16,7 +16,7 @@ from foon_asp import UserError
 from foon_asp.network import ObjectNode
 from foon_asp.pictures.page import WEB
 from foon_asp.problem import reach
-from foon_asp.results.plain import plain
+from foon_asp.results.plain_values import plain
 from foon_asp.results.proof_cases import ProofCases
 from foon_asp.searches import find_searches
 from foon_asp.text.json_value import json_text

@@ -16,7 +16,7 @@ import pytest
 import foon_asp
 from foon_asp import Foon, NetworkBuilder, ObjectNode, Problem, Source, UsedUp, UserError
 from foon_asp.questions.robot_plan import RobotPlan
-from foon_asp.results.plain import read_plain
+from foon_asp.results.plain_values import read_plain
 from tests.conftest import ROOT, Cli
 from tests.oracle.used_up import random_problem as random_used_up
 from tests.proof.by_hand import recipe

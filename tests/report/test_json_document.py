@@ -18,7 +18,7 @@ import foon_asp
 from foon_asp.cli.verbs import VERBS, verb_command
 from foon_asp.network import NetworkBuilder, ObjectNode
 from foon_asp.planning import translator
-from foon_asp.results.plain import plain
+from foon_asp.results.plain_values import plain
 from foon_asp.results.schema_file import schema, schema_kinds
 from foon_asp.results.values_of import named_node
 from foon_asp.text.json_node import read_node_json

@@ -9,8 +9,8 @@ import pytest
 import foon_asp
 from foon_asp.questions.constraint_list import list_constraints
 from foon_asp.questions.result import Result
-from foon_asp.results.plain import csv_text, flat_row, markdown_text
 from foon_asp.results.table import rendered
+from foon_asp.results.table_columns import csv_text, flat_row, markdown_text
 from tests.conftest import Cli
 from tests.questions.recipes import posed
 

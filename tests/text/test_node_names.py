@@ -15,7 +15,7 @@ from foon_asp.batch.question_file import read_questions
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import FunctionalUnit, NetworkBuilder, NodePattern, ObjectNode, Source, UnitPrices
-from foon_asp.results.plain import plain
+from foon_asp.results.plain_values import plain
 from foon_asp.results.values_of import named_node
 from foon_asp.text.line_parser import parse_name, parse_node
 from foon_asp.text.node_lookup import find_goal, nodes_beginning

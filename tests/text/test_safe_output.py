@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from foon_asp.cli.output import SafeStream
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable, escaped, escaped_lines
-from foon_asp.results.plain import csv_text
+from foon_asp.results.table_columns import csv_text
 from tests.conftest import ROOT, Cli
 
 UNSAFE = [

@@ -11,7 +11,7 @@ from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon, load
 from foon_asp.network import LEVELS, Network, NetworkBuilder, ObjectNode
-from foon_asp.problem import Problem
+from foon_asp.problem import DEFAULT_RULE, Problem
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.diff.networks import NetworkDifference as NetworkDifference
@@ -60,7 +60,9 @@ def _of_files(
         dataset = data(listed)
         goals = goals or [goal for tree in listed.values() for goal in tree.goals]
         for file, tree in listed.items():
-            read[file] = listed_tree(dataset, file, tree, goals, containers or tree.containers or "strict")
+            read[file] = listed_tree(
+                dataset, file, tree, goals, containers or tree.containers or DEFAULT_RULE.value
+            )
     a, b = (Named(str(file), _network(read[file])) for file in files)
     return a, b
 

@@ -7,7 +7,8 @@ from foon_asp.network import FunctionalUnit, counted
 from foon_asp.network.near_units import nearest_units
 from foon_asp.pictures.two_columns import Pair, two_columns
 from foon_asp.questions.result import Result
-from foon_asp.results.plain import flat_row, plain
+from foon_asp.results.plain_values import plain
+from foon_asp.results.table_columns import flat_row
 from foon_asp.results.values import Unit, UnitDifference, Value
 from foon_asp.results.values_of import differences_of
 from foon_asp.text.json_value import Json

@@ -1,0 +1,17 @@
+"""The memory limit of a worker process, which the system enforces."""
+
+import contextlib
+
+
+def limit_own_memory(size: int | None) -> None:
+    """Limit the data segment of this process to ``size`` bytes, where the system can; ``None`` is no limit.
+
+    The process that has started this one only polls the memory, which can grow fast.
+    """
+    try:
+        import resource  # noqa: PLC0415 (not on every system)
+    except ImportError:
+        return
+    hard_limit = resource.getrlimit(resource.RLIMIT_DATA)[1]
+    with contextlib.suppress(ValueError, OSError):  # not supported, or above the limit of the user
+        resource.setrlimit(resource.RLIMIT_DATA, (hard_limit if size is None else size, hard_limit))
