@@ -37,7 +37,7 @@ class Grounded:
         deadline.check()
         names = [str(file) if isinstance(file, Path) else file for file in files]
         self._program: GroundProgram | WorkerProgram
-        # the built-in encodings ground facts of so many letters in a fraction of a second
+        # the built-in encodings ground facts of that length in a fraction of a second
         if endless or len(text) > 1_500_000 or deadline.memory is not None:
             from foon_asp.encoding import worker_process  # noqa: PLC0415 (often not needed)
 

@@ -31,7 +31,7 @@ class PolicyLimits(NamedTuple):
     policies: int = 300
 
 
-LIMITS = PolicyLimits()
+POLICY_LIMITS = PolicyLimits()
 
 State = frozenset[int]
 """The object nodes that are there, by id, without the kitchen."""
@@ -78,7 +78,7 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
     except _TooManyStates:
         bound, is_exact = _bound(problem, units, retries), False
     best: Policy | None = None
-    for branches in itertools.islice(_candidates(trees, retries + 1), LIMITS.policies):
+    for branches in itertools.islice(_candidates(trees, retries + 1), POLICY_LIMITS.policies):
         chance = _chance(problem, branches)
         if best is None or chance > best.chance:
             best = Policy(branches, chance, bound, is_exact)
@@ -168,7 +168,7 @@ class _Optimum:
     def __init__(self, problem: Problem, units: Sequence[int], retries: int) -> None:
         self._world, self._units, self._retries = _World(problem), units, retries
         self._values: dict[State, tuple[Fraction, ...]] = {}
-        if len(units) > LIMITS.units:
+        if len(units) > POLICY_LIMITS.units:
             raise _TooManyStates
         self.chance = self._value(frozenset())[retries]
 
@@ -177,7 +177,7 @@ class _Optimum:
         if self._world.goals <= state:
             return (Fraction(1),) * (self._retries + 1)
         if state not in self._values:
-            if len(self._values) == LIMITS.states:
+            if len(self._values) == POLICY_LIMITS.states:
                 raise _TooManyStates
             self._values[state] = ()  # counts while it is being computed
             after = [

@@ -128,7 +128,7 @@ def test_the_best_of_all_policies_is_found() -> None:
 
 
 def test_without_a_dynamic_program_the_bound_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(policies, "LIMITS", policies.LIMITS._replace(states=0))
+    monkeypatch.setattr(policies, "POLICY_LIMITS", policies.POLICY_LIMITS._replace(states=0))
     apart = 0
     for problem, ways, retries in problems(100, units=5):
         best = best_policy(problem, ways, retries)
