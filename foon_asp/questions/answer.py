@@ -415,7 +415,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         if self.ids is None:
             return ""
         comments = [f"Task tree for: {' + '.join(map(str, self.goals))}", *self.headlines()]
-        return write_units(map(self.problem.network.unit, self.ids), comments)
+        return write_units(map(self.problem.network.unit, self.ids), comments, self.problem.amounts)
 
     durations = Unserialized[Mapping[str, Duration]]({})
     """How long motions take, as far as that was stated."""

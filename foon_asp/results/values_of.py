@@ -4,6 +4,7 @@ import functools
 from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
+from types import MappingProxyType
 from typing import Any, Literal, TypedDict, TypeVar
 
 from msgspec import UNSET, UnsetType
@@ -56,7 +57,7 @@ def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
     """Return the question of a document about goals: its goals, conditions and objectives."""
     network = problem.network
     return {
-        "goals": goals_of(network, problem.goals),
+        "goals": goals_of(network, problem.goals, problem.items.wanted if problem.items else {}),
         "containers": problem.containers,
         "items": "lasting" if problem.items is None else "used-up",
         "level": network.level,
@@ -65,11 +66,17 @@ def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
     }
 
 
-def goals_of(network: Network, goals: Iterable[int]) -> tuple[Node, ...]:
-    """Return goals; below level 3 with the level-3 nodes that each stands for."""
+def goals_of(
+    network: Network, goals: Iterable[int], wanted: Mapping[ObjectNode, int] = MappingProxyType({})
+) -> tuple[Node, ...]:
+    """Return goals, with their amounts where not one is ``wanted``.
+
+    Below level 3 each has the level-3 nodes that it stands for.
+    """
     detailed = network.detailed
     if detailed is None:
-        return nodes_of(network, goals)
+        amounts = (wanted.get(network.objects[goal], UNSET) for goal in goals)
+        return tuple(node_as(Node, network, goal, wanted=n) for goal, n in zip(goals, amounts, strict=True))
     return tuple(
         node_as(Node, network, goal, stands_for=nodes_of(detailed, network.objects_stand_for[goal]))
         for goal in goals
