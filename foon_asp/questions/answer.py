@@ -199,7 +199,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         penalty: Under soft constraints, the sum of weight times ways over them; null without a tree.
         soft_constraints: Every constraint that may be broken; empty without a tree.
         skipped: The goals that cannot be made and were left out, if that was asked for.
-        goals_alone: Of several goals, the best tree for each by itself.
+        goals_alone: Of several goals, but not of many, the best tree for each by itself.
         sum_of_goals_alone: What these cost by the first objective, added up (success: multiplied); null
             if one has no tree.
         serves: Of several goals, those that each unit is needed for.
@@ -380,15 +380,21 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     def _sharing(self) -> Iterator[str]:
         """Return lines with the costs of each goal by itself, and the units that serve several goals."""
-        if not isinstance(self.goals_alone, tuple) or not isinstance(self.serves, tuple):
+        if not isinstance(self.serves, tuple):
             return
-        yield from map(str, self.goals_alone)
+        yield from map(str, self.goals_alone if isinstance(self.goals_alone, tuple) else ())
+        if self.costs is None or self.units is None:
+            return
         by, total = self.objectives[0], self.sum_of_goals_alone
-        if self.costs is None or self.units is None or isinstance(total, UnsetType) or total is None:
-            return
-        alone, together = (figure_text(by, measure) for measure in (total, self.costs.measure(by)))
         shared = {serving.unit: serving.goals for serving in self.serves if len(serving.goals) > 1}
-        yield f"{by} one by one {alone}, together {together}; {counted(len(shared), 'unit')} shared"
+        shared_text = f"{counted(len(shared), 'unit')} shared"
+        if total is UNSET:
+            yield f"{shared_text}; what each goal costs by itself: --all-goals"
+        elif total is None:
+            return
+        else:
+            alone, together = (figure_text(by, measure) for measure in (total, self.costs.measure(by)))
+            yield f"{by} one by one {alone}, together {together}; {shared_text}"
         for step in self.units:
             if step.id in shared:
                 labels = ", ".join(goal.label for goal in shared[step.id])
