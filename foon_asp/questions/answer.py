@@ -1,8 +1,9 @@
 """The best tree for a problem, and its proof."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 from msgspec import UNSET, UnsetType
@@ -247,12 +248,12 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     stand_ins: tuple[StandIn, ...] | UnsetType = UNSET
 
     @classmethod
-    def of(cls, outcome: Outcome, bought: Collection[int] = (), **fields: Any) -> Self:
+    def of(cls, outcome: Outcome, bought: Mapping[int, int] = MappingProxyType({}), **fields: Any) -> Self:
         """Return the answer for an outcome of the solver.
 
         Parameters:
             outcome: The outcome.
-            bought: The ids of kitchen items that were bought.
+            bought: The number of copies of kitchen items, by id, that were bought.
             fields: Further fields of a subclass.
         """
         problem, units, proof = outcome.problem, outcome.units, outcome.proof
