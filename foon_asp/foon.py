@@ -9,8 +9,8 @@ from typing import Any, Self
 
 from foon_asp.argument_checks import typed
 from foon_asp.dataset import Dataset, read_dataset
-from foon_asp.dataset.item_options import Stays, Stock, items_of, wanted_of
-from foon_asp.dataset.named_ids import in_python, node_ids
+from foon_asp.dataset.item_options import Stays, Stock, items_for
+from foon_asp.dataset.named_ids import in_python, node_ids, stated_copies
 from foon_asp.dataset.paths import File, Files, files
 from foon_asp.deadline import Cancel, seconds, stoppable
 from foon_asp.errors import UserError
@@ -172,9 +172,11 @@ def build(
             keys ``motion``, ``inputs`` and ``outputs``; or a :class:`FunctionalUnit`. A node that is listed
             twice is taken or made twice where items are used up. Or a network, made by a
             :class:`NetworkBuilder`.
-        kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`.
-            Without it, or as ``"@starting"``, it is what makes all units run; ``()`` is nothing.
-        goals: What is to be made, in the same way. Without it, what the last unit makes and no unit needs.
+        kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`; or
+            how many there are by name, ``None`` for what never runs out. Without it, or as ``"@starting"``,
+            it is what makes all units run; ``()`` is nothing.
+        goals: What is to be made, in the same way, with amounts by name where several are wanted. Without
+            it, what the last unit makes and no unit needs.
         rates: The success rates of motions, above 0 and at most 1.
         utensils: The labels of the utensils that the container rule ``implied`` is about.
         unit_prices: Prices, from 0, by the name of a motion or of single units.
@@ -221,7 +223,11 @@ def build(
         )
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
-            listed = (as_entry(node, Source("the goals", number)) for number, node in enumerate(nodes, 1))
+            wanted = stated_copies(dataset, goals, "goal") if isinstance(goals, Mapping) else {}
+            listed = (
+                as_entry(node, Source("the goals", number))._replace(amount=wanted.get(node))
+                for number, node in enumerate(nodes, 1)
+            )
             dataset = dataset.with_goals(tuple(listed))
         kept = None if starting else kitchen
         foon = Foon(dataset.vary(Changes(kept, rates=rates, unit_prices=unit_prices)), "a network")
@@ -357,20 +363,22 @@ class Foon:
             goals: Object nodes, by name or as :class:`ObjectNode`; without any, the goal of the goals file.
             containers: The container rule, ``strict`` or ``implied``.
             items: Whether items are ``lasting``, or ``used-up`` by the rule of docs/plans.md, which is the
-                default where several copies of a goal are wanted.
+                default where amounts of goals are wanted.
             stock: How many copies the kitchen has of some object nodes, by name, or the path of a stock
-                file; all other items of the kitchen never run out. Only for items that are used up.
+                file. It precedes the amounts of the kitchen; all other items of the kitchen never run out.
+                Only for items that are used up.
             stays: What stays (``True``) or is used up (``False``) whatever the rule says, by label or object
                 node, or the path of such a file. Only for items that are used up.
             amounts: How many copies of the goal are wanted, or of each of several goals, in their order.
+                Without it, the amounts of the goals file count.
 
         Raises:
             UserError: for a name that means no object node or several, with candidates; or for another rule.
         """
         ids = self._dataset.named_goals(goals)
-        wanted = wanted_of(self._dataset, ids, [amounts] if isinstance(amounts, int) else amounts)
-        items = items or ("used-up" if wanted else "lasting")
-        return self._dataset.nearby(ids, containers, items_of(self._dataset, items, stock, stays, wanted))
+        of_goals = [amounts] if isinstance(amounts, int) else amounts
+        used_up = items_for(self._dataset, ids, of_goals, items, stock, stays)
+        return self._dataset.nearby(ids, containers, used_up)
 
     @typed
     def vary(
@@ -386,7 +394,8 @@ class Foon:
         """Return the same data with another kitchen, other success rates, other prices or other measures.
 
         Parameters:
-            kitchen: The items available: names, or a kitchen file as a :class:`~pathlib.Path`.
+            kitchen: The items available: names; amounts by name, where ``None`` is for what never runs out;
+                or a kitchen file as a :class:`~pathlib.Path`.
             adding: Names of object nodes to add to the kitchen.
             without: Names of object nodes to remove from the kitchen.
             rates: New success rates of some motions, above 0 and at most 1.

@@ -39,17 +39,26 @@ def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
 
 
 def require_local(settings: Settings) -> None:
-    """Require that constraints are local, since every unit is in the network twice.
+    """Require that constraints are local and name no unit by number, since every unit is there twice.
 
-    Raises :class:`UserError` with the place of a rule that is not local.
+    Raises :class:`UserError` with the place of a rule that does not do so.
     """
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
+    from foon_asp.rules.numbered_units import numbered_unit  # noqa: PLC0415
     from foon_asp.rules.rules import Rules  # noqa: PLC0415
     from foon_asp.rules.stating import loaded  # noqa: PLC0415
 
     program = assemble(settings, lambda _: None)
     files = loaded([*map(find_constraint, settings.constraints)]).values()
     encodings = [read_encoding(rules) for rules in (*files, Stated("a person", _AS_FACTS))]
+    for encoding in encodings:
+        numbered = numbered_unit(encoding.statements)
+        if numbered is not None:
+            raise UserError(
+                f"{numbered.source}: {numbered.text} names a unit by its number, and one that a person does "
+                "has another one beside a rule about who does a unit: name it by its motion, inputs or "
+                "outputs, or leave one of the two out"
+            )
     for shown in Rules(encodings, program.constants[1::2]).shown:
         if not shown.rule.local:
             raise UserError(

@@ -7,7 +7,7 @@ from typing import Any, Final
 import msgspec
 
 from foon_asp.batch.answer_row import AnswerRow, Figures
-from foon_asp.batch.batch_question import Goals
+from foon_asp.batch.batch_question import Amounts, Goals
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective
 from foon_asp.results.plain_values import plain
@@ -17,6 +17,7 @@ from foon_asp.whole_file import write_whole
 
 TABLE_SUFFIXES: Final = (".csv", ".parquet")
 _ARROW: Final = {
+    Amounts | None: "list<int64>",
     Goals: "list<string>",
     bool | None: "bool",
     float | None: "double",
@@ -65,7 +66,9 @@ def check_table(file: Path, rows: Path) -> None:
 
 def write_table(file: Path, rows: Iterable[AnswerRow], objectives: Iterable[Objective]) -> None:
     """Write rows to a file in the format that its suffix names."""
-    flat = [flat_row(plain(row)) | {"goal": list(row.goals)} for row in rows]
+    flat = [
+        flat_row(plain(row)) | {"goal": list(row.goals), "amount": list(row.amounts) or None} for row in rows
+    ]
     types = dict(columns(objectives))
     if file.suffix == ".csv":
         write_whole(file, csv_text(flat, list(types)).encode("utf-8", "surrogatepass"))

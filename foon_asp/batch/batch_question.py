@@ -5,11 +5,14 @@ from typing import Annotated, Protocol
 
 from msgspec import Meta
 
+from foon_asp.network import MAX_AMOUNT
 from foon_asp.problem import DEFAULT_RULE, ContainerRule, Problem
 from foon_asp.results.values import Value
 
 Name = Annotated[str, Meta(min_length=1)]
 Goals = Name | Annotated[tuple[Name, ...], Meta(min_length=1)]
+Amount = Annotated[int, Meta(ge=1, le=MAX_AMOUNT)]
+Amounts = Amount | Annotated[tuple[Amount, ...], Meta(min_length=1)]
 Seconds = Annotated[float, Meta(ge=0, le=1e9)]  # at most some thirty years
 
 
@@ -18,8 +21,11 @@ class BatchQuestion(Value, frozen=True):
 
     Attributes:
         goal: A goal, or several that one tree makes.
+        amount: How many copies of the goal are wanted, or of each of several goals in their order; null for
+            the amounts of the goals file.
         objective: A list by commas of which the first counts most.
-        items: Whether items last, or are used up.
+        items: Whether items last, or are used up; by default they are used up where amounts of goals are
+            stated, and last elsewhere.
         kitchen: A file, or ``@starting``; null for that of the data.
         stock: Where items are used up: a file of what is in stock.
         stays: Where items are used up: a file of what stays.
@@ -27,9 +33,10 @@ class BatchQuestion(Value, frozen=True):
     """
 
     goal: Goals
+    amount: Amounts | None = None
     objective: Name = "units"
     containers: ContainerRule = DEFAULT_RULE
-    items: Name = "lasting"
+    items: Name | None = None
     kitchen: Name | None = None
     stock: Name | None = None
     stays: Name | None = None
@@ -40,12 +47,20 @@ class BatchQuestion(Value, frozen=True):
         """The goals that one tree makes."""
         return (self.goal,) if isinstance(self.goal, str) else self.goal
 
+    @property
+    def amounts(self) -> tuple[int, ...]:
+        """The amounts of the goals that are stated, one for each goal or none."""
+        return (self.amount,) if isinstance(self.amount, int) else self.amount or ()
+
 
 class Asker(Protocol):
     """Open data that pose questions as problems, any number of times."""
 
     def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
         """Return the goals for which the word ``@goals`` or ``@makeable`` stands, in one-line notation."""
+
+    def items(self, question: BatchQuestion) -> str:
+        """Return whether items last, or are used up, where a question does not say it."""
 
     def problem(self, question: BatchQuestion) -> Problem:
         """Pose a question as a problem; raises :class:`UserError` for an unknown goal or kitchen."""

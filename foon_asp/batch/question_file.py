@@ -10,7 +10,7 @@ import msgspec
 
 from foon_asp.batch.batch_question import Asker, BatchQuestion
 from foon_asp.errors import UserError
-from foon_asp.network import Source
+from foon_asp.network import Source, counted
 from foon_asp.problem import ITEMS, ContainerRule, parse_objectives
 from foon_asp.text.data_folder import STARTING
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
@@ -62,7 +62,7 @@ def named_files(questions: Iterable[BatchQuestion]) -> set[Path]:
 
 
 def each_question(questions: Iterable[BatchQuestion], asker: Asker) -> Iterator[BatchQuestion]:
-    """Return every question once, with ``@goals`` and ``@makeable`` replaced by goals."""
+    """Return every question once, with its items, and ``@goals`` and ``@makeable`` replaced by goals."""
     named = functools.cache(asker.named)
     seen: set[BatchQuestion] = set()
     for question in questions:
@@ -71,6 +71,8 @@ def each_question(questions: Iterable[BatchQuestion], asker: Asker) -> Iterator[
             goals = named(str(question.goal), question.containers, question.kitchen)
         for goal in goals:
             expanded = msgspec.structs.replace(question, goal=goal)
+            if expanded.items is None:
+                expanded = msgspec.structs.replace(expanded, items=asker.items(expanded))
             if expanded not in seen:
                 seen.add(expanded)
                 yield expanded
@@ -100,7 +102,17 @@ def _combinations(value: object, time_limit: float | None) -> Iterator[BatchQues
                 raise ValueError(
                     f"found the goal {name!r}, expected a name, or @goals or @makeable by itself"
                 )
-        if question.items == "lasting" and (question.stock or question.stays):
+        if question.amounts and (len(question.amounts) != len(question.goals) or question.goal in _FOR_MANY):
+            raise ValueError(
+                f"found {counted(len(question.amounts), 'amount')} for "
+                f"{'many goals' if question.goal in _FOR_MANY else counted(len(question.goals), 'goal')}, "
+                "expected one for each"
+            )
+        if question.items == "lasting" and question.amounts:
+            raise ValueError('an amount of a goal is for items that are used up: leave "items" out')
+        if question.items is None and question.amounts:
+            question = msgspec.structs.replace(question, items=ITEMS[1])
+        if question.items != "used-up" and (question.stock or question.stays):
             raise ValueError(
                 'a stock, and what stays, are for items that are used up: add "items": "used-up"'
             )

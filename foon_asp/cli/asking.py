@@ -21,8 +21,9 @@ from foon_asp.problem import Problem
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.each_goal import EachGoal
 from foon_asp.questions.index import module_name, question_name
+from foon_asp.questions.options import GOAL_OF_PLAN
 from foon_asp.questions.posing import no_data, one_problem
-from foon_asp.questions.posing_plan import a_plan, a_plan_or_state, settle_data
+from foon_asp.questions.posing_plan import a_plan, settle_data
 from foon_asp.questions.question import Question, Role, question_of
 from foon_asp.questions.result import Result
 from foon_asp.questions.tree import read_answer
@@ -94,11 +95,8 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
         settle_data(command, {tree: listed})
         if problem_options.get("goals_named") == ():
             problem_options["goals_named"] = tuple(map(str, listed.goals))
-    reports_goals = question.pose in {
-        no_data,
-        a_plan,
-        a_plan_or_state,
-    }  # the question itself, if it has goals
+    # the question itself reports them, or has none
+    reports_goals = question.pose is no_data or GOAL_OF_PLAN in question.options
     unnamed = not reports_goals and problem_options.get("goals_named") == ()
     one_goal = question.pose is one_problem and not problem_options.get("all_goals")
     goals = command.unnamed_goals() if unnamed and one_goal else []

@@ -71,10 +71,11 @@ def command(
     {"goal": "@makeable", "containers": ["strict", "implied"], "kitchen": "small.json"}
     {"goal": [["ice", "macaroni"]], "time_limit": 10}
     {"goal": "@goals", "items": "used-up", "stock": "stock.txt"}
+    {"goal": "ice", "amount": [1, 8]}
 
     @goals stands for the goals file, @makeable for everything that can be made; a list within the list is one
-    tree for several goals; kitchens, stocks and what stays are files in the folder of the questions;
-    the kitchen @starting is what makes the units of each file run.
+    tree for several goals, and so is one of amounts for the amounts of these; kitchens, stocks and what stays
+    are files in the folder of the questions; the kitchen @starting is what makes the units of each file run.
     --time-limit is for each question without a limit of its own, --memory-limit for each process that
     answers, and rules hold for all questions.
 

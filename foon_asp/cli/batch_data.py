@@ -13,10 +13,10 @@ from foon_asp.cli import shared_options
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.comparison.many import makeable
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.item_options import items_of
+from foon_asp.dataset.item_options import items_for
 from foon_asp.errors import UserError
 from foon_asp.network import Network
-from foon_asp.problem import ContainerRule, Problem
+from foon_asp.problem import ITEMS, ContainerRule, Problem
 from foon_asp.text.data_folder import STARTING, find_data
 from foon_asp.text.object_list import read_object_list
 
@@ -55,6 +55,16 @@ class BatchData:
             return [str(names.objects[goal]) for goal in goals]
         return [str(names.node(goal)) for goal in goals]
 
+    def items(self, question: BatchQuestion) -> str:
+        """Return whether items last, or are used up, as they are where the goals file has amounts."""
+        dataset = self._dataset_with_kitchen(question.kitchen)
+        if not dataset.wanted:
+            return ITEMS[0]
+        try:
+            return ITEMS[not dataset.wanted.keys().isdisjoint(dataset.goals(question.goals))]
+        except UserError:
+            return ITEMS[0]  # the row of the question says what is wrong with its goals
+
     @property
     def example(self) -> Problem:
         """A problem over the data, with which the rules for all questions are checked."""
@@ -65,8 +75,9 @@ class BatchData:
         dataset = self._dataset_with_kitchen(question.kitchen)
         files = question.stock, question.stays
         stock, stays = (None if file is None else NamedPath(file) for file in files)
-        items = items_of(dataset, question.items, stock, stays)
-        return dataset.nearby(dataset.goals(question.goals), question.containers, items)
+        goals = dataset.goals(question.goals)
+        items = items_for(dataset, goals, question.amounts, question.items, stock, stays)
+        return dataset.nearby(goals, question.containers, items)
 
     def _dataset_with_kitchen(self, kitchen: str | None) -> Dataset:
         """Return the dataset with another kitchen: a file, or ``@starting``; ``None`` is its own kitchen."""

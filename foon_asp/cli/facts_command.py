@@ -11,7 +11,7 @@ from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.dataset.assumption_lines import goal_lines, kitchen_lines
-from foon_asp.dataset.item_options import items_of
+from foon_asp.dataset.item_options import items_for
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
 from foon_asp.questions.facts import facts_of
@@ -70,7 +70,8 @@ def command(
     """
     dataset = shared_options.read_dataset(**data)  # type: ignore[arg-type]
     chosen = parse_objectives(objectives, dataset.measures)
-    goals, used_up = dataset.goals(goals_named), items_of(dataset, items, stock, stays)
+    goals = dataset.goals(goals_named)
+    used_up = items_for(dataset, goals, (), items, stock, stays)
     problem = dataset.problem(goals, containers, items=used_up)
     if dataset.goals_from and not goals_named:
         if len(goals) > 1:

@@ -101,7 +101,7 @@ def _files(data: Data, source: Path, recipe: Path | None) -> dict[str, str]:
     """Return the texts of the data folder's files by name."""
     network = data.network
     text = "" if source.is_dir() else read_plain_text(source)
-    recipe_text = write_units(map(network.unit, range(len(network))))
+    recipe_text = write_units(map(network.unit, range(len(network))), (), data.amounts.units)
     if text and format_of(text, str(source)) is TEXT:
         recipe_text = TEXT.normalised(text, str(source))
     rates = None if recipe else RATES.read(starter_recipe() / "motion.txt")

@@ -17,6 +17,7 @@ from foon_asp.results.table import Block, rendered
 if TYPE_CHECKING:
     from rich.console import Console
 
+_SAID = "foon_asp.said"  # in the context of a command: the remarks that it wrote once
 _SIGNS = {"→": "->", "≈": "~", "×": "x", "†": "+"}
 
 
@@ -164,6 +165,15 @@ def say(text: str) -> None:
     """Write a remark to standard error, wrapped to the width of a terminal."""
     width = shutil.get_terminal_size().columns if sys.stderr.isatty() else None
     click.echo(rendered(text.split("\n"), width), err=True, nl=False)
+
+
+def say_once(text: str) -> None:
+    """Write a remark to standard error, unless the command wrote the same one before."""
+    context = click.get_current_context(silent=True)
+    said: set[str] = set() if context is None else context.find_root().meta.setdefault(_SAID, set())
+    if text not in said:
+        said.add(text)
+        say(text)
 
 
 def with_plain_signs(text: str) -> str:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Self
 import click
 
 from foon_asp.asp.reporter import Reporter
-from foon_asp.cli.output import console, say
+from foon_asp.cli.output import console, say_once
 from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective
@@ -37,7 +37,6 @@ class Progress(Reporter):
         self._began = time.monotonic()
         self._finished: SimpleQueue[None] = SimpleQueue()
         self._thread: DaemonThread | None = None
-        self._warnings: set[str] = set()
         self._costs: Costs | None = None
         self._bound: tuple[Objective, int | Fraction] | None = None
         self._first_bound: tuple[int | Fraction, float] | None = None
@@ -68,10 +67,8 @@ class Progress(Reporter):
             self._finished.get()
 
     def warning(self, message: str) -> None:
-        """Print a warning at once, unless a subquestion has printed it already."""
-        if message not in self._warnings:
-            self._warnings.add(message)
-            say(message)
+        """Print a warning at once, unless the command has printed it already."""
+        say_once(message)
 
     def statistics(self, text: str) -> None:
         """Print statistics of a search at once."""

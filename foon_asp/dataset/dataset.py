@@ -18,6 +18,7 @@ from foon_asp.dataset.named_ids import (
     listed,
     node_id,
     node_ids,
+    stated_copies,
 )
 from foon_asp.dataset.prices import NO_PRICES, DataPrices
 from foon_asp.errors import UserError
@@ -44,7 +45,7 @@ from foon_asp.problem import (
     container_rule,
     unrated_text,
 )
-from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning
+from foon_asp.text.data_folder import STARTING, Data, counted_items, kitchen_item_warning
 from foon_asp.text.node_lookup import entry_names, find_goal, listed_goal, listed_nodes
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
@@ -93,7 +94,8 @@ class Dataset:
     without changes. ``goals_from`` says what the entries were assumed from if no file lists goals.
     ``remarks`` are the assumptions made while reading, in words, and ``brief`` is a summary of them;
     ``has_kitchen`` says that a kitchen was given, even an empty one. ``measures`` are user measures, by name.
-    ``stand_ins`` is the table of stand-ins, ``None`` where there are none.
+    ``stand_ins`` is the table of stand-ins, ``None`` where there are none. ``stock`` are the amounts that the
+    kitchen states; other items never run out.
     """
 
     source: Source
@@ -110,6 +112,7 @@ class Dataset:
     has_kitchen: bool = True
     measures: Mapping[str, Measure] = field(default_factory=dict)
     stand_ins: StandInTable | None = None
+    stock: Mapping[ObjectNode, int] = field(default_factory=dict)
 
     @classmethod
     def of(cls, data: Data, seconds: float = 0.0) -> Self:
@@ -124,6 +127,7 @@ class Dataset:
             data.kitchen_items,
             data.starting,
             data.goals_from,
+            stock=counted_items(data.network, data.kitchen_items),
         )
 
     def close(self) -> None:
@@ -270,7 +274,18 @@ class Dataset:
         names = self.names
         patterns = [pattern_at_level(item.pattern, names.level) for item in items]
         kitchen = Kitchen(frozenset(o for pattern in patterns for o in names.find(pattern)))
-        return self._varied(kitchen=kitchen, kitchen_items=tuple(items), starting=False)
+        stock = counted_items(names, items)
+        return self._varied(kitchen=kitchen, kitchen_items=tuple(items), starting=False, stock=stock)
+
+    @property
+    def wanted(self) -> dict[int, int]:
+        """The amounts that the goals file states, by the id of the goal."""
+        return {
+            o: entry.amount
+            for entry in self.listed
+            if entry.amount is not None
+            for o in self.names.find(entry.pattern)
+        }
 
     def with_goals(self, goals: Sequence[ListedObject]) -> "Dataset":
         """Return the same data with other entries of a goals file."""
@@ -278,7 +293,8 @@ class Dataset:
 
     def with_starting_kitchen(self) -> "Dataset":
         """Return the same data with the starting kitchen."""
-        return self._varied(kitchen=Kitchen(self.source.starting.nodes), kitchen_items=(), starting=True)
+        kitchen = Kitchen(self.source.starting.nodes)
+        return self._varied(kitchen=kitchen, kitchen_items=(), starting=True, stock={})
 
     def _varied(self, **changes: Any) -> "Dataset":
         """Return the data with changes, and without remarks on assumptions made while reading."""
@@ -314,11 +330,14 @@ class Dataset:
     ) -> "Dataset":
         """Return the same data with a changed kitchen: object nodes, by id, are added and removed.
 
-        ``only``, unless ``None``, replaces the whole kitchen first.
+        ``only``, unless ``None``, replaces the whole kitchen first. What is added never runs out.
         """
-        if only is None:
-            return self._varied(kitchen=self.kitchen.changed(added, removed))
-        return self._varied(kitchen=Kitchen(only, added, removed), kitchen_items=(), starting=False)
+        if only is not None:
+            kitchen = Kitchen(only, added, removed)
+            return self._varied(kitchen=kitchen, kitchen_items=(), starting=False, stock={})
+        endless = set(map(self.names.node, added)) if self.stock else set()
+        stock = {node: amount for node, amount in self.stock.items() if node not in endless}
+        return self._varied(kitchen=self.kitchen.changed(added, removed), stock=stock)
 
     def with_rates_and_prices(
         self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None
@@ -358,6 +377,8 @@ class Dataset:
             only = frozenset(node_ids(self, kitchen, "kitchen item"))
         added = frozenset(node_ids(self, adding, "kitchen item"))
         with_added = dataset.varied(added, frozenset(), only)
+        if isinstance(kitchen, Mapping):
+            with_added = replace(with_added, stock=stated_copies(dataset, kitchen, "kitchen item"))
         removed = frozenset(item_id(with_added, name) for name in listed(without))
         return with_added.varied((), removed, None) if removed else with_added
 
@@ -367,7 +388,10 @@ class Dataset:
         """Pose a problem of the dataset with changes; see :meth:`Problem.vary`."""
         dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
-        posed = dataset.nearby(ids, containers or problem.containers, problem.items)
+        items = problem.items
+        if items is not None and changes.kitchen is not None:
+            items = replace(items, stock=dict(dataset.stock))
+        posed = dataset.nearby(ids, containers or problem.containers, items)
         return _with_own_rates(posed, problem)
 
     def posed_whole(self, problem: Problem) -> Problem:

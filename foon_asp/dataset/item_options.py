@@ -6,7 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from foon_asp.dataset.dataset import Dataset
-from foon_asp.dataset.named_ids import node_id
+from foon_asp.dataset.named_ids import node_id, stated_copies
 from foon_asp.errors import UserError
 from foon_asp.network import MAX_AMOUNT, ObjectNode, counted
 from foon_asp.problem import ITEMS, UsedUp
@@ -20,19 +20,44 @@ Stays = str | PathLike[str] | Mapping[str | ObjectNode, bool]
 """The path of a file that says what stays, or the same by label or object node."""
 
 
-def wanted_of(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) -> dict[ObjectNode, int]:
-    """Return how many copies of goals are wanted, where that is not one; ``amounts`` has one for each.
+def items_for(
+    dataset: Dataset,
+    goals: Sequence[int],
+    amounts: Sequence[int],
+    items: str | None,
+    stock: Stock | None,
+    stays: Stays | None,
+) -> UsedUp | None:
+    """Return how items are used up for goals, by id; ``None`` if they last.
+
+    ``amounts`` has how many copies are wanted of each goal; without it, the amounts of the goals file count.
+    Without ``items``, items are used up where amounts are wanted. Raises :class:`UserError` as
+    :func:`items_of` does, and for amounts that do not fit the goals or items that last.
+    """
+    if not amounts:
+        listed = dataset.wanted
+        stated = {dataset.names.node(goal): listed[goal] for goal in goals if goal in listed}
+        items = items or ("used-up" if stated else "lasting")
+        return items_of(dataset, items, stock, stays, {} if items == "lasting" else stated)
+    wanted = _wanted(dataset, goals, amounts)
+    if items == "lasting":
+        raise UserError("an amount of a goal is for items that are used up: leave --items lasting out")
+    return items_of(dataset, items or "used-up", stock, stays, wanted)
+
+
+def _wanted(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) -> dict[ObjectNode, int]:
+    """Return how many copies of goals are wanted; ``amounts`` has one for each.
 
     Raises :class:`UserError` where there are more or fewer, and for one that is out of range.
     """
-    if amounts and len(amounts) != len(goals):
+    if len(amounts) != len(goals):
         numbers = f"{counted(len(amounts), 'amount')} for {counted(len(goals), 'goal')}"
         raise UserError(f"found {numbers}, expected one for each, in the order of the goals")
     for amount in amounts:
         if not 1 <= amount <= MAX_AMOUNT:
             raise UserError(f"found the amount {amount} of a goal, expected one from 1 to {MAX_AMOUNT}")
     nodes = map(dataset.names.node, goals)
-    return {node: amount for node, amount in zip(nodes, amounts, strict=False) if amount > 1}
+    return dict(zip(nodes, amounts, strict=True))
 
 
 def items_of(
@@ -42,10 +67,11 @@ def items_of(
     stays: Stays | None,
     wanted: Mapping[ObjectNode, int] = MappingProxyType({}),
 ) -> UsedUp | None:
-    """Return how items are used up; ``None`` if they last.
+    """Return how items are used up; ``None`` if they last. A stock precedes the amounts of the kitchen.
 
-    Raises :class:`UserError` for another word, a stock or an exception where items last, a node that the
-    kitchen does not have, a name that the network does not have, and below level 3.
+    ``wanted`` has the numbers of copies of goals. Raises :class:`UserError` for another word, a stock or an
+    exception where items last, a node that the kitchen does not have, a name that the network does not have,
+    and below level 3.
     """
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
@@ -53,12 +79,13 @@ def items_of(
         if stock is not None or stays is not None:
             option = "a stock" if stock is not None else "what stays"
             raise UserError(f"{option} is for items that are used up: add --items used-up (items='used-up')")
-        if wanted:
-            raise UserError("an amount of a goal is for items that are used up: leave --items lasting out")
         return None
     require_contents(dataset.names.level)
     exceptions = {} if stays is None else _exceptions(dataset, stays)
-    return UsedUp(exceptions, {} if stock is None else _copies(dataset, stock), dict(wanted))
+    copies = {node: n for node, n in dataset.stock.items() if dataset.at_hand(node_id(dataset, node, "item"))}
+    if stock is not None:
+        copies |= _copies(dataset, stock)
+    return UsedUp(exceptions, copies, {node: amount for node, amount in wanted.items() if amount > 1})
 
 
 def require_contents(level: int) -> None:
@@ -94,11 +121,7 @@ def _copies(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
     if isinstance(stock, str | PathLike):
         copies = read_stock(Path(stock))
     else:
-        copies = {}
-        for name, count in stock.items():
-            if not isinstance(count, int) or isinstance(count, bool) or count < 0:
-                raise UserError(f"found the stock {count!r} of {str(name)!r}, expected a whole number from 0")
-            copies[dataset.names.node(node_id(dataset, name, "kitchen item"))] = count
+        copies = stated_copies(dataset, stock, "kitchen item", least=0)
     for node in copies:
         if not dataset.at_hand(node_id(dataset, node, "kitchen item")):
             raise UserError(f"the stock counts {str(node)!r}, which the kitchen does not have")

@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import Protocol
 
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitPrices, node_at_level
+from foon_asp.network import MAX_AMOUNT, FunctionalUnit, Network, ObjectNode, UnitPrices, node_at_level
 from foon_asp.problem import Names, Number, UnitPricesNamed, success_rate, unit_price
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_name
@@ -55,6 +55,29 @@ def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
 def node_ids(dataset: Named, names: Names, what: str) -> list[int]:
     """Find object nodes by name, as :func:`node_id` does each."""
     return [node_id(dataset, name, what) for name in listed(names)]
+
+
+def stated_copies(
+    dataset: Named,
+    amounts: Mapping[str | ObjectNode, int | None] | Mapping[ObjectNode, int],
+    what: str,
+    least: int = 1,
+) -> dict[ObjectNode, int]:
+    """Return amounts by object node, from amounts by name; ``None`` is none stated.
+
+    Raises :class:`UserError` as :func:`node_id` does, and for what is no amount from ``least`` on.
+    """
+    copies: dict[ObjectNode, int] = {}
+    for name, amount in amounts.items():
+        if amount is None:
+            continue
+        if not isinstance(amount, int) or isinstance(amount, bool) or not least <= amount <= MAX_AMOUNT:
+            raise UserError(
+                f"found the amount {amount!r} of {str(name)!r}, expected a whole number from {least} to "
+                f"{MAX_AMOUNT}"
+            )
+        copies[dataset.names.node(node_id(dataset, name, what))] = amount
+    return copies
 
 
 def item_id(dataset: Named, name: str | ObjectNode) -> int:

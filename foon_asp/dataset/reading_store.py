@@ -18,10 +18,11 @@ from foon_asp.text.data_folder import (
     kitchen_nodes,
     unit_price_warning,
 )
-from foon_asp.text.diagnostics import Diagnostic, in_brief, summarize
+from foon_asp.text.diagnostics import in_brief, summarize
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.repeated_node import repeated_note
 from foon_asp.text.tables import RATES, read_utensils
+from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 from foon_asp.text.unit_price_list import read_unit_prices
 
 
@@ -35,15 +36,10 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
             f"{files.network[0]} and {files.network[1]}: a store is read alone; import "
             "the files together into one"
         )
-    if files.unit_amounts:
-        raise UserError(
-            f"{files.unit_amounts}: a table of amounts is read beside text alone; give the units of "
-            f"{files.network[0]} their amounts in neutral lines or JSON"
-        )
     began = time.perf_counter()
     store = Store(files.network[0])
-    source = StoreSource(store)
-    warnings: list[Diagnostic] = []
+    source = StoreSource(store, UNIT_AMOUNTS.rows(files.unit_amounts) if files.unit_amounts else ())
+    warnings = source.unmatched_amounts
     prices = source.prices
     if files.unit_prices:
         price_list = read_unit_prices(files.unit_prices)
@@ -62,6 +58,7 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
         prices,
         kitchen_items=None,
         goals_from="" if files.goals else store.goals_from,
+        stock=store.stock,
     )
     if files.kitchen == STARTING or (files.kitchen is None and not store.has_kitchen):
         dataset = dataset.with_starting_kitchen()

@@ -18,7 +18,10 @@ from foon_asp.store.store import Store
 from foon_asp.store.stored_ids import StoredIds
 from foon_asp.store.stored_kitchen import StoredStartingKitchen
 from foon_asp.store.touched_network import TouchedNetwork
+from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.object_list import ListedObject
+from foon_asp.text.stated_amounts import UnitAmount, with_table
+from foon_asp.text.value_table import Row
 
 if TYPE_CHECKING:  # few answers need numpy
     from foon_asp.store.unit_distances import UnitDistances
@@ -31,17 +34,28 @@ class StoreSource(Source):
     kitchen: StoredIds
     prices: DataPrices
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Store, unit_amounts: Sequence[Row[UnitAmount, int]] = ()) -> None:
+        self._table = unit_amounts
         self.names, self.seconds = store, 0.0
         self.unit_count, self.left_out, self.repeated = store.units, store.left_out, store.repeated
         self.kitchen = StoredIds(store, "kitchen")
         self.prices = DataPrices(store.motion_prices, {}, from_file=True)
         self._starting = StoredStartingKitchen(store)
 
+    @cached_property
+    def _amounts_and_unmatched(self) -> tuple[DataAmounts, list[Diagnostic]]:
+        units = self.names.with_motions({row.name[0] for row in self._table}) if self._table else ()
+        return with_table(self.names.amounts, self._table, units)
+
     @property
     def amounts(self) -> DataAmounts:
         """The amounts of units."""
-        return self.names.amounts
+        return self._amounts_and_unmatched[0] if self._table else self.names.amounts
+
+    @property
+    def unmatched_amounts(self) -> list[Diagnostic]:
+        """Warnings about rows of the table of amounts that match no unit."""
+        return self._amounts_and_unmatched[1] if self._table else []
 
     @property
     def starting(self) -> StoredStartingKitchen:

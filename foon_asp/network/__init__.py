@@ -26,6 +26,7 @@ from foon_asp.network.starting_kitchen import StartingKitchen as StartingKitchen
 from foon_asp.network.starting_kitchen import starting_kitchen as starting_kitchen
 from foon_asp.network.starting_kitchen import starting_nodes as starting_nodes
 from foon_asp.network.task_tree import TaskTree as TaskTree
+from foon_asp.network.unit_amounts import ALL_ONE as ALL_ONE
 from foon_asp.network.unit_amounts import MAX_AMOUNT as MAX_AMOUNT
 from foon_asp.network.unit_amounts import NO_AMOUNTS as NO_AMOUNTS
 from foon_asp.network.unit_amounts import Amounts as Amounts

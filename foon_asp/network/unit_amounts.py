@@ -19,6 +19,9 @@ class UnitAmounts(NamedTuple):
         return bool(self.inputs or self.outputs)
 
 
+ALL_ONE = UnitAmounts()
+"""The amounts of a unit that takes and makes one copy of each node."""
+
 Amounts = Mapping[FunctionalUnit, UnitAmounts]
 """The amounts of units; of a unit that is not in it, all amounts are 1."""
 

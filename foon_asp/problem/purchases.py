@@ -1,8 +1,11 @@
 """Purchases as units: buying an object node is a unit without inputs, at a price."""
 
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Self
 
 from foon_asp.deadline import Deadline
 from foon_asp.network import Network, Source
@@ -32,9 +35,9 @@ class _FixedCosts:
 class Purchases:
     """A question about what to buy, as one about a tree.
 
-    ``problem`` has a unit more for each ware, which makes it out of nothing. Under ``objectives`` its best
-    tree has the cheapest purchases; ties are broken by fewer purchases, by fewer second choices, and by the
-    objectives of the question.
+    ``problem`` has a unit more for each ware, which makes a copy of it out of nothing. Under ``objectives``
+    its best tree or plan has the cheapest purchases; ties are broken by fewer purchases, by fewer second
+    choices, and by the objectives of the question.
     """
 
     def __init__(
@@ -73,17 +76,22 @@ class Purchases:
             origin=None,
         )
 
-    def without(self, wares: Collection[int]) -> Problem:
-        """Return the question without some wares, by the ids of the object nodes."""
+    def without(self, wares: Collection[int]) -> Self:
+        """Return the purchases without some wares, by the ids of the object nodes, for items that last."""
         removed = {unit for unit in self._purchases if self._wares[unit - self._first] in wares}
-        return (
-            replace(self.problem, restriction=Restriction(removed.__contains__)) if removed else self.problem
-        )
+        if not removed:
+            return self
+        fewer = copy(self)
+        fewer.problem = replace(self.problem, restriction=Restriction(removed.__contains__))
+        return fewer
 
-    def split(self, units: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Return what a tree buys, as ascending ids of object nodes, and its other units, in their order."""
-        bought = sorted(self._wares[unit - self._first] for unit in units if unit >= self._first)
-        return tuple(bought), tuple(unit for unit in units if unit < self._first)
+    def split(self, units: Sequence[int]) -> tuple[dict[int, int], tuple[int, ...]]:
+        """Return what a tree or plan buys, and its other units, in their order.
+
+        The purchases are numbers of copies by ascending ids of object nodes.
+        """
+        bought = Counter(self._wares[unit - self._first] for unit in units if unit >= self._first)
+        return dict(sorted(bought.items())), tuple(unit for unit in units if unit < self._first)
 
 
 def _with_sources(network: Network, wares: Sequence[int]) -> Network:

@@ -1,8 +1,9 @@
 """The best tree for a problem, and its proof."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 from msgspec import UNSET, UnsetType
@@ -199,7 +200,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         penalty: Under soft constraints, the sum of weight times ways over them; null without a tree.
         soft_constraints: Every constraint that may be broken; empty without a tree.
         skipped: The goals that cannot be made and were left out, if that was asked for.
-        goals_alone: Of several goals, the best tree for each by itself.
+        goals_alone: Of several goals, but not of many, the best tree for each by itself.
         sum_of_goals_alone: What these cost by the first objective, added up (success: multiplied); null
             if one has no tree.
         serves: Of several goals, those that each unit is needed for.
@@ -247,12 +248,12 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     stand_ins: tuple[StandIn, ...] | UnsetType = UNSET
 
     @classmethod
-    def of(cls, outcome: Outcome, bought: Collection[int] = (), **fields: Any) -> Self:
+    def of(cls, outcome: Outcome, bought: Mapping[int, int] = MappingProxyType({}), **fields: Any) -> Self:
         """Return the answer for an outcome of the solver.
 
         Parameters:
             outcome: The outcome.
-            bought: The ids of kitchen items that were bought.
+            bought: The number of copies of kitchen items, by id, that were bought.
             fields: Further fields of a subclass.
         """
         problem, units, proof = outcome.problem, outcome.units, outcome.proof
@@ -380,15 +381,21 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     def _sharing(self) -> Iterator[str]:
         """Return lines with the costs of each goal by itself, and the units that serve several goals."""
-        if not isinstance(self.goals_alone, tuple) or not isinstance(self.serves, tuple):
+        if not isinstance(self.serves, tuple):
             return
-        yield from map(str, self.goals_alone)
+        yield from map(str, self.goals_alone if isinstance(self.goals_alone, tuple) else ())
+        if self.costs is None or self.units is None:
+            return
         by, total = self.objectives[0], self.sum_of_goals_alone
-        if self.costs is None or self.units is None or isinstance(total, UnsetType) or total is None:
-            return
-        alone, together = (figure_text(by, measure) for measure in (total, self.costs.measure(by)))
         shared = {serving.unit: serving.goals for serving in self.serves if len(serving.goals) > 1}
-        yield f"{by} one by one {alone}, together {together}; {counted(len(shared), 'unit')} shared"
+        shared_text = f"{counted(len(shared), 'unit')} shared"
+        if total is UNSET:
+            yield f"{shared_text}; what each goal costs by itself: --all-goals"
+        elif total is None:
+            return
+        else:
+            alone, together = (figure_text(by, measure) for measure in (total, self.costs.measure(by)))
+            yield f"{by} one by one {alone}, together {together}; {shared_text}"
         for step in self.units:
             if step.id in shared:
                 labels = ", ".join(goal.label for goal in shared[step.id])
@@ -415,7 +422,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         if self.ids is None:
             return ""
         comments = [f"Task tree for: {' + '.join(map(str, self.goals))}", *self.headlines()]
-        return write_units(map(self.problem.network.unit, self.ids), comments)
+        return write_units(map(self.problem.network.unit, self.ids), comments, self.problem.amounts)
 
     durations = Unserialized[Mapping[str, Duration]]({})
     """How long motions take, as far as that was stated."""

@@ -17,7 +17,6 @@ from foon_asp.results.plain_values import exact_measures, plain
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.text.exact_number import decimal_text
 from foon_asp.text.json_value import Json, json_text
-from foon_asp.text.unit_amount_list import write_unit_amounts
 from foon_asp.text.unit_price_list import write_unit_prices
 from foon_asp.text.writer import write_units
 from foon_asp.whole_file import write_whole
@@ -114,7 +113,7 @@ def _data(problem: Problem) -> dict[str, str]:
     if network.detailed is not None:
         kitchen = sorted(detail for o in kitchen for detail in network.objects_stand_for[o])
     files = {
-        "FOON.txt": write_units(map(whole.unit, range(len(whole)))),
+        "FOON.txt": write_units(map(whole.unit, range(len(whole))), (), problem.amounts),
         "kitchen.json": json_text([str(whole.objects[o]) for o in kitchen]),
         "utensils.txt": "".join(f"{label}\n" for label in sorted(problem.utensils)),
     }
@@ -122,8 +121,6 @@ def _data(problem: Problem) -> dict[str, str]:
         files["motion.txt"] = "".join(f"{motion}\t{decimal_text(r)}\n" for motion, r in problem.rates.items())
     if problem.unit_prices is not None:
         files["unit_prices.txt"] = write_unit_prices(problem.unit_prices)
-    if problem.amounts:
-        files["unit_amounts.txt"] = write_unit_amounts(problem.amounts)
     return files
 
 

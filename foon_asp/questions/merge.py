@@ -3,17 +3,18 @@
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
+from types import MappingProxyType
 
 from foon_asp.argument_checks import typed
 from foon_asp.dataset.paths import File, Files, as_path, files
 from foon_asp.errors import UserError
-from foon_asp.network import Network, NetworkBuilder, counted
+from foon_asp.network import Amounts, Network, NetworkBuilder, counted
 from foon_asp.network.near_units import units_kept_apart
 from foon_asp.questions.result import Result
 from foon_asp.results.document import Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values_of import differences_of, listed_unit
-from foon_asp.text.data_folder import DataFiles, find_data
+from foon_asp.text.data_folder import DataFiles, find_data, unit_amounts
 from foon_asp.text.diagnostics import summarize
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.merged_network import merged_text
@@ -49,6 +50,9 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
     network = Unserialized[Network | None](None)
     """The network; ``None`` where it was written into a store."""
 
+    amounts = Unserialized[Amounts](MappingProxyType({}))
+    """How many copies of their object nodes units take and make, where that is not one."""
+
     store = Unserialized[Path | None](None)
     """The store that it was written into, if it was."""
 
@@ -76,7 +80,7 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
             raise UserError("the network is in a store, not in memory: merge without a store")
         of = counted(len(self.files), "file", ",")
         comment = f"Universal FOON: {counted(self.units, 'functional unit', ',')} from {of}"
-        return "".join(merged_text(self.network, comment))
+        return "".join(merged_text(self.network, comment, self.amounts))
 
     def kept_apart(self) -> Iterator[Block]:
         """Return the pairs of units that differ in one thing alone, each with its places."""
@@ -163,17 +167,14 @@ def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Mer
         for motion, inputs, outputs, sources, _ in reader.file_units(file):
             builder.add(motion, inputs, outputs, *sources)
             copies += 1
-    warnings = tuple(summarize(reader.diagnostics))
-    if reader.amounts:
-        warnings += (
-            f"warning: FOON text has no amounts: those of {counted(len(reader.amounts), 'unit')} are left "
-            "out; --store keeps them",
-        )
     reader.raise_errors()
     reader.prices.settled(read_unit_prices(data_files.unit_prices).units if data_files.unit_prices else {})
     network = builder.build()
     if not len(network):
         raise UserError("there is no functional unit in these files")
+    amounts = unit_amounts(reader.amounts, data_files.unit_amounts, network, reader.diagnostics)
+    if amounts.conflict:
+        raise UserError(amounts.conflict)
     merged = Merged(
         files=network_files,
         copies=copies,
@@ -182,4 +183,5 @@ def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Mer
         prices=len(reader.prices),
         left_out=reader.left_out,
     )
-    return merged.knowing(warnings=warnings, network=network)
+    warnings = tuple(summarize(reader.diagnostics))
+    return merged.knowing(warnings=warnings, network=network, amounts=amounts.units)

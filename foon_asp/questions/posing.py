@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.item_options import items_of, wanted_of
+from foon_asp.dataset.item_options import items_for
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
@@ -66,7 +66,7 @@ def one_problem(
     command: Command,
     goals_named: Sequence[str],
     containers: str,
-    items: str = "lasting",
+    items: str | None = None,
     stock: File | None = None,
     stays: File | None = None,
     all_goals: bool = False,
@@ -74,18 +74,17 @@ def one_problem(
 ) -> tuple[Problem]:
     """Pose one problem, whose tree makes all goals that are named; with amounts of goals, items are used up.
 
-    With ``all_goals``, each goal is a question of its own: the named goals, or all of the goals
-    file. Of a large store, the units that the goals can need are read on first access.
+    Items last for a question that has no ``items``. With ``all_goals``, each goal is a question of its own:
+    the named goals, or all of the goals file. Of a large store, the units that the goals can need are read
+    on first access.
     """
     dataset = command.dataset
     with command.reading():
         named = dataset.each_goal(goals_named) if all_goals else dataset.goals(goals_named)
         if not named:
             raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
-        wanted = wanted_of(dataset, named, amounts)
-        if wanted and not command.given("items"):
-            items = "used-up"
-        used_up = items_of(dataset, items, stock, stays, wanted)
+        stated = "lasting" if items is None else items if command.given("items") else None
+        used_up = items_for(dataset, named, amounts, stated, stock, stays)
         return (dataset.nearby(tuple(dict.fromkeys(named)), containers, used_up),)
 
 

@@ -1,11 +1,11 @@
 """Posing the problem of a file with a tree or plan: its goals, and its data if none are named."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from foon_asp.dataset import Dataset
-from foon_asp.dataset.item_options import items_of, wanted_of
+from foon_asp.dataset.item_options import items_for
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, counted, unit_at_level
@@ -37,8 +37,12 @@ def a_plan(
         containers = answer.containers or containers
     dataset = command.dataset
     with command.reading():
-        wanted = wanted_of(dataset, dataset.goals(goals_named), amounts) if amounts else {}
-        used_up = items_of(dataset, items, stock, stays, wanted)
+
+        def used_up(goals: Sequence[int]) -> UsedUp | None:
+            wanted = [answer.wanted.get(dataset.names.node(goal), 1) for goal in goals]
+            stated = amounts or (wanted if answer.wanted and items != "lasting" else ())
+            return items_for(dataset, goals, stated, items, stock, stays)
+
         tree = listed_tree(dataset, plan, answer, goals_named, containers, used_up)
     return tree.problem, tree
 
@@ -67,11 +71,12 @@ def listed_tree(
     answer: ListedTree,
     goals_named: Sequence[str | ObjectNode],
     containers: str,
-    items: UsedUp | None = None,
+    used_up: Callable[[Sequence[int]], UsedUp | None] | None = None,
 ) -> Tree:
     """Return the tree that a file lists, for the named goals or the goals of an answer.
 
     Without an answer and a goal it is for the only goal of the data, or for what the last step makes.
+    ``used_up`` says how items are used up for goals, by id; without it they last.
     """
     ordered = not answer.numbers
     listed = answer.with_units(file, lambda: dataset.whole_network).units or ()
@@ -86,7 +91,7 @@ def listed_tree(
     else:
         why = "use(U) names no goal, and has no last step" if listed else "there is no step"
         raise UserError(f"{file}: {why}; name a goal with --goal")
-    problem = dataset.problem(goals, containers, items=items)
+    problem = dataset.problem(goals, containers, items=used_up and used_up(goals))
     if not goals_named and not answer.goals and (len(dataset.listed) != 1 or dataset.goals_from):
         shown = " + ".join(map(str, problem.goal_nodes))
         caller().reporter.warning(f"No --goal: using what the last step makes: {shown}")
@@ -114,12 +119,12 @@ def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence
         return ()
     if 2 * bundled >= len(listed):
         caller().reporter.warning(
-            f"{names}: no network is named, so it is the bundled kitchen, which has {bundled} of "
-            f"{counted(len(listed), 'unit')}; another one is named with --network"
+            f"{names}: no --network: using the bundled kitchen, which has {bundled} of "
+            f"{counted(len(listed), 'unit')}"
         )
         return ()
     if texts := [file for file, tree in files.items() if not tree.goals]:
-        caller().reporter.warning(f"no network is named, so it is {' and '.join(map(str, texts))}")
+        caller().reporter.warning(f"No --network: using {' and '.join(map(str, texts))}")
         return texts
     places = ", ".join(dict.fromkeys(source.file for _, source in listed))
     raise UserError(f"{names}: not of the bundled kitchen; name the data with --network: {places}")

@@ -6,7 +6,8 @@ from dataclasses import replace
 from os import PathLike
 
 from foon_asp.asp.settings import Settings
-from foon_asp.dataset.item_options import require_contents
+from foon_asp.dataset import Dataset
+from foon_asp.dataset.item_options import items_of, require_contents
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS, Objective, Problem, UsedUp, parse_objectives, with_dissimilarity
@@ -110,7 +111,9 @@ def read_as(problem: Problem, items: str) -> Problem:
     if problem.items is not None:
         return problem
     require_contents(problem.network.level)
-    return replace(problem, items=UsedUp())
+    origin = problem.origin
+    used_up = items_of(origin, items, None, None) if isinstance(origin, Dataset) else UsedUp()
+    return replace(problem, items=used_up)
 
 
 def at_least(number: int, least: int, what: str) -> int:

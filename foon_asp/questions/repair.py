@@ -97,7 +97,8 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
         """Return the repaired tree as FOON text; empty without one."""
         if self.tree is None:
             return ""
-        return write_units(self.tree.units, [f"Repaired tree for: {' + '.join(map(str, self.goals))}"])
+        comments = [f"Repaired tree for: {' + '.join(map(str, self.goals))}"]
+        return write_units(self.tree.units, comments, self.tree.problem.amounts)
 
     def show(self) -> Iterator[Block]:
         """Return what has to change, and the steps of the repaired tree."""

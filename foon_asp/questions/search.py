@@ -142,7 +142,8 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
             f"{self.search} ({self.problem.conditions}): {self.verdict}, {costs_text(self.costs)}",
         ]
         units = self.problem.tree(self.ids)
-        return write_units(units, comments + (used_up_note(self.problem, units) if self.executes else []))
+        comments += used_up_note(self.problem, units) if self.executes else []
+        return write_units(units, comments, self.problem.amounts)
 
     def drawing(self) -> Drawing | None:
         """Return the drawing of the tree; ``None`` without a tree."""

@@ -1,7 +1,7 @@
 """Shopping lists: the cheapest items to add to the kitchen so that a tree exists."""
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
@@ -10,8 +10,11 @@ from os import PathLike
 from pathlib import Path
 from typing import Annotated, NamedTuple, Unpack
 
-from foon_asp.asp import Outcome, Reporter, Status, solve
+from msgspec import UNSET, UnsetType
+
+from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import assemble
+from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
@@ -25,10 +28,11 @@ from foon_asp.problem.dead_ends import dead_ends
 from foon_asp.problem.for_sale import Offer, Shop
 from foon_asp.problem.number import INT32_MAX
 from foon_asp.problem.purchases import Purchases
+from foon_asp.proof.counted_run import counted_run
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.options import TREE
+from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.python_arguments import Objectives, at_least, chosen_objectives, whole
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending
@@ -56,17 +60,22 @@ class Item(Node, frozen=True, kw_only=True):
     """An object node on a shopping list.
 
     Attributes:
-        price: What it costs; 1 without a price list.
+        price: What a copy costs; 1 without a price list.
+        copies: Where items are used up: how many copies to buy.
     """
 
     price: Fraction
+    copies: int | UnsetType = UNSET
+
+    def __str__(self) -> str:
+        return self.node if self.copies is UNSET else f"{self.copies} x {self.node}"
 
 
 class ShoppingList(Value, frozen=True):
     """Object nodes to add to the kitchen.
 
     Attributes:
-        price: The sum of prices; without a price list, the number of items.
+        price: The sum of prices; without a price list, the number of items, or of copies if they are used up.
         proved: Whether it is proved that no list is cheaper, but for those that hold all of an earlier one.
         costs: What the best tree costs with these items; null where a limit came first.
     """
@@ -160,22 +169,31 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         if not self.complete:
             return "there are more lists than these: --lists finds more"
         shown = "this list" if len(self.lists) == 1 else "one of these lists"
+        if self.items != "lasting":
+            return f"that is all: any other list that makes a plan possible has each thing of {shown}"
         return (
             f"that is all: any other set of things on offer that makes a tree possible holds all of {shown}"
         )
 
     def _price(self, bought: ShoppingList) -> str:
         items = counted(len(bought.items), "object node")
+        if self.items != "lasting":
+            copies = sum(item.copies for item in bought.items if item.copies is not UNSET)
+            items = f"{copies} {'copy' if copies == 1 else 'copies'} of {items}"
         return f"{items} for {_decimal(bought.price)}" if self.offer is Offer.PRICED else items
 
 
 @question(
     *TREE,
+    *ITEMS,
+    AMOUNT,
+    used_up=True,
     formats=TABLES,
     help_="""
     \b
     foon-asp shopping-list --goal 'hot cocoa'
     foon-asp shopping-list --goal 'hot cocoa' --goal omelet --prices prices.txt
+    foon-asp shopping-list recipe.txt --amount 8 --kitchen kitchen.json
 
     For sale is what no unit makes, what is empty or clean, a vessel or tool that units give back and cannot
     run without, and what has no state and contains at most one ingredient, unless it is a product. The dish
@@ -183,6 +201,10 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
     notation, or a label, then a tab and a price. Every list is proved to be the cheapest of those that do not
     contain all of an earlier one; among lists of one size, that with plain things comes first, then that with
     the best tree.
+
+    With items used up, or amounts of goals, it says how many copies of each thing to buy: the fewest, or the
+    cheapest by a price list for one copy. What the kitchen has an amount of can be bought, too. A further
+    list lacks some thing of every earlier one.
 
     Exits with 0 when there is a list, proved; with 1 when no list helps, proved; with 3 when stopped at a
     limit.
@@ -196,11 +218,12 @@ def shopping_list(
     lists: Annotated[int, Option(least=1)] = 3,
     **options: Unpack[CommonOptions],
 ) -> Shopping:
-    """Find the fewest or cheapest object nodes to add to the kitchen so that a task tree exists.
+    """Find the fewest or cheapest object nodes to add to the kitchen so that a task tree or plan exists.
 
-    Every list is proved: there is no shorter or cheaper one, except those that contain all of an earlier
-    list. Among lists of the same cost, one with fewer things comes first, then one with fewer mixtures and
-    objects that units make, then one with a better tree. All of a store is read.
+    Where items are used up, a list has the number of copies of each, and a further list lacks some object
+    node of every earlier one. Every list is proved: there is no shorter or cheaper one, except those that
+    contain all of an earlier list. Among lists of the same cost, one with fewer things comes first, then one
+    with fewer mixtures and objects that units make, then one with a better tree. All of a store is read.
 
     Parameters:
         prices: A price list: lines of an object node, a tab and a price; only what has a price can be bought.
@@ -225,8 +248,10 @@ def shopping_list(
     chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
     max_lists = at_least(lists, 1, "lists")
     problem = whole(problem)
-    deadline, reporter = settings.begun, caller().reporter
     priced = None if prices is None else _priced(problem, _listed(prices))
+    if problem.items is not None:
+        return _with_copies(problem, chosen, settings, priced, max_lists)
+    deadline, reporter = settings.begun, caller().reporter
     program = assemble(settings, reporter.warning, problem=problem)
     cheapest = _Lists([], complete=True)
     made_of = (Offer.FOR_SALE, dict[int, Fraction]()) if priced is None else (Offer.PRICED, priced)
@@ -247,7 +272,7 @@ def shopping_list(
     for candidate in cheapest.lists:
         outcome = candidate.outcome
         if outcome is None:
-            stocked = _stocked(problem, candidate.items)
+            stocked = _stocked(problem, candidate.bought)
             outcome = solve(stocked, chosen, settings, Reporter() if outcomes else reporter)
         if outcome.status is Status.INFEASIBLE:
             _refuse_far_rules(program)
@@ -259,26 +284,78 @@ def shopping_list(
         **head_of(problem, chosen),
         offer=offer,
         lists=tuple(
-            ShoppingList(
-                tuple(node_as(Item, problem.network, o, price=wares[o]) for o in candidate.items),
-                candidate.price,
-                candidate.proved,
-                outcome.costs,
-            )
-            for candidate, outcome in outcomes[:max_lists]
+            candidate.shown(problem, wares, outcome.costs) for candidate, outcome in outcomes[:max_lists]
         ),
         complete=cheapest.complete and len(outcomes) <= max_lists,
-        answer=Answer.of(outcomes[0][1], outcomes[0][0].items) if outcomes else None,
+        answer=Answer.of(outcomes[0][1], outcomes[0][0].bought) if outcomes else None,
+    )
+
+
+def _with_copies(
+    problem: Problem,
+    objectives: tuple[Objective, ...],
+    settings: Settings,
+    priced: Mapping[int, Fraction] | None,
+    max_lists: int,
+) -> Shopping:
+    """Return the cheapest lists of copies for plans in which items are used up.
+
+    Raises :class:`UserError` for rules, which would see the purchases as units.
+    """
+    if settings.constraints or settings.replaced is not None:
+        raise UserError(
+            "shopping lists with items used up are not built under rules: leave the rules out, or ask with "
+            "--items lasting"
+        )
+    limited = replace(problem, kitchen=problem.endless)  # what there is an amount of can be bought, too
+    shop, needs = Shop(limited), {*problem.goals, *(o for needs in problem.needs for o in needs)}
+    offers = [(Offer.PRICED, dict(priced))] if priced is not None else _for_sale(limited, shop)
+    found, made_of = _Lists([], complete=True), (Offer.FOR_SALE, dict[int, Fraction]())
+    for made_of in offers:
+        wares = {o: price for o, price in made_of[1].items() if o in needs}
+        second_choices = frozenset(filter(shop.is_second_choice, wares))
+
+        def purchases(left_out: Collection[int]) -> Purchases:
+            offered = {o: price for o, price in wares.items() if o not in left_out}  # noqa: B023 (called here)
+            return Purchases(problem, offered, second_choices.intersection(offered), objectives)  # noqa: B023
+
+        found = _Shopper(problem, settings, purchases, objectives, wares).lists(max_lists)
+        if found.lists or not found.complete:
+            break
+    outcomes = [(listed, listed.outcome) for listed in found.lists if listed.outcome is not None]
+    return Shopping(
+        **head_of(problem, objectives),
+        offer=made_of[0],
+        lists=tuple(listed.shown(problem, made_of[1], outcome.costs) for listed, outcome in outcomes),
+        complete=found.complete,
+        answer=Answer.of(outcomes[0][1], outcomes[0][0].bought) if outcomes else None,
     )
 
 
 class _PricedList(NamedTuple):
-    """A list by ids, its price, whether it is proved the cheapest, and the best tree if it is known."""
+    """A list, its price, whether it is proved the cheapest, and the best tree if it is known.
 
-    items: tuple[int, ...]
+    ``bought`` has the number of copies by the id of the object node, which is 1 where items last.
+    """
+
+    bought: Mapping[int, int]
     price: Fraction
     proved: bool
     outcome: Outcome | None = None
+
+    @property
+    def items(self) -> tuple[int, ...]:
+        """The object nodes, by id."""
+        return tuple(self.bought)
+
+    def shown(self, problem: Problem, wares: Mapping[int, Fraction], costs: Costs | None) -> ShoppingList:
+        """Return the list as a value; ``costs`` are those of the best tree with it."""
+        counts = problem.items is not None
+        items = (
+            node_as(Item, problem.network, o, price=wares[o], copies=copies if counts else UNSET)
+            for o, copies in self.bought.items()
+        )
+        return ShoppingList(tuple(items), self.price, self.proved, costs)
 
 
 class _Lists(NamedTuple):
@@ -288,9 +365,16 @@ class _Lists(NamedTuple):
     complete: bool
 
 
-def _stocked(problem: Problem, items: Iterable[int]) -> Problem:
-    """Return a problem with bought items in its kitchen."""
-    return replace(problem, kitchen=problem.kitchen.union(items))
+def _stocked(problem: Problem, bought: Mapping[int, int]) -> Problem:
+    """Return a problem with bought items in its kitchen, by the number of their copies."""
+    kitchen = problem.kitchen.union(bought)
+    if problem.items is None:
+        return replace(problem, kitchen=kitchen)
+    stock = dict(problem.items.stock)
+    for o, copies in bought.items():
+        node = problem.network.objects[o]
+        stock[node] = (stock.get(node, 0) if o in problem.kitchen else 0) + copies
+    return replace(problem, kitchen=kitchen, items=replace(problem.items, stock=stock))
 
 
 def _sort_key(
@@ -355,7 +439,7 @@ def _priced(problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]])
         if not objects:
             node = ObjectNode(entry.name) if isinstance(entry.name, str) else entry.name
             caller().reporter.warning(f"{entry.source}:{entry.source.column}: warning: {fault}: {node}")
-    return {o: price for o, price in prices.items() if o not in problem.kitchen}
+    return {o: price for o, price in prices.items() if o not in problem.endless}
 
 
 def _for_sale(problem: Problem, shop: Shop) -> list[tuple[Offer, dict[int, Fraction]]]:
@@ -379,8 +463,8 @@ def _lists(
     sold = {o: price for o, price in wares.items() if o in met}
     second_choices = frozenset(filter(shop.is_second_choice, sold))
     if prepared.program.own:
-        purchases = Purchases(problem, sold, second_choices, objectives)
-        return _Shopper(prepared, purchases, objectives, wares).lists(max_lists)
+        without = Purchases(problem, sold, second_choices, objectives).without
+        return _Shopper(problem, prepared.settings, without, objectives, wares).lists(max_lists)
     return _lists_under_rules(prepared, sold, second_choices, max_lists, objectives != (Objective.UNITS,))
 
 
@@ -392,14 +476,16 @@ class _Shopper:
 
     def __init__(
         self,
-        prepared: Prepared,
-        purchases: Purchases,
+        problem: Problem,
+        settings: Settings,
+        purchases: Callable[[Collection[int]], Purchases],
         objectives: tuple[Objective, ...],
         wares: Mapping[int, Fraction],
     ) -> None:
-        self._prepared, self._purchases, self._wares = prepared, purchases, wares
-        self._objectives = objectives
-        self._waiting: list[tuple[tuple[int | Fraction, ...], int, frozenset[int], Outcome]] = []
+        """Search for lists with what ``purchases`` offers without some wares, by id."""
+        self._problem, self._settings, self._wares = problem, settings, wares
+        self._purchases, self._objectives = purchases, objectives
+        self._waiting: list[tuple[tuple[int | Fraction, ...], int, frozenset[int], _PricedList]] = []
         self._seen: set[frozenset[int]] = set()
         self._listed: list[_PricedList] = []
 
@@ -408,8 +494,7 @@ class _Shopper:
         if not self._look(frozenset(), caller().reporter):
             return _Lists(self._listed, complete=False)
         while self._waiting:
-            _, _, left_out, outcome = heappop(self._waiting)
-            listed = self._list(outcome)
+            _, _, left_out, listed = heappop(self._waiting)
             if all(listed.items != earlier.items for earlier in self._listed):
                 self._listed.append(listed)
                 if not listed.items or len(self._listed) == max_lists:
@@ -426,20 +511,28 @@ class _Shopper:
         for earlier in self._listed:
             if left_out.isdisjoint(earlier.items):  # which the best list might be
                 return all(self._look(left_out | {item}, reporter) for item in earlier.items)
-        settings, by = self._prepared.settings, self._purchases.objectives
-        outcome = solve(self._purchases.without(left_out), by, settings, reporter)
+        purchases = self._purchases(left_out)
+        by = purchases.objectives
+        outcome = solve(purchases.problem, by, self._settings, reporter)
         if outcome.status is Status.OPTIMAL and outcome.costs is not None:
-            heappush(self._waiting, (outcome.costs.key(levels(by)), len(self._seen), left_out, outcome))
+            listed = self._list(outcome, purchases)
+            heappush(self._waiting, (outcome.costs.key(levels(by)), len(self._seen), left_out, listed))
         if outcome.status is Status.FEASIBLE and not self._listed:
-            self._listed.append(self._list(outcome))
+            self._listed.append(self._list(outcome, purchases))
         return outcome.status in {Status.OPTIMAL, Status.INFEASIBLE}
 
-    def _list(self, outcome: Outcome) -> _PricedList:
-        """Return the list that a tree buys, and the tree."""
+    def _list(self, outcome: Outcome, purchases: Purchases) -> _PricedList:
+        """Return the list that a tree or plan buys, and the tree or plan."""
         assert outcome.units is not None
-        items, units = self._purchases.split(outcome.units)
-        problem = _stocked(self._prepared.problem, items)
-        order = Postconditions(problem, levels(self._objectives), self._prepared.settings).tree(units)
+        bought, units = purchases.split(outcome.units)
+        problem = _stocked(self._problem, bought)
+        if problem.items is None:
+            order = Postconditions(problem, levels(self._objectives), self._settings).tree(units)
+        else:
+            order = units
+            lacking = counted_run(problem, order).lacking
+            if lacking is not None:
+                raise BugError(f"with what is bought, the plan {list(order)} lacks {lacking}")
         costs, proved = problem.costs(order), outcome.status is Status.OPTIMAL
         bounds = {by: costs.measure(by) for by in levels(self._objectives)} if proved else {}
         tree = outcome._replace(
@@ -451,7 +544,8 @@ class _Shopper:
             cuts=(),
             cases=None,
         )
-        return _PricedList(items, sum((self._wares[o] for o in items), Fraction(0)), proved, tree)
+        price = sum((self._wares[o] * copies for o, copies in bought.items()), Fraction(0))
+        return _PricedList(bought, price, proved, tree)
 
 
 def _lists_under_rules(
@@ -479,7 +573,7 @@ def _lists_under_rules(
         if ended.units is not None:
             items = tuple(sorted(ended.atoms["_buy"]))
             price = sum((sold[o] for o in items), Fraction(0))
-            lists.append(_PricedList(items, price, ended.exhausted))
+            lists.append(_PricedList(dict.fromkeys(items, 1), price, ended.exhausted))
             facts += write_list(len(lists), items)
         if ended.units is None or not ended.exhausted:
             return _Lists(lists, ended.exhausted)

@@ -53,7 +53,7 @@ _ROWS: tuple[tuple[str, str, Callable[[Statistics], object]], ...] = (
     ("graph", "nodes in the largest", lambda s: s.largest_cycle),
     ("graph", "parts that share no node", lambda s: s.parts),
     ("graph", "units in the largest", lambda s: s.largest_part),
-    ("reach", "nodes at hand", lambda s: s.at_hand),
+    ("reach", "nodes in the kitchen", lambda s: s.at_hand),
     ("reach", "depth, most", lambda s: s.depth),
     ("reach", "depth, median over units", lambda s: f"{s.median_depth:g}"),
     ("reach", "nodes out of reach", lambda s: s.unreached_objects),

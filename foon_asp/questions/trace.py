@@ -12,7 +12,7 @@ from msgspec import field
 from foon_asp.asp import Settings
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
-from foon_asp.problem import Problem, UsedUp
+from foon_asp.problem import Problem
 from foon_asp.proof.replay import Replay, replay_for, replayable
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.common_options import Posed, begin
@@ -27,7 +27,7 @@ from foon_asp.results.table import Block
 from foon_asp.results.values import Copies, Copy, Unit, Value, changed_motions
 from foon_asp.results.values_of import copies_of, copy_of, head_of, lack_of
 from foon_asp.text.json_value import schema_name
-from foon_asp.text.writer import write_node
+from foon_asp.text.writer import counted_node, write_node
 from foon_asp.whole_file import utf_8, write_whole
 
 States = tuple[dict[ObjectNode, int], ...]
@@ -110,7 +110,9 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         return self.states[after]
 
     def kitchen_text(self, after: int) -> str:
-        """Return the kitchen after a step as FOON text: each available object node once.
+        """Return the kitchen after a step as FOON text: each available object node, with its amount.
+
+        What never runs out has none.
 
         Parameters:
             after: The number of steps that were done, from 0.
@@ -118,23 +120,23 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         problem = self.plan.problem
         kitchen = (problem.network.objects[o] for o in sorted(problem.kitchen))
         endless = (node for node in kitchen if node not in _stock(problem))
-        return "".join(map(write_node, [*endless, *self.copies(after)]))
+        return "".join(map(write_node, endless)) + self.stock_text(after)
 
     def stock_text(self, after: int) -> str:
-        """Return the stock after a step as FOON text: an object block for each copy.
+        """Return the stock after a step as FOON text: each consumable object node, with its amount.
 
         Parameters:
             after: The number of steps that were done, from 0.
         """
-        return "".join(write_node(node) * n for node, n in self.copies(after).items())
+        return "".join(counted_node(node, n) for node, n in self.copies(after).items())
 
     def show(self) -> Iterator[Block]:
         """Return the steps with consumed and added copies, and the final kitchen."""
         done = len(self.executed) if self.failed is None else self.failed - 1
         for step in self.executed[:done]:
             yield f"{step.step:>3}  {step.unit.motion}    [{step.unit.source[0]}]"
-            yield from (f"     - {copy}" for copy in step.gone)
-            yield from (f"     + {copy}" for copy in step.came)
+            yield from (f"     - {copies}" for copies in _counted(step.gone))
+            yield from (f"     + {copies}" for copies in _counted(step.came))
         yield f"after step {done} there are, beside what never runs out:"
         yield from (f"     {n} x {node}" for node, n in self.copies(done).items())
         if self.answer is not None:
@@ -156,6 +158,12 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         if not changes:
             return "what was left of the plan is still the best"
         return f"compared with what was left of the plan: {changes}"
+
+
+def _counted(copies: Iterable[Copy]) -> Iterator[str]:
+    """Return the object nodes of copies, each with its number where that is not one."""
+    for node, number in Counter(map(str, copies)).items():
+        yield node if number == 1 else f"{number} x {node}"
 
 
 def _stock(problem: Problem) -> dict[ObjectNode, int]:
@@ -334,5 +342,5 @@ def _from_here(problem: Problem, copies: dict[ObjectNode, int]) -> Problem:
     present = {o for node in copies if (o := network.object_id(node)) is not None}
     if whole.items is None:
         return replace(whole, kitchen=whole.kitchen | present, origin=None)
-    items = UsedUp(whole.items.told, copies)
+    items = replace(whole.items, stock=copies)
     return replace(whole, kitchen=whole.endless | present, items=items, origin=None)

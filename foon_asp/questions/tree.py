@@ -100,7 +100,8 @@ class Tree(TaskTree):
         return tuple(unit for unit in ids if unit is not None)
 
     def __str__(self) -> str:
-        return write_units(self.units, filter(None, [f"Task tree for: {self._goals()}", self.claim]))
+        comments = filter(None, [f"Task tree for: {self._goals()}", self.claim])
+        return write_units(self.units, comments, self.problem.amounts)
 
     def __repr__(self) -> str:
         return f"<Tree for {self._goals()}: {counted(len(self), 'unit')}>"

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
+from foon_asp.dataset import Dataset
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import Problem, UsedUp
 from foon_asp.proof.replay import Shortage
@@ -11,25 +12,41 @@ from foon_asp.proof.used_up_run import used_up_run
 def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
     """Return one line where items last, and the tree would not run if each were used once, or none.
 
-    Nor is there one where what is missing never was there. Where a unit of the tree has amounts, the line
-    says that they are not counted.
+    Nor is there one where what is missing never was there. Where units, the kitchen or the goals have
+    amounts that matter for the tree, the line says that they are not counted.
     """
     units = tuple(tree)
     if problem.items is not None:
         return []
-    counted_unit = (
-        next((unit for unit in units if problem.amounts.get(unit)), None) if problem.amounts else None
-    )
-    if counted_unit is not None:
-        return [
-            f"note: amounts, as in {counted_unit.motion}, are not counted where items last: --items used-up"
-        ]
+    counted = _counted(problem, units)
+    if counted:
+        return [f"note: amounts, as {counted}, are not counted where items last: --items used-up"]
     run = used_up_run(problem, units)
     if run.shortage is None or not run.shortage.consumers:
         return []
     text = _lack_text(problem, units, run.shortage)
     text += "" if run.proved else ", and no other order was found"
     return [f"note: {text}: with each item used once, see --items used-up"]
+
+
+def _counted(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
+    """Return what has an amount that a tree does not count: a unit, a kitchen item or a goal; or nothing."""
+    if problem.amounts:
+        for unit in units:
+            if problem.amounts.get(unit):
+                return f"in {unit.motion}"
+    origin = problem.origin
+    if not isinstance(origin, Dataset):
+        return ""
+    if origin.stock:
+        for node in (node for unit in units for node in unit.inputs):
+            if node in origin.stock and problem.at_hand(node):
+                return f"of {node} in the kitchen"
+    wanted = origin.wanted
+    for goal in problem.goals if wanted else ():
+        if wanted.get(problem.network.object_number(goal), 1) > 1:
+            return f"of the goal {problem.network.objects[goal]}"
+    return ""
 
 
 def _lack_text(problem: Problem, units: Sequence[FunctionalUnit], lack: Shortage) -> str:

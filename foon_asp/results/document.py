@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any, ClassVar, Generic, Literal, Self, TypeVar
 
-from msgspec import Struct
+from msgspec import UNSET, Struct
 
 from foon_asp.network import counted
 from foon_asp.problem import ContainerRule, Objective, conditions
@@ -122,7 +122,7 @@ class AboutGoals(Document, frozen=True, kw_only=True):
     def goal_lines(self, shown: int = 5) -> Iterator[str]:
         """Return a line for each goal; below level 3 with level-3 nodes that it stands for."""
         for goal in self.goals:
-            yield f"goal: {goal}"
+            yield f"goal: {goal}" if goal.wanted is UNSET else f"goal: {goal.wanted} x {goal}"
             if isinstance(goal.stands_for, tuple):
                 yield f"  stands for {counted(len(goal.stands_for), 'object node')} at level 3:"
                 yield from (f"    {node}" for node in goal.stands_for[:shown])

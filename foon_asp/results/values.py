@@ -58,6 +58,7 @@ class Node(Value, frozen=True):
         id: The id in the whole network, as in the facts; null where the network does not have it.
         node: The one-line notation, which ``--goal`` understands.
         stands_for: Below level 3: the level-3 nodes that a goal stands for.
+        wanted: How many copies of a goal are wanted, where that is not one.
     """
 
     id: int | None
@@ -67,6 +68,7 @@ class Node(Value, frozen=True):
     relations: tuple[Relation, ...]
     contents: tuple[Contents, ...]
     stands_for: "tuple[Node, ...] | UnsetType" = UNSET
+    wanted: int | UnsetType = UNSET
 
     def __str__(self) -> str:
         return self.node

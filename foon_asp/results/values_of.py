@@ -4,6 +4,7 @@ import functools
 from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
+from types import MappingProxyType
 from typing import Any, Literal, TypedDict, TypeVar
 
 from msgspec import UNSET, UnsetType
@@ -56,7 +57,7 @@ def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
     """Return the question of a document about goals: its goals, conditions and objectives."""
     network = problem.network
     return {
-        "goals": goals_of(network, problem.goals),
+        "goals": goals_of(network, problem.goals, problem.items.wanted if problem.items else {}),
         "containers": problem.containers,
         "items": "lasting" if problem.items is None else "used-up",
         "level": network.level,
@@ -65,11 +66,17 @@ def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
     }
 
 
-def goals_of(network: Network, goals: Iterable[int]) -> tuple[Node, ...]:
-    """Return goals; below level 3 with the level-3 nodes that each stands for."""
+def goals_of(
+    network: Network, goals: Iterable[int], wanted: Mapping[ObjectNode, int] = MappingProxyType({})
+) -> tuple[Node, ...]:
+    """Return goals, with their amounts where not one is ``wanted``.
+
+    Below level 3 each has the level-3 nodes that it stands for.
+    """
     detailed = network.detailed
     if detailed is None:
-        return nodes_of(network, goals)
+        amounts = (wanted.get(network.objects[goal], UNSET) for goal in goals)
+        return tuple(node_as(Node, network, goal, wanted=n) for goal, n in zip(goals, amounts, strict=True))
     return tuple(
         node_as(Node, network, goal, stands_for=nodes_of(detailed, network.objects_stand_for[goal]))
         for goal in goals
@@ -151,14 +158,14 @@ def differences_of(pair: NearUnits) -> tuple[UnitDifference, ...]:
 def steps_of(
     problem: Problem,
     units: Collection[int],
-    bought: Collection[int] = (),
+    bought: Mapping[int, int] = MappingProxyType({}),
     helped: Collection[int] | None = None,
 ) -> tuple[Step, ...]:
     """Return units as the steps of a tree or plan: where each input comes from, and which outputs are made.
 
-    ``bought`` are the items of the kitchen, by id, that were not there before, and ``helped`` the units that
-    a person does, where one helps. In a list that does not execute as it is, a needed input may be made by a
-    later step only, or by none.
+    ``bought`` are the items of the kitchen, by id, that were not there before, with the number of their
+    copies, and ``helped`` the units that a person does, where one helps. In a list that does not execute as
+    it is, a needed input may be made by a later step only, or by none.
     """
     network, steps = problem.network, []
     for number, (unit, times, origins) in enumerate(_origins(problem, units, bought), 1):
@@ -253,11 +260,11 @@ def _details(network: Network, unit: int) -> tuple[Unit, ...] | UnsetType:
 
 
 def _origins(
-    problem: Problem, units: Collection[int], bought: Collection[int]
+    problem: Problem, units: Collection[int], bought: Mapping[int, int]
 ) -> Iterator[tuple[int, int | UnsetType, Sequence[Origin]]]:
     """Yield each unit, in the order listed, with its executions and the origin of each of its inputs."""
     if problem.items is not None:
-        yield from _origins_of_copies(problem, units)
+        yield from _origins_of_copies(problem, units, bought)
         return
     makers: dict[int, list[int]] = {}
     for step, unit in enumerate(units, 1):
@@ -278,7 +285,7 @@ def _origin(
     step: int,
     makers: Mapping[int, Sequence[int]],
     needed: bool,
-    bought: Collection[int],
+    bought: Mapping[int, int],
 ) -> Origin:
     """Return the origin of an input of a step."""
     if o in problem.kitchen:
@@ -293,13 +300,16 @@ def _origin(
 
 
 def _origins_of_copies(
-    problem: Problem, plan: Collection[int]
+    problem: Problem, plan: Collection[int], bought: Mapping[int, int]
 ) -> Iterator[tuple[int, int | UnsetType, Sequence[Origin]]]:
     """Yield the origins of the inputs of a plan in which items are used up: each input is the oldest copy.
 
     Where amounts are counted, equal units that follow each other are one step.
     """
-    copies = {o: deque([(_KITCHEN, problem.stock_of(o) or 0)]) for o in problem.kitchen}
+    copies = {
+        o: deque([(_KITCHEN, (problem.stock_of(o) or 0) - bought.get(o, 0)), (_BOUGHT, bought.get(o, 0))])
+        for o in problem.kitchen
+    }
     runs = ((unit, sum(1 for _ in run)) for unit, run in groupby(plan))
     executed = runs if problem.counts_amounts else ((unit, 1) for unit in plan)
     for step, (unit, times) in enumerate(executed, 1):

@@ -51,7 +51,8 @@ class StoreBuilder:
         self.matched = [False] * len(kitchen or ())
         self._kitchen = kitchen
         self._entries: dict[LookupKey, list[int]] = {}
-        for number, (pattern, _) in enumerate(kitchen or ()):
+        self._stock: dict[int, int] = {}  # nodes of the kitchen with an amount
+        for number, (pattern, *_) in enumerate(kitchen or ()):
             self._entries.setdefault(pattern.lookup_key, []).append(number)
         self._nodes: dict[str, int] = {}  # ids by their columns
         self._latest: dict[ObjectNode, int] = {}  # ids of nodes met lately
@@ -183,6 +184,7 @@ class StoreBuilder:
             "utensils": sorted(utensils or ()),
             "motion_prices": prices and {motion: str(price) for motion, price in prices.motions.items()},
             "repeated": [[node, *source[:3]] for node, source in repeated],
+            "stock": [*self._stock.items()],
             "amounts": amounts_by_id,
             "amounts_conflict": amounts.conflict,
             "digests": content_digests(
@@ -237,8 +239,11 @@ class StoreBuilder:
         in_kitchen = False
         for key in lookup_keys(node) if self._kitchen else ():
             for entry in self._entries.get(key, ()):
-                if self._kitchen is not None and self._kitchen[entry].pattern.matches(node):
+                item = None if self._kitchen is None else self._kitchen[entry]
+                if item is not None and item.pattern.matches(node):
                     in_kitchen = self.matched[entry] = True
+                    if item.amount is not None:
+                        self._stock[number] = item.amount
         label = self._labels.get(node.label)
         if label is None:
             label = self._labels[node.label] = len(self._labels)

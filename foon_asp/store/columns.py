@@ -111,14 +111,14 @@ def number_of(text: str) -> Fraction:
 
 def entry_column(entry: ListedObject) -> str:
     """Return an entry of a kitchen or goals file as JSON."""
-    pattern, source = entry
+    pattern, source, amount = entry
     parts = pattern.label, sorted(pattern.states), pattern.ingredients, pattern.container
-    return encode([*parts, sorted(pattern.relations), pattern.contents, *source[:3]])
+    return encode([*parts, sorted(pattern.relations), pattern.contents, *source[:3], amount])
 
 
 def entry_of(text: str) -> ListedObject:
     """Return the entry in a column, the inverse of :func:`entry_column`."""
-    label, states, ingredients, container, relations, contents, file, line, column = decoded(text)
+    label, states, ingredients, container, relations, contents, file, line, column, amount = decoded(text)
     pattern = NodePattern(
         _name(label),
         frozenset(map(_name, states)),
@@ -127,4 +127,5 @@ def entry_of(text: str) -> ListedObject:
         frozenset(Relation(_name(word), _name(related_object)) for word, related_object in relations),
         tuple(Contents(_name(word), tuple(map(_name, items))) for word, items in contents),
     )
-    return ListedObject(pattern, Source(_name(file), int(line), int(column)))
+    source = Source(_name(file), int(line), int(column))
+    return ListedObject(pattern, source, None if amount is None else int(amount))

@@ -3,13 +3,13 @@
 import contextlib
 import os
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.file_permissions import pass_on, warn_of_replaced
-from foon_asp.network import Source
+from foon_asp.network import FunctionalUnit, Source
 from foon_asp.problem import unrated_remarks
 from foon_asp.store.builder import StoreBuilder
 from foon_asp.store.digests import append_digest
@@ -17,11 +17,13 @@ from foon_asp.store.store_file import is_store_database
 from foon_asp.text.assumed_goals import LAST, MARKED, as_entry
 from foon_asp.text.data_folder import STARTING, DataFiles, kitchen_item_warning, unit_price_warning
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.object_list import read_object_list
+from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.repeated_node import repeated_note
+from foon_asp.text.stated_amounts import with_table
 from foon_asp.text.tables import RATES, read_utensils
+from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 from foon_asp.text.unit_price_list import read_unit_prices
 
 
@@ -57,11 +59,9 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     goals = read_object_list(files.goals, warnings) if files.goals else []
     rates = RATES.read(files.rates) if files.rates else None
     utensils = read_utensils(files.utensils) if files.utensils else None
-    if files.unit_amounts:
-        raise UserError(
-            f"{files.unit_amounts}: a table of amounts is not built for stores; give the units their amounts "
-            "in neutral lines or JSON"
-        )
+    amount_rows = UNIT_AMOUNTS.rows(files.unit_amounts) if files.unit_amounts else []
+    counted_motions = {row.name[0] for row in amount_rows}
+    counted_units: dict[FunctionalUnit, None] = {}  # those with a motion of the table
     prices = read_unit_prices(files.unit_prices) if files.unit_prices else None
     earlier_warnings = len(warnings)
     last_units: dict[int, Source] = {}
@@ -75,20 +75,20 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
                 for motion, inputs, outputs, sources, _ in reader.file_units(file):
                     added = builder.add(motion, inputs, outputs, sources)
                     last = (added, sources[0]) if outputs else last
+                    if motion in counted_motions:
+                        counted_units[FunctionalUnit.of(motion, inputs, outputs)] = None
                 if last:
                     last_units.setdefault(*last)
             reader.raise_errors(earlier_warnings)
             goals_from = ""
-            if files.goals is None and reader.marked:
-                goals = [as_entry(node, source) for node, source in reader.marked.items()]
-                goals_from = MARKED
-            elif files.goals is None:
-                goals, goals_from = builder.last_outputs(last_units), LAST
+            if files.goals is None:
+                goals, goals_from = _assumed_goals(reader, builder, last_units)
             stated = reader.prices.settled(prices.units if prices else {})
             for unit, source in prices.sources.items() if prices else ():
                 if builder.unit_id(unit) is None:
                     warnings.append(unit_price_warning(unit, source))
-            amounts = reader.amounts.settled()
+            amounts, unmatched = with_table(reader.amounts.settled(), amount_rows, counted_units)
+            warnings += unmatched
             counts = builder.copies, builder.units, builder.objects
             builder.finish(
                 goals, goals_from, rates, utensils, reader.left_out, reader.repeated, amounts, stated, prices
@@ -103,6 +103,15 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     remarks = [] if rates is None else [*unrated_remarks(builder.motion_sources(), rates)]
     remarks += repeated_note(reader.repeated)
     return Imported(*counts, tuple(warnings), reader.left_out, tuple(remarks))
+
+
+def _assumed_goals(
+    reader: FoonReader, builder: StoreBuilder, last_units: Mapping[int, Source]
+) -> tuple[list[ListedObject], str]:
+    """Return the goals that networks mark, or what their last units make, and which of the two."""
+    if reader.marked:
+        return [as_entry(node, source) for node, source in reader.marked.items()], MARKED
+    return builder.last_outputs(last_units), LAST
 
 
 @contextlib.contextmanager

@@ -156,6 +156,19 @@ class Store:
         rows = self._database.execute("SELECT entry FROM kitchen_item ORDER BY number")
         return tuple(entry_of(entry) for (entry,) in rows)
 
+    @cached_property
+    @reporting_damage
+    def stock(self) -> dict[ObjectNode, int]:
+        """The nodes of which the kitchen file has an amount."""
+        return {self.node(o): int(amount) for o, amount in self.file.about("stock")}
+
+    def with_motions(self, motions: Container[str]) -> Iterator[FunctionalUnit]:
+        """Read the units that have some motions."""
+        numbers = [number for number, (name, _) in self._motions.items() if name in motions]
+        for (number,) in self.file.rows("SELECT id FROM unit WHERE motion IN ids", numbers).fetchall():
+            motion, *sides, _ = self.unit_parts(number)
+            yield FunctionalUnit(motion, *(tuple(self.nodes(side)) for side in sides))
+
     # Prices.
 
     @reporting_damage

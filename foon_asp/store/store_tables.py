@@ -4,7 +4,7 @@ import contextlib
 import sqlite3
 
 APPLICATION_ID = 0x464F4F4E  # "FOON", in SQLite's header
-VERSION = 9  # of the tables; SQLite's user_version
+VERSION = 10  # of the tables; SQLite's user_version
 
 SCHEMA = (
     "CREATE TABLE about (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID",

@@ -1,9 +1,10 @@
 """Task trees in files: FOON text, FOON units in JSON, an answer of foon-asp in JSON, or atoms of clingo."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from itertools import chain, repeat
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
@@ -24,12 +25,14 @@ class ListedTree(NamedTuple):
     """A tree as a file lists it: units with their sources in order, ``None`` for an answer without a tree.
 
     ``goals``, ``status``, and the words for ``containers`` and ``items`` are those of an answer, empty for
-    other files. ``numbers`` are the ids of the atoms ``use(U)`` of clingo, in place of units.
+    other files; ``wanted`` has the goals of which it wants several copies. ``numbers`` are the ids of the
+    atoms ``use(U)`` of clingo, in place of units.
     ``is_tree`` is false for FOON that does not say that it is a task tree, and may be a network.
     """
 
     units: tuple[tuple[FunctionalUnit, Source], ...] | None
     goals: tuple[ObjectNode, ...] = ()
+    wanted: Mapping[ObjectNode, int] = MappingProxyType({})
     status: str = ""
     containers: str = ""
     items: str = ""
@@ -77,8 +80,10 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
         steps = answer["units"]
         units = None if steps is None else tuple(chain.from_iterable(map(_executions, steps)))
         goals = tuple(map(read_node_json, answer["goals"]))
+        numbers_wanted = (goal.get("wanted") for goal in answer["goals"])
+        wanted = {goal: int(n) for goal, n in zip(goals, numbers_wanted, strict=True) if n is not None}
         status, containers, items = (str(answer.get(key, "")) for key in ("status", "containers", "items"))
-        return ListedTree(units, goals, status, containers, items)
+        return ListedTree(units, goals, wanted, status, containers, items)
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         fault = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise UserError(f"{file}: expected an answer of foon-asp in JSON, but {fault}") from None

@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from foon_asp.network import Source, UnitAmounts
+from foon_asp.network import Source
+from foon_asp.text.amount_mark import is_amount
 from foon_asp.text.conversion_ids import Numbering
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line
 from foon_asp.text.diagnostics import Diagnostic
@@ -116,10 +117,11 @@ class Converter:
     def _units(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
         listed = list(format_.listed_units(text, file, self._reading))
         videos = self._videos(text, format_, listed, lost)
-        written = [self._unit(unit, lost, format_.machine_written) for unit in listed]
+        meant = [unit.with_totals if format_.machine_written else unit.without_repeats for unit in listed]
+        written = [self._unit(unit, lost) for unit in meant]
         return self._writer.network([unit for unit in written if unit], videos)
 
-    def _unit(self, unit: ListedUnit, lost: "_Tally", machine_written: bool) -> str:
+    def _unit(self, unit: ListedUnit, lost: "_Tally") -> str:
         """Write a unit; the text is empty, and an error is recorded, if the target cannot hold it."""
         try:
             if not unit.inputs and not self._writer.holds_no_inputs:
@@ -129,11 +131,9 @@ class Converter:
                 [self._element(block, block.source, lost) for block in blocks]
                 for blocks in (unit.inputs, unit.outputs)
             )
-            amounts = unit.amounts if machine_written else UnitAmounts()
         except CannotHoldError as problem:
             self._cannot_hold(problem, unit.motion_source)
             return ""
-        lost.add([Loss.AMOUNTS] if amounts and not self._writer.holds_amounts else [], unit.motion_source)
         lost.add([Loss.PRICES] if unit.price and not self._writer.holds_prices else [], unit.motion_source)
         return self._writer.unit(inputs, motion, outputs, unit.price)
 
@@ -187,6 +187,6 @@ class _Tally:
     def comments(self, text: str, kept: tuple[str, ...]) -> None:
         """Count the comments of a text that goes to JSON, but for videos that are kept."""
         for number, line in enumerate(split_lines(text), 1):
-            if line[:1] == "#" and read_video(line) not in kept:
+            if line[:1] == "#" and not is_amount(line) and read_video(line) not in kept:
                 kind = Loss.VIDEOS if is_video(line) else Loss.COPIES if read_copy(line) else Loss.COMMENTS
                 self.add([kind], Source(self.file, number))

@@ -20,7 +20,6 @@ class Loss(StrEnum):
     TIMES = "times"
     RATES = "entities and their success rates"
     PRICES = "prices of units"
-    AMOUNTS = "amounts of object nodes"
     COMPOSITE = "composite marks *"
     RELATION_WORDS = "relation words: read back as in [...] or any place"
     RELATIONS = "further relations of an object"

@@ -13,6 +13,7 @@ from foon_asp.network import (
     DataAmounts,
     FunctionalUnit,
     Network,
+    ObjectNode,
     Source,
     UnitPrices,
     network_at_level,
@@ -23,6 +24,7 @@ from foon_asp.resources import bundled_kitchen
 from foon_asp.text.assumed_goals import LAST, MARKED, as_entry, last_goals
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.formats import NEUTRAL
+from foon_asp.text.node_lookup import NodeNames
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, beginning, read_content
 from foon_asp.text.reader import FoonReader
@@ -125,7 +127,7 @@ def find_data(
         if not source.is_dir() or file.resolve() not in tables
     )
     if not files:
-        raise UserError("no network is given")
+        raise UserError("no network: name a recipe, a folder or a store")
 
     def own_or_in_folder(file: Path | None, *names: str) -> Path | None:
         if file is None and folder is not None:
@@ -233,6 +235,16 @@ def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[
     return frozenset(o for item in items for o in network.find(pattern_at_level(item.pattern, network.level)))
 
 
+def counted_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[ObjectNode, int]:
+    """Return the amounts of nodes that match entries with an amount, at the level of the network."""
+    return {
+        names.node(o): item.amount
+        for item in items
+        if item.amount is not None
+        for o in names.find(pattern_at_level(item.pattern, names.level))
+    }
+
+
 def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrices | None:
     """Return the prices of units, from a file and as stated in networks; the file takes precedence.
 
@@ -253,7 +265,10 @@ def unit_amounts(
     settled = stated.settled(network)
     if file is None:
         return settled
-    amounts, unmatched = with_table(settled, UNIT_AMOUNTS.rows(file), network)
+    rows = UNIT_AMOUNTS.rows(file)
+    motions = {row.name[0] for row in rows}
+    units = (network.unit(unit) for unit, motion in enumerate(network.motions) if motion in motions)
+    amounts, unmatched = with_table(settled, rows, units)
     warnings += unmatched
     return amounts
 

@@ -100,12 +100,10 @@ WrittenPart = tuple[str, "list[Loss]"]
 class Writer(Protocol):
     """Writes files in a dialect, part by part.
 
-    ``holds_prices`` says whether they can hold prices of units, ``holds_amounts`` how many of a node a unit
-    takes or makes, ``holds_no_inputs`` units without inputs.
+    ``holds_prices`` says whether they can hold prices of units, ``holds_no_inputs`` units without inputs.
     """
 
     holds_prices: bool
-    holds_amounts: bool
     holds_no_inputs: bool
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:

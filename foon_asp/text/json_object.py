@@ -6,7 +6,8 @@ from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.network import MAX_AMOUNT, Contents, NodePattern, ObjectNode, Relation, Source
+from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
+from foon_asp.text.amount_mark import EXPECTED_AMOUNT, amount
 from foon_asp.text.exact_number import MAX_LETTERS, read_price
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_node import read_node_json
@@ -24,6 +25,8 @@ LISTED_UNDER = "contains"
 
 _OTHERS = {"ingredients", "container", "object_id", "object_in_motion", "has_portions", "recipe_category"}
 KEYS = {*_LABEL, *_STATES, *_OTHERS}
+NODE_KEYS = {*KEYS, "amount"}
+"""The keys of an object of a unit or a list."""
 _STATE_KEYS = {*_STATE_LABEL, *_RELATED, "state_id"}
 
 
@@ -88,14 +91,15 @@ def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern,
     """
     for value, source in elements:
         try:
+            amount = stated_amount(value) if isinstance(value, dict) else None
             if (node := _whole_node(value)) is not None:
-                yield _block(node, source), NodePattern.of(node), ()
+                yield _block(node, source)._replace(amount=amount), NodePattern.of(node), ()
                 continue
-            line, states, container, remarks = read_object(value)
+            line, states, container, remarks = read_object(value, NODE_KEYS)
         except ValueError as problem:
             elements.error(source, str(problem))
         else:
-            block = ObjectBlock(line, states, source)
+            block = ObjectBlock(line, states, source, amount)
             pattern = NodePattern.of(block.node)._replace(container=container)
             if isinstance(value, dict) and value.get("ingredients"):  # under any word
                 pattern = pattern._replace(contents=())
@@ -169,13 +173,18 @@ def number(value: dict[str, object], key: str) -> str:
 
 
 def amount_of(value: object) -> int:
-    """Return how many of a node a unit takes or makes; raises :class:`ValueError`."""
+    """Return an amount, a number or a text of digits; raises :class:`ValueError`."""
     written = value.text if isinstance(value, JsonNumber) else str(value)
-    if not is_number(written) or not 0 < len(written) <= len(str(MAX_AMOUNT)):
-        raise ValueError(f"found the amount {shown(value)}, expected a whole number from 1 to {MAX_AMOUNT}")
-    if not 1 <= int(written) <= MAX_AMOUNT:
-        raise ValueError(f"found the amount {written}, expected a whole number from 1 to {MAX_AMOUNT}")
-    return int(written)
+    try:
+        return amount(written, 1)
+    except LineError:
+        raise ValueError(f"found the amount {shown(value)}, expected {EXPECTED_AMOUNT}") from None
+
+
+def stated_amount(value: dict[str, object]) -> int | None:
+    """Return the amount of an object, ``None`` where it states none; raises :class:`ValueError`."""
+    stated = value.get("amount")
+    return None if stated is None else amount_of(stated)
 
 
 def price_of(value: object, exponents: bool = False) -> str:

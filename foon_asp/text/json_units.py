@@ -11,13 +11,13 @@ from pathlib import Path
 from foon_asp.network import Relation, Source
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
 from foon_asp.text.json_object import (
-    KEYS,
-    amount_of,
+    NODE_KEYS,
     check_keys,
     number,
     optional_name,
     price_of,
     read_object,
+    stated_amount,
 )
 from foon_asp.text.line import MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
@@ -27,8 +27,6 @@ from foon_asp.text.text_units import no_motion
 
 _NEEDED = {"input_nodes", "motion_node", "output_nodes"}
 _KEYS = {*_NEEDED, "price"}
-NODE_KEYS = {*KEYS, "amount"}
-"""The keys of an object of a unit."""
 _LABELS = {"label", "object_label"}
 _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_type", "weight_success"}
 
@@ -98,7 +96,7 @@ def _blocks(unit: dict[str, object], key: str, source: Source, remarks: list[str
         remarks += object_remarks
         if container is not None and not any(_names(state, container) for state in states):
             states = (*states, StateLine(Relation("in", container)))
-        blocks.append(ObjectBlock(line, states, source, amount_of(value.get("amount", 1))))
+        blocks.append(ObjectBlock(line, states, source, stated_amount(value)))
     return tuple(blocks)
 
 

@@ -28,7 +28,7 @@ _JSON_NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
 class JsonWriter:
     """A writer of one of the JSON forms, which reads each part back to find changed meanings and losses."""
 
-    holds_prices = holds_amounts = True
+    holds_prices = True
     holds_no_inputs = False
 
     def __init__(self, target: Dialect) -> None:
@@ -39,7 +39,7 @@ class JsonWriter:
         """Write an object."""
         line, states = block.object, block.states
         text = (list_object if self._is_list else json_object)(line, states)
-        if block.amount > 1:
+        if block.amount is not None and (in_list or block.amount > 1):
             text = f'{text[:-1]},"amount":{block.amount}}}'
         back = _listed(text) if in_list else _unit(text, '"x"').inputs[0]
         losses = lost_in_line(line, back.object) + lost_in_states(states, back.states)

@@ -1,6 +1,6 @@
 """Object blocks and functional units as listed in a file, with lines, ids and sources."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from foon_asp.network import Contents, ObjectNode, Relation, Source, UnitAmounts
@@ -9,12 +9,15 @@ from foon_asp.text.stated_amounts import counted_amounts
 
 
 class ObjectBlock(NamedTuple):
-    """A mention of an object node: its object line, the state lines under it, its source and its amount."""
+    """A mention of an object node: its object line, the state lines under it, its source and its amount.
+
+    ``amount`` is ``None`` where none is stated: in a unit that is one, and in a kitchen any number.
+    """
 
     object: ObjectLine
     states: tuple[StateLine, ...]
     source: Source
-    amount: int = 1
+    amount: int | None = None
 
     @property
     def node(self) -> ObjectNode:
@@ -70,13 +73,38 @@ class ListedUnit(NamedTuple):
     def amounts(self) -> UnitAmounts:
         """The amounts of its nodes, where one that is listed twice is meant twice."""
         return counted_amounts(
-            *([(block.node, block.amount) for block in blocks] for blocks in (self.inputs, self.outputs))
+            *([(block.node, block.amount or 1) for block in blocks] for blocks in (self.inputs, self.outputs))
         )
+
+    @property
+    def without_repeats(self) -> "ListedUnit":
+        """The unit with each node once on a side, with its greatest amount, as FOON text is meant."""
+        return self._replace(inputs=_each_once(self.inputs, max), outputs=_each_once(self.outputs, max))
+
+    @property
+    def with_totals(self) -> "ListedUnit":
+        """The unit with each node once on a side, and with the sum of its amounts."""
+        return self._replace(inputs=_each_once(self.inputs, sum), outputs=_each_once(self.outputs, sum))
 
     @property
     def identity(self) -> ReadUnit:
         """The unit without its lines."""
         return ReadUnit(self.motion.motion, *self.sides, self.sources)
+
+
+def _each_once(
+    blocks: tuple[ObjectBlock, ...], combine: Callable[[Iterable[int]], int]
+) -> tuple[ObjectBlock, ...]:
+    """Return the first mention of each node, with the amounts of all its mentions combined."""
+    mentions: dict[ObjectNode, list[ObjectBlock]] = {}
+    for block in blocks:
+        mentions.setdefault(block.node, []).append(block)
+    if len(mentions) == len(blocks):
+        return blocks
+    return tuple(
+        first._replace(amount=combine(block.amount or 1 for block in (first, *others)))
+        for first, *others in mentions.values()
+    )
 
 
 def node_of(label: str, attributes: Iterable[str | Relation | Contents]) -> ObjectNode:

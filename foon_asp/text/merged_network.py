@@ -1,36 +1,43 @@
 """A merged network as FOON text: every unit once, under the places of all its copies."""
 
 from collections.abc import Iterator
+from types import MappingProxyType
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
-from foon_asp.network import Network, Source
+from foon_asp.network import ALL_ONE, Amounts, Network, Source
+from foon_asp.text.amount_mark import write_amount
 from foon_asp.text.provenance import read_copy, write_copy
 from foon_asp.text.writer import write_motion, write_node
 
 
-def merged_text(network: Network, comment: str) -> Iterator[str]:
+def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyType({})) -> Iterator[str]:
     """Yield the text piece by piece: a comment, then the units in order of first reading, in plain form.
 
     Above each unit stands a line ``# From:`` for every copy of it, with file, line and videos; a copy that
     was read twice, from a file and from a merge of that file, is listed once. Reading the text gives
-    the same network and the same sources, except that columns are not written. Raises :class:`UserError`
-    for a name that a line of text cannot hold, and for a unit without inputs.
+    the same network, the same ``amounts`` and the same sources, except that columns are not written. Raises
+    :class:`UserError` for a name that a line of text cannot hold, and for a unit without inputs.
     """
     blocks = list(map(write_node, network.objects))
     motions = {motion: write_motion(motion) for motion in dict.fromkeys(network.motions)}
     comments: dict[Source, str] = {}
     yield f"# {comment}\n//\n"
-    for motion, inputs, outputs, sources in zip(
-        network.motions, network.inputs, network.outputs, network.sources, strict=True
+    counted_motions = {unit.motion for unit in amounts}
+    for number, (motion, inputs, outputs, sources) in enumerate(
+        zip(network.motions, network.inputs, network.outputs, network.sources, strict=True)
     ):
         if not inputs:
             raise UserError(f"the unit {motion!r} has no inputs, which FOON text cannot hold; a store can")
         for source in dict.fromkeys(source._replace(column=1) for source in sources):
             yield comments.get(source) or comments.setdefault(source, _copy(source))
-        yield from (blocks[node] for node in inputs)
-        yield motions[motion]
-        yield from (blocks[node] for node in outputs)
+        of_unit = amounts.get(network.unit(number), ALL_ONE) if motion in counted_motions else None
+        for side, nodes in enumerate((inputs, outputs)):
+            yield motions[motion] if side else ""
+            for node in nodes:
+                yield blocks[node]
+                if of_unit and (amount := of_unit[side].get(network.objects[node])):
+                    yield write_amount(amount)
         yield "//\n"
 
 

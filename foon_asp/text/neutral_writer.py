@@ -40,7 +40,7 @@ def _names_text(names: Sequence[tuple[str, int]]) -> str:
 class NeutralWriter:
     """A writer of units with the motion as id, and object nodes as names in one-line notation."""
 
-    holds_prices = holds_amounts = holds_no_inputs = True
+    holds_prices = holds_no_inputs = True
 
     def __init__(self) -> None:
         self._names: dict[str, ObjectNode] = {}
@@ -57,7 +57,10 @@ class NeutralWriter:
         losses = lost_in_line(block.object, ObjectLine(block.object.label))
         losses += [Loss.IDS] * sum(bool(state.id) for state in states) + [Loss.PARTS] * bool(states)
         losses += [Loss.CONTAINERS] * (states != block.states)
-        return json_line(name) + (f": {block.amount}" if block.amount > 1 else ""), losses
+        if in_list:
+            stated = "" if block.amount is None else f', "amount": {block.amount}'
+            return f'{{"label": {json_line(name)}{stated}}}', losses
+        return json_line(name) + (f": {block.amount}" if (block.amount or 1) > 1 else ""), losses
 
     def motion(self, line: MotionLine) -> WrittenPart:
         """Return the id of a unit."""
@@ -73,7 +76,7 @@ class NeutralWriter:
 
     def objects(self, parts: Sequence[str]) -> str:
         """Put a JSON list of names together."""
-        return written_list([f'{{"label": {name}}}' for name in parts], 0) + "\n"
+        return written_list(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
         """Return none."""

@@ -11,25 +11,34 @@ from foon_asp.text.reading import Reading
 
 
 class ListedObject(NamedTuple):
-    """An entry of a kitchen or goals file, and its source."""
+    """An entry of a kitchen or goals file, and its source.
+
+    ``amount`` is how many there are, or are wanted; ``None`` where the file does not say it.
+    """
 
     pattern: NodePattern
     source: Source
+    amount: int | None = None
 
 
 def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> list[ListedObject]:
-    """Read a JSON list of ``{"label", "states", "ingredients", "container"}``, or object blocks.
+    """Read a JSON list of ``{"label", "states", "ingredients", "container", "amount"}``, or object blocks.
 
-    In JSON, ``states``, ``ingredients`` and ``container`` may be missing (none). Warnings are added
-    to ``warnings``. Raises :class:`InputError` with the line and column of every entry
-    that is not of this form.
+    In JSON, all but the label may be missing (none). Warnings are added to ``warnings``. Raises
+    :class:`InputError` with the line and column of every entry that is not of this form, and of one that is
+    listed before with another amount.
     """
     text = read_plain_text(file)
     format_ = JSON if file.suffix == JSON.list_suffix else format_of(text, str(file))
     reading = Reading()
     entries = [
-        ListedObject(pattern, block.source) for block, pattern in format_.objects(text, str(file), reading)
+        ListedObject(pattern, block.source, block.amount)
+        for block, pattern in format_.objects(text, str(file), reading)
     ]
+    first_amounts: dict[NodePattern, int | None] = {}
+    for pattern, source, amount in entries:
+        if first_amounts.setdefault(pattern, amount) != amount:
+            reading.reject("amount", f"found a second amount of {str(pattern)!r}, expected one", source)
     reading.raise_errors()
     if warnings is not None:
         warnings += reading.diagnostics

@@ -102,7 +102,8 @@ class FoonReader(Reading):
                     self.repeated.append(RepeatedNode(str(node), unit.source))
                 if unit.amounts:
                     copy = FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs)
-                    self.amounts.add(copy, unit.amounts, unit.source)
+                    for source in unit.sources:
+                        self.amounts.add(copy, unit.amounts, source)
                 yield unit
         except InputError as error:
             self.diagnostics += error.diagnostics

@@ -9,8 +9,10 @@ from foon_asp.text.writer import write_node
 RATES_FILE = "motion.txt"
 """The name of the file of success rates."""
 _KITCHEN = """\
-# What is at hand: an O line for each object, and below it its S lines, as in the recipe.
+# What is available: an O line for each object, and below it its S lines, as in the recipe.
 # It begins with what makes the units of the recipe run: take out what you do not have, and add what you have.
+# What is listed never runs out, unless a line below its S lines says how many there are, for --items used-up:
+# "# Amount:", a tab and a number.
 """
 _MOTIONS = """\
 # How often each motion succeeds: a motion, a tab, and a decimal above 0 and at most 1.
@@ -23,7 +25,8 @@ _UTENSILS_HEAD = """\
 # the bowl that holds its flour, if the flour is there.
 """
 _GOALS = """\
-# What is to be made: --goal finds it by its name, and optima solves all of it.
+# What is to be made: --goal finds it by its name, and solve --all-goals solves all of it. "# Amount:", a tab
+# and a number below it ask for as many copies, and items are used up then.
 """
 
 

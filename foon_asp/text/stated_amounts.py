@@ -47,22 +47,21 @@ class StatedAmounts:
 
 
 def with_table(
-    stated: DataAmounts, rows: Sequence[Row[UnitAmount, int]], network: Network
+    stated: DataAmounts, rows: Sequence[Row[UnitAmount, int]], units: Iterable[FunctionalUnit]
 ) -> tuple[DataAmounts, list[Diagnostic]]:
-    """Return amounts with those of a table in their place, and warnings about rows that match no unit."""
+    """Return amounts with those of a table in their place, and warnings about rows that match no unit.
+
+    ``units`` are all that have a motion of the table.
+    """
     amounts = dict(stated.units)
     used: set[UnitAmount] = set()
-    motions = {row.name[0] for row in rows}
     by_name = {row.name: row.value for row in rows}
-    for number, motion in enumerate(network.motions):
-        if motion not in motions:
-            continue
-        unit = network.unit(number)
+    for unit in units:
         sides: list[dict[ObjectNode, int]] = []
         for is_output, nodes in enumerate((unit.inputs, unit.outputs)):
             current = dict(amounts.get(unit, UnitAmounts())[is_output])
             for node in nodes:
-                name = motion, bool(is_output), node
+                name = unit.motion, bool(is_output), node
                 if name in by_name:
                     used.add(name)
                     current[node] = by_name[name]

@@ -152,7 +152,7 @@ def read_utensils(file: Path) -> frozenset[str]:
 
 
 def read_stock(file: Path) -> dict[ObjectNode, int]:
-    """Read a table of copies; or FOON text, in which each object block is one copy.
+    """Read a table of copies; or FOON text, in which each object block is one copy, or its amount.
 
     Raises :class:`InputError` for a line of another form, and for a node with two different counts.
     """
@@ -164,7 +164,7 @@ def read_stock(file: Path) -> dict[ObjectNode, int]:
     reading.raise_errors()
     copies: dict[ObjectNode, int] = {}
     for block in blocks:
-        copies[block.node] = copies.get(block.node, 0) + 1
+        copies[block.node] = copies.get(block.node, 0) + (block.amount or 1)
     return copies
 
 

@@ -5,11 +5,13 @@ with remarks.
 """
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import chain
 from typing import cast
 
 from foon_asp.network import ObjectNode, Source
+from foon_asp.text.amount_mark import is_amount, read_amount
 from foon_asp.text.json_list import before_json
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.line_parser import read_line
@@ -21,7 +23,15 @@ from foon_asp.text.writer import write_line
 
 _SEPARATOR = "\n//\n"
 
-_OpenBlock = tuple[ObjectLine, list[StateLine], Source]  # an object block, while lines may still be added
+
+@dataclass(slots=True)
+class _OpenBlock:
+    """An object block, while lines may still be added."""
+
+    line: ObjectLine
+    states: list[StateLine]
+    source: Source
+    amount: int | None = None
 
 
 @lru_cache(50_000)  # of the 11,625 object blocks of the universal FOON, 4,361 are different
@@ -66,7 +76,7 @@ class TextUnits:
                 self._sections += 1
                 yield unit
             else:
-                yield from (unit.identity for unit in self._line_by_line(chunk, last))
+                yield from map(_identity, self._line_by_line(chunk, last))
 
     def listed_units(self) -> Iterator[ListedUnit]:
         """Yield the units in order, with their lines as written."""
@@ -173,6 +183,8 @@ class TextUnits:
             if letter == "#":
                 copy = read_copy(line)
                 section.copies += [copy] if copy else []
+                if is_amount(line):
+                    self._amount(section, index)
             elif letter and not line.isspace():
                 if section.first < 0:
                     section.first = index
@@ -196,6 +208,21 @@ class TextUnits:
         sources = tuple(section.copies) or (self._source(section.first)._replace(videos=self._videos),)
         return ListedUnit(motion, inputs, outputs, sources, self._source(index))
 
+    def _amount(self, section: "_Section", index: int) -> None:
+        """Add the amount of a comment to the object above it, or record its fault."""
+        if section.lost:
+            self.reading.left_out += self.reading.lenient
+            return
+        if section.block is None or section.block.amount is not None:
+            found = "a second amount" if section.block else "an amount"
+            message = f"found {found}, expected one under an object line, for that object"
+            self._reject("amount", message, index)
+            return
+        try:
+            section.block.amount = read_amount(self._lines[index])
+        except LineError as error:
+            self._reject("amount", str(error), index, error.column)
+
     def _line(self, section: "_Section", index: int) -> None:
         """Add a line to its section, or record the fault of a line that fits nowhere."""
         line = self._lines[index]
@@ -209,20 +236,19 @@ class TextUnits:
         if isinstance(parsed, StateLine):
             if section.lost:
                 self.reading.left_out += self.reading.lenient
-            elif section.states is None:
+            elif section.block is None:
                 message = "found a state line, expected an object line before it"
                 self._reject("state-without-object", message, index)
                 section.blamed = True
             else:
-                section.states.append(parsed)
+                section.block.states.append(parsed)
             return
         section.lost = False
         if isinstance(parsed, ObjectLine):
-            section.states = []
-            blocks = section.outputs if section.motions else section.inputs
-            blocks.append((parsed, section.states, self._source(index)))
+            section.block = _OpenBlock(parsed, [], self._source(index))
+            (section.outputs if section.motions else section.inputs).append(section.block)
             return
-        section.states = None
+        section.block = None
         section.motions.append((index, parsed))
         if self._objects is not None:
             message = "found a motion, expected a list of objects without motions"
@@ -274,7 +300,7 @@ class TextUnits:
 class _Section:
     """The lines between two separators, while they are read one by one; positions are indices of lines.
 
-    ``states`` are those under the current object line, ``None`` before the first; ``lost`` says that this
+    ``block`` is that of the current object line, ``None`` before the first; ``lost`` says that this
     object line cannot be read, so that the states under it are left out. ``blamed`` says that an error among
     the lines may be the reason for a missing motion or object. ``left_out`` is the count before the section.
     """
@@ -286,7 +312,7 @@ class _Section:
         self.inputs: list[_OpenBlock] = []
         self.outputs: list[_OpenBlock] = []
         self.copies: list[Source] = []
-        self.states: list[StateLine] | None = None
+        self.block: _OpenBlock | None = None
         self.lost = self.blamed = False
 
 
@@ -297,4 +323,13 @@ def no_motion(objects: int) -> str:
 
 
 def _blocks(open_blocks: list[_OpenBlock]) -> tuple[ObjectBlock, ...]:
-    return tuple(ObjectBlock(line, tuple(states), source) for line, states, source in open_blocks)
+    return tuple(
+        ObjectBlock(block.line, tuple(block.states), block.source, block.amount) for block in open_blocks
+    )
+
+
+def _identity(unit: ListedUnit) -> ReadUnit:
+    """Return a unit without its lines; a node that is listed twice counts once."""
+    if all(block.amount is None for block in (*unit.inputs, *unit.outputs)):
+        return unit.identity
+    return unit.identity._replace(amounts=unit.without_repeats.amounts)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from foon_asp.network import Relation
+from foon_asp.text.amount_mark import write_amount
 from foon_asp.text.conversion_ids import Numbering
 from foon_asp.text.conversion_loss import CannotHoldError, lost_in_line
 from foon_asp.text.format import Dialect, WrittenPart
@@ -17,7 +18,7 @@ from foon_asp.text.writer import write_line
 class TextWriter:
     """A writer of FOON text, which reads each line back: names from JSON may mean something else in text."""
 
-    holds_prices = holds_amounts = holds_no_inputs = False
+    holds_prices = holds_no_inputs = False
 
     def __init__(self, target: Dialect, numbering: Numbering) -> None:
         self._target = target
@@ -26,7 +27,10 @@ class TextWriter:
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
         """Write an object block."""
         parts = list(map(self._line, block.lines))
-        return "".join(text for text, _ in parts), [loss for _, lost in parts for loss in lost]
+        mark = ""
+        if block.amount is not None and (in_list or block.amount > 1):
+            mark = write_amount(block.amount)
+        return "".join(text for text, _ in parts) + mark, [loss for _, lost in parts for loss in lost]
 
     def motion(self, line: MotionLine) -> WrittenPart:
         """Write a motion line."""

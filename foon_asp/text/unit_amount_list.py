@@ -1,9 +1,8 @@
 """Amounts of units: ``unit_amounts.txt``, a motion, an object node and how many of it on each line."""
 
 import re
-from collections.abc import Mapping
 
-from foon_asp.network import MAX_AMOUNT, FunctionalUnit, ObjectNode, UnitAmounts, in_quotes
+from foon_asp.network import MAX_AMOUNT
 from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_node
 from foon_asp.text.stated_amounts import UnitAmount
@@ -36,18 +35,3 @@ UNIT_AMOUNTS = Table(
     "a second amount for {name!r}",
 )
 """``motion⇥NODE⇥2`` and ``motion⇥→⇥NODE⇥4``: how many of an input or output units of a motion have."""
-
-
-def write_unit_amounts(amounts: Mapping[FunctionalUnit, UnitAmounts]) -> str:
-    """Return the text of a table of amounts; units of one motion that disagree have a line each."""
-    lines: dict[str, None] = {}
-    for unit, (inputs, outputs) in amounts.items():
-        for arrow, side in (("", inputs), (f"{_ARROWS[0]}\t", outputs)):
-            for node, amount in side.items():
-                lines[f"{unit.motion}\t{arrow}{_field(node)}\t{amount}\n"] = None
-    return "".join(lines)
-
-
-def _field(node: ObjectNode) -> str:
-    """Write a node, which is no arrow even where its label is one."""
-    return in_quotes(node.label) if str(node) in _ARROWS else str(node)

@@ -3,11 +3,21 @@
 import re
 from collections.abc import Iterable
 from functools import lru_cache
+from types import MappingProxyType
 
 from foon_asp.argument_checks import typed
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
-from foon_asp.network import Contents, FunctionalUnit, ObjectNode, Relation
+from foon_asp.network import (
+    ALL_ONE,
+    Amounts,
+    Contents,
+    FunctionalUnit,
+    ObjectNode,
+    Relation,
+    UnitAmounts,
+)
+from foon_asp.text.amount_mark import write_amount
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.line_parser import parse_line
 from foon_asp.text.listed_unit import node_of
@@ -43,6 +53,11 @@ def write_node(node: ObjectNode) -> str:
     return "".join(filter(None, written))
 
 
+def counted_node(node: ObjectNode, amount: int | None) -> str:
+    """Return the object block of a node, with its amount unless that is ``None``."""
+    return write_node(node) + ("" if amount is None else write_amount(amount))
+
+
 def write_motion(motion: str) -> str:
     """Return the line of a motion; raises :class:`UserError` for a name that FOON text cannot hold."""
     written = _readable(MotionLine(motion))
@@ -62,26 +77,33 @@ def _readable(line: Line) -> str | None:
     return f"{written}\n" if back == line and encodable(written) == written else None
 
 
-def write_unit(unit: FunctionalUnit) -> str:
-    """Return the lines of a unit, the closing ``//`` included.
+def write_unit(unit: FunctionalUnit, amounts: UnitAmounts = ALL_ONE) -> str:
+    """Return the lines of a unit with its amounts, the closing ``//`` included.
 
     Raises :class:`UserError` for a unit that cannot be read back: without inputs, or with names that FOON
     text cannot hold.
     """
     if not unit.inputs:
         raise UserError(f"the unit {unit.motion!r} has no inputs, which FOON text cannot hold; JSON can")
-    inputs = "".join(map(write_node, unit.inputs))
-    outputs = "".join(map(write_node, unit.outputs))
+    inputs, outputs = (
+        "".join(counted_node(node, amounts_of_side.get(node)) for node in nodes)
+        for nodes, amounts_of_side in zip((unit.inputs, unit.outputs), amounts, strict=True)
+    )
     return f"{inputs}{write_motion(unit.motion)}{outputs}//\n"
 
 
 @typed
-def write_units(units: Iterable[FunctionalUnit], comments: Iterable[str] = ()) -> str:
+def write_units(
+    units: Iterable[FunctionalUnit],
+    comments: Iterable[str] = (),
+    amounts: Amounts = MappingProxyType({}),
+) -> str:
     """Write functional units as FOON text.
 
     Parameters:
         units: The units, in the order in which they are written.
         comments: Lines of comment to put before them.
+        amounts: How many copies of their object nodes units take and make, where that is not one.
 
     Returns:
         The FOON text.
@@ -97,5 +119,5 @@ def write_units(units: Iterable[FunctionalUnit], comments: Iterable[str] = ()) -
     return (
         "".join(f"# {line}\n" for comment in comments for line in re.split("\r\n|\r|\n", comment))
         + "//\n"
-        + "".join(map(write_unit, units))
+        + "".join(write_unit(unit, amounts.get(unit, ALL_ONE)) for unit in units)
     )

@@ -1,0 +1,54 @@
+"""Rules that name units by their numbers."""
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from clingo.ast import AST, ASTType
+
+from foon_asp.encoding.parsing import nodes
+from foon_asp.network import Source
+from foon_asp.rules.clause import Clause, Conjunct, Test, clauses, literals, source_of, variables
+from foon_asp.rules.fact_values import COLUMNS, Columns
+
+
+class NumberedUnit(NamedTuple):
+    """The atom or comparison of a rule that names a unit by its number, as text, and its rule's source."""
+
+    text: str
+    source: Source
+
+
+def numbered_unit(statements: Iterable[AST]) -> NumberedUnit | None:
+    """Return the first atom or comparison that names a unit by its number; ``None`` without one.
+
+    A number that reaches a unit through a predicate of the user is not seen.
+    """
+    for statement in statements:
+        if statement.ast_type == ASTType.Rule:
+            for clause in clauses(statement, 0, {}):
+                text = _named_in(clause)
+                if text:
+                    return NumberedUnit(text, source_of(statement))
+    return None
+
+
+def _named_in(clause: Clause) -> str:
+    """Return the atom or comparison of a clause that names a unit by its number; empty without one."""
+    conditions: list[Conjunct] = [conjunct for _, condition in clause.others for conjunct in condition]
+    conjuncts = [*clause.body, *conditions]
+    units: set[str] = set()
+    for literal in literals(conjuncts):
+        for position in COLUMNS.get(literal.signature, Columns()).units:
+            argument = literal.arguments[position]
+            units.update(variables(argument))
+            if _has_number(argument):
+                return literal.text
+    tests = (conjunct for conjunct in conjuncts if isinstance(conjunct, Test))
+    return next(
+        (test.text for test in tests if _has_number(test.ast) and not units.isdisjoint(variables(test.ast))),
+        "",
+    )
+
+
+def _has_number(piece: AST) -> bool:
+    return any(node.ast_type == ASTType.SymbolicTerm for node in nodes(piece))
