@@ -5,7 +5,6 @@ import time
 from collections import deque
 from collections.abc import Iterable, Iterator
 from itertools import islice
-from typing import Final
 
 from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import AnswerRow, answer_row, failed_row
@@ -13,9 +12,6 @@ from foon_asp.batch.batch_question import Asker, BatchQuestion, Opener
 from foon_asp.errors import UserError
 
 _PATIENCE = "10s"  # time limit for an answer from the scheduler
-_TASKS_AHEAD: Final = 2  # tasks queued for each thread of the cluster, so that no thread waits
-_QUESTIONS_PER_TASK: Final = 32  # Dask takes some milliseconds for each task
-_TASK_SECONDS: Final = 0.5  # after which a task begins with no further question
 
 
 def answer_on_cluster(
@@ -56,13 +52,14 @@ def answer_on_cluster(
 
         def submit_ahead() -> None:
             while len(chunk_of) < ahead:
-                chunk = retries.popleft() if retries else tuple(islice(waiting, _QUESTIONS_PER_TASK))
+                # several in a task, for each of which Dask takes some milliseconds
+                chunk = retries.popleft() if retries else tuple(islice(waiting, 32))
                 if not chunk:
                     break
                 submit(chunk)
 
         threads: dict[str, int] = client.nthreads()
-        ahead = _TASKS_AHEAD * max(1, sum(threads.values()))
+        ahead = 2 * max(1, sum(threads.values()))  # so that no thread of the cluster waits
         submit_ahead()
         for future in running:
             chunk = chunk_of.pop(future.key)
@@ -87,7 +84,7 @@ def _answer_some(
     asker = _open(opener)
     began = time.monotonic()
     rows = [answer_row(asker, chunk[0], memory_limit, settings)]
-    while len(rows) < len(chunk) and time.monotonic() - began < _TASK_SECONDS:
+    while len(rows) < len(chunk) and time.monotonic() - began < 0.5:
         rows.append(answer_row(asker, chunk[len(rows)], memory_limit, settings))
     return rows
 

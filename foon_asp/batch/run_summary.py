@@ -11,8 +11,6 @@ from foon_asp.results.document import Document, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.text.json_value import schema_name
 
-_MAX_SHOWN = 3  # errors listed, of possibly thousands
-
 
 class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
     """The summary of a batch run.
@@ -68,10 +66,10 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
             yield f"proved: {_counts(self.proofs, 'by ') or 'none'}"
         if self.seconds_median is not None:
             yield f"seconds for one: median {self.seconds_median:.3f}, worst {self.seconds_worst:.3f}"
-        yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in self.errors[:_MAX_SHOWN])
+        yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in self.errors[:3])
         failed = sum(row.status == "failed" for row in self.errors)
-        if failed > _MAX_SHOWN:
-            yield f"... and {failed - _MAX_SHOWN} more failed: see their rows"
+        if failed > 3:
+            yield f"... and {failed - 3} more failed: see their rows"
 
 
 def _counts(counts: dict[str, int], by: str) -> str:

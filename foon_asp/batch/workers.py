@@ -2,15 +2,12 @@
 
 from collections.abc import Iterable, Iterator
 from functools import partial
-from typing import Final
 
 from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import AnswerRow, answer_row, failed_row
 from foon_asp.batch.batch_question import BatchQuestion, Opener
 from foon_asp.errors import UserError
 from foon_asp.processes.pool import LostError, share
-
-GRACE: Final = 10.0  # seconds beyond its time limit after which a process that does not answer is ended
 
 
 def answer_all(
@@ -19,13 +16,13 @@ def answer_all(
     jobs: int,
     memory_limit: int | None = None,
     settings: Settings | None = None,
-    grace: float = GRACE,
+    grace: float = 10.0,
 ) -> Iterator[AnswerRow]:
     """Answer questions in processes, each with its own copy of the data; return rows as they come.
 
-    ``memory_limit`` is in bytes for each process, ``grace`` in seconds. A process that dies or exceeds its
-    limit is replaced, and the row of its question says so. Where the data cannot be opened, each row has
-    the message of :class:`UserError`: open the data once before.
+    ``memory_limit`` is in bytes for each process. A process that dies, or does not answer ``grace`` seconds
+    after its time limit, is replaced, and the row of its question says so. Where the data cannot be opened,
+    each row has the message of :class:`UserError`: open the data once before.
     """
 
     def seconds(question: BatchQuestion) -> float | None:

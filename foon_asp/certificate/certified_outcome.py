@@ -14,9 +14,7 @@ from foon_asp.certificate.plan import certify_no_plan, certify_plan, covered_for
 from foon_asp.errors import BugError
 from foon_asp.hypergraph.lexicographic import Vector
 from foon_asp.problem import Problem, levels, multiplies
-from foon_asp.proof.verifier import Subject, trusted
-
-_WRITTEN = 13_000  # bits of a number that is printed; Python writes at most 4,300 digits
+from foon_asp.proof.verifier import ALLOWED, Subject, trusted
 
 
 def certify_outcome(
@@ -179,6 +177,6 @@ def _figures(problem: Problem, units: Sequence[int]) -> str:
     figures = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
     figures.append(f"{costs.kitchen} kitchen items")
     if costs.success is not None:
-        long = costs.success.denominator.bit_length() > _WRITTEN
+        long = costs.success.denominator.bit_length() > ALLOWED.written_bits
         figures.append(f"success {'of too many digits to print' if long else costs.success}")
     return ", ".join(figures)

@@ -30,9 +30,6 @@ from foon_asp.proof import verifier
 from foon_asp.proof.rule_meaning import OWN
 from foon_asp.proof.verify_plan import LOGARITHM_SCALE, PLAN, PLAN_RULES
 
-_MAX_WHOLE_COST = 10**9  # a cost of a unit, as a whole number that conditions are written with
-_LOGARITHM_DIGITS = 60  # of a logarithm
-_TOLERANCE = 1e-6
 _HALF = Fraction(1, 2)
 
 
@@ -186,7 +183,7 @@ class _Question:
             costs = [tuple(Fraction(rate == own_rate) for own_rate in rates) for rate in figures]
             whole = order.approximate(least)[0]
             float_costs = (order.approximate(cost)[0] for cost in costs)
-            caps = [math.floor(whole / cost + _TOLERANCE) if cost else None for cost in float_costs]
+            caps = [math.floor(whole / cost + 1e-6) if cost else None for cost in float_costs]
             return Claim(order, costs, order.zero, least, None, caps)
         cost = Fraction(problem.costs(self._plan).measure(objective))
         parts = None
@@ -206,7 +203,7 @@ class _Question:
             return Level(Measure(costs), Fraction(0), math.ceil(LOGARITHM_SCALE * max_cost)), LOGARITHM_SCALE
         cost = Fraction(self._problem.costs(self._plan).measure(objective))
         scale = math.lcm(cost.denominator, *(figure.denominator for figure in figures))
-        if scale * max(figures, default=0) > _MAX_WHOLE_COST:
+        if scale * max(figures, default=0) > 10**9:  # conditions would be written with longer numbers
             return None
         measure = Measure([int(scale * figure) for figure in figures], scale * objective.row.item)
         return Level(measure, scale * cost, int(scale * cost)), scale
@@ -365,10 +362,10 @@ def weight_text(weight: Vector, order: Lexicographic | None) -> str | dict[str, 
 
 
 def _minus_log(rate: Fraction, up: bool) -> Fraction:
-    """Return an upper or lower bound of ``-log(rate)``."""
+    """Return an upper or lower bound of ``-log(rate)``, in 60 digits."""
     if rate == 1:
         return Fraction(0)
-    about, off = minus_log(rate, _LOGARITHM_DIGITS)
+    about, off = minus_log(rate, 60)
     return about + off if up else about - off
 
 

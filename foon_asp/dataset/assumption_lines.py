@@ -7,8 +7,6 @@ from foon_asp.network import ObjectNode, counted
 from foon_asp.problem import Problem, kitchen_needed
 from foon_asp.text.assumed_goals import MARKED
 
-_MAX_NAMED = 6  # assumed items that a unit makes too, named in the line
-
 
 def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) -> Iterator[str]:
     """Yield one line on the starting kitchen, with the number of items that the goals can use.
@@ -24,9 +22,9 @@ def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) 
     count = f"{counted(len(used), 'item')} used" + ("" if verbose or not used else "; -v lists them")
     line = f"No kitchen given: assuming what the recipe does not make is available ({count})"
     if made_too:
-        shown = [str(used[number]) for number in sorted(made_too)[:_MAX_NAMED]]
-        if len(made_too) > _MAX_NAMED:
-            shown.append(f"{len(made_too) - _MAX_NAMED} more")
+        shown = [str(used[number]) for number in sorted(made_too)[:6]]
+        if len(made_too) > 6:
+            shown.append(f"{len(made_too) - 6} more")
         line += f", and of what a unit makes too: {', '.join(shown)}"
     yield line
     if verbose:

@@ -55,10 +55,6 @@ if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.store.unit_distances import UnitDistances
 
 
-FIRST_UNITS = 1000
-"""The number of units that are read at first, about, of a store for goals that can need more."""
-
-
 def ask(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
@@ -539,9 +535,9 @@ class Dataset:
         return ask(dataset._data_of(network), _local_ids(network, goals), containers, self, items)
 
     def nearby(
-        self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = FIRST_UNITS
+        self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = 1000
     ) -> Problem:
-        """Return the problem of goals; of a store, only ``first`` units near the goals are read now.
+        """Return the problem of goals; of a store, only about ``first`` units near the goals are read now.
 
         Further units are read on access. Without a given kitchen, all units that the goals can need are
         read, since the items of the starting kitchen are listed.

@@ -12,6 +12,7 @@ better than both the optimum of that relaxation and q.
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import count
+from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, program_of, reach_of_rules, varying_available
@@ -23,9 +24,19 @@ from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.store.outline import FAR, Mask
 from foon_asp.store.unit_distances import UnitDistances, greatest_cost
 
-_MAX_UNITS = 30_000  # read one by one; for more, reading the whole store is faster
-# units of a kind, and steps of distance beyond the nearest unit
-_SEARCH_WIDTHS = (100, 0), (1_000, 2), (10_000, 6)
+
+class NearbyTuning(NamedTuple):
+    """How much of a large store is read one by one.
+
+    ``max_units``; for more, reading the whole store is faster. ``widths``: in turn, the units of a kind among
+    which a first tree is looked for, and their steps of distance beyond the nearest one.
+    """
+
+    max_units: int = 30_000
+    widths: Sequence[tuple[int, int]] = ((100, 0), (1_000, 2), (10_000, 6))
+
+
+NEARBY = NearbyTuning()
 
 
 def solve_nearby_under(
@@ -118,7 +129,7 @@ class _Search:
         ``unknown``.
         """
         tree = _numbers(self._unconstrained)
-        for max_units, max_steps in _SEARCH_WIDTHS:
+        for max_units, max_steps in NEARBY.widths:
             with self._settings.begun.watched("reading"):
                 units, least_distances = distances.nearest(kinds, tree, max_units, max_steps)
                 problem = self._nearby.among({*tree, *units})
@@ -145,7 +156,7 @@ class _Search:
         with self._settings.begun.watched("reading"):
             near_units = self._read_near_units(tree.costs)
             far_units = [] if near_units is None else distances.relevant(kinds, near_units, max_cost)
-            if near_units is None or len(far_units) > _MAX_UNITS:
+            if near_units is None or len(far_units) > NEARBY.max_units:
                 return None
             return self._nearby.among({*near_units, *far_units, *_numbers(tree)})
 
@@ -155,7 +166,7 @@ class _Search:
         Returns them by number, ``None`` if they are too many.
         """
         nearby, deadline = self._nearby, self._settings.begun
-        while nearby.units <= _MAX_UNITS:
+        while nearby.units <= NEARBY.max_units:
             relaxed = nearby.relaxed
             subproblem = bound_under_rules(relaxed, self._order, expired=lambda: deadline.passed).subproblem
             if subproblem is None:

@@ -8,10 +8,6 @@ from foon_asp.network.functional_unit import FunctionalUnit
 from foon_asp.network.object_node import ObjectNode
 from foon_asp.network.spelling import one_letter_apart, without_doubles
 
-_MAX_DIFFERENCES = 3  # between units that are nearly the same
-_MAX_SHARING_UNITS = 300  # an index key that more units share says little about them
-_MAX_CANDIDATES = 12  # for each unit, those that share most index keys with it
-
 _NodePart = tuple[str, str]
 
 
@@ -114,7 +110,7 @@ def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit
     for i, unit in enumerate(lefts):
         for j in candidates[i]:
             differences = unit_differences(unit, rights[j])
-            if len(differences) <= _MAX_DIFFERENCES and _mostly_agree(unit, rights[j]):
+            if len(differences) <= 3 and _mostly_agree(unit, rights[j]):
                 ranked_pairs.append((len(differences), i, j, differences))
     pairs = []
     paired: set[int] = set()
@@ -146,8 +142,16 @@ def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
     return pairs
 
 
-def _candidates(lefts: Sequence[FunctionalUnit], rights: Sequence[FunctionalUnit]) -> list[list[int]]:
-    """Return for each unit of ``lefts`` the indices in ``rights`` that share the most rare keys with it."""
+def _candidates(
+    lefts: Sequence[FunctionalUnit],
+    rights: Sequence[FunctionalUnit],
+    max_candidates: int = 12,
+    max_sharing: int = 300,
+) -> list[list[int]]:
+    """Return for each unit of ``lefts`` the indices in ``rights`` that share the most rare keys with it.
+
+    They are ``max_candidates`` at most. A key that more than ``max_sharing`` units share is not rare.
+    """
     by_key: defaultdict[object, list[int]] = defaultdict(list)
     for j, unit in enumerate(rights):
         for key in _index_keys(unit):
@@ -157,10 +161,10 @@ def _candidates(lefts: Sequence[FunctionalUnit], rights: Sequence[FunctionalUnit
         shared: Counter[int] = Counter()
         for key in _index_keys(unit):
             others = by_key.get(key, ())
-            if len(others) <= _MAX_SHARING_UNITS:
+            if len(others) <= max_sharing:
                 shared.update(others)
         ranked = [j for j, _ in sorted(shared.items(), key=lambda counted: (-counted[1], counted[0]))]
-        candidates.append(ranked[:_MAX_CANDIDATES])
+        candidates.append(ranked[:max_candidates])
     return candidates
 
 

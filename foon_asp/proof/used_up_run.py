@@ -15,8 +15,6 @@ from foon_asp.problem import Problem
 from foon_asp.proof.execution import Execution, Executions
 from foon_asp.proof.replay import Shortage
 
-_MAX_LOOKS = 100_000  # at steps that may be next: some 50 ms; no tree of the corpus takes 1,000
-
 
 class UsedUpRun(NamedTuple):
     """The result of a search for an order of a tree with consumable items.
@@ -104,7 +102,7 @@ class _OrderSearch:
         self, steps: Sequence[Execution], copies: Counter[ObjectNode], goals: Mapping[ObjectNode, int]
     ) -> None:
         self._steps, self._copies, self._goals = steps, copies, goals
-        self.looks_left = _MAX_LOOKS
+        self.looks_left = 100_000  # some 50 ms; no tree of the corpus takes 1,000
         self.dead_end: Shortage | None = None
         # the steps that wait, as a ring in the order listed, which ends in a step that there is not
         self._next = [*range(1, len(steps) + 1), 0]

@@ -54,20 +54,32 @@ CERTIFICATE_KEYS = frozenset(
 _MEASURE_NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
 _RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
 _SURROGATE = re.compile("[\ud800-\udfff]")
-_LOGARITHM_DIGITS = 50  # of a logarithm
-_NINES = 400  # additional digits for a rate close to 1, at most
 
-# A certificate may come from a stranger: beyond these limits it is refused rather than checked.
-_MAX_LETTERS = 16_000_000  # characters of the file
-_BRACKETS = 1_000_000  # lists and objects in it
-_STEPS_ALLOWED = 5_000_000  # a look at a unit is one; adding and comparing numbers takes more
-_STEPS_EACH = 200  # additional steps for each unit and object node of the network
-_MAX_RULES = 100  # rules of a claim
-_STEPS_RULE = 10  # for each unit and object node that a rule is checked against
-_DIGITS_READ = 2_000  # of a fraction that is read
-_LONG = 40_000  # bits of a sum of fractions
-_MAX_PRODUCT_BITS = 250_000  # bits of a product of rates
-_WRITTEN = 13_000  # bits of a success rate: Python writes numbers of up to 4,300 digits
+
+class CertificateLimits(NamedTuple):
+    """Limits beyond which a certificate, which may come from a stranger, is refused rather than checked.
+
+    ``letters``, ``brackets``: characters of the file, and lists and objects in it.
+    ``steps``: a look at a unit is one; adding and comparing numbers takes more.
+    ``steps_each``: additional steps for each unit and object node of the network.
+    ``rules`` of a claim. ``rule_steps``: for each unit and object node that a rule is checked against.
+    ``digits`` of a fraction that is read. ``sum_bits`` of a sum of fractions. ``product_bits`` of a product
+    of rates. ``written_bits`` of what a tree costs: Python writes numbers of up to 4,300 digits.
+    """
+
+    letters: int = 16_000_000
+    brackets: int = 1_000_000
+    steps: int = 5_000_000
+    steps_each: int = 200
+    rules: int = 100
+    rule_steps: int = 10
+    digits: int = 2_000
+    sum_bits: int = 40_000
+    product_bits: int = 250_000
+    written_bits: int = 13_000
+
+
+ALLOWED = CertificateLimits()
 
 # A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
 Amount: TypeAlias = dict[tuple[int, Fraction | None], Fraction]
@@ -210,9 +222,9 @@ def load_certificate(file: Path) -> Any:
     :func:`read_certificate`.
     """
     with file.open("rb") as stream:
-        raw = stream.read(_MAX_LETTERS)
+        raw = stream.read(ALLOWED.letters)
         if stream.peek():
-            raise LimitError(f"it has more than {_MAX_LETTERS:,} letters")
+            raise LimitError(f"it has more than {ALLOWED.letters:,} letters")
     return read_certificate(raw.decode("utf-8"))
 
 
@@ -227,8 +239,8 @@ def read_certificate(text: str) -> Any:
     def no_float(number: str) -> None:
         raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
 
-    if len(text) > _MAX_LETTERS or text.count("[") + text.count("{") > _BRACKETS:
-        raise LimitError(f"it has more than {_MAX_LETTERS:,} letters or {_BRACKETS:,} brackets")
+    if len(text) > ALLOWED.letters or text.count("[") + text.count("{") > ALLOWED.brackets:
+        raise LimitError(f"it has more than {ALLOWED.letters:,} letters or {ALLOWED.brackets:,} brackets")
     try:
         return json.loads(text, object_pairs_hook=once, parse_float=no_float, parse_constant=no_float)
     except (ValueError, RecursionError) as error:
@@ -295,7 +307,7 @@ class Check:
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
         network, kitchen, rates, utensils, prices = subject[:5]
-        self.allowed = _STEPS_ALLOWED + _STEPS_EACH * (len(network) + len(network.objects))
+        self.allowed = ALLOWED.steps + ALLOWED.steps_each * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
         self.minus_log = cache(self._minus_log)  # of a rate
         self.all_multiples = cache(self._all_multiples)  # of a number, by an objective
@@ -515,12 +527,12 @@ class Check:
             if objective == "success":
                 rates = [self.rate(u) for u in units]
                 require(0 not in rates, "a tree that never succeeds is no better than another")
-                if sum(rate.denominator.bit_length() for rate in rates) > _WRITTEN:
+                if sum(rate.denominator.bit_length() for rate in rates) > ALLOWED.written_bits:
                     raise LimitError("the success rate of the tree is too long a number to be written")
                 costs.append(math.prod(rates, start=Fraction(1)))
             else:
                 figure = total.get((level, None), Fraction(0))
-                if max(figure.numerator, figure.denominator).bit_length() > _WRITTEN:
+                if max(figure.numerator, figure.denominator).bit_length() > ALLOWED.written_bits:
                     raise LimitError("what the tree costs is too long a number to be written")
                 sums = {"attempts", "price", "dissimilarity", *self.measures}
                 costs.append(figure if objective in sums else int(figure))
@@ -755,7 +767,7 @@ class Check:
 
     def _meaning(self, rule: Rule, question: Question) -> Meaning:
         """Return the meaning of a rule for the network."""
-        self._spend(_STEPS_RULE * (len(self.network) + len(self.network.objects)))
+        self._spend(ALLOWED.rule_steps * (len(self.network) + len(self.network.objects)))
         self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
         return meaning(rule, question)
 
@@ -889,7 +901,7 @@ class Check:
         common = math.lcm(*(e.denominator for e in exponents.values()))
         powers = {rate: int(e * common) for rate, e in exponents.items()}
         bits = sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items())
-        if bits > _MAX_PRODUCT_BITS:
+        if bits > ALLOWED.product_bits:
             raise LimitError("products of rates are too close to be told apart in reasonable time")
         self._spend(bits * math.isqrt(bits) // 64)
         above, below = 1, 1
@@ -907,7 +919,7 @@ class Check:
         are computed (one for three bits).
         """
         shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
-        precise = Context(prec=_LOGARITHM_DIGITS + min(shared, _NINES))
+        precise = Context(prec=50 + min(shared, 400))
         self._spend((precise.prec // 10) ** 3)
         low = high = Fraction(0)
         for sign, number in ((1, rate.denominator), (-1, rate.numerator)):
@@ -935,7 +947,7 @@ class Check:
 
     def _spend_on(self, bits: int) -> None:
         """Count the steps of an operation on fractions of ``bits`` bits, whose time grows with the square."""
-        if bits > _LONG:
+        if bits > ALLOWED.sum_bits:
             raise LimitError("its fractions add up to numbers that are too long")
         self._spend(5 + (bits // 512) ** 2)
 
@@ -1041,8 +1053,8 @@ def _goal(value: Any, network: Network) -> int:
 def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
     """Read the constraints of a claim, and its statements about user rules that are taken on trust."""
     rules = [read_object(rule) for rule in read_list(value)]
-    if len(rules) > _MAX_RULES:
-        raise LimitError(f"it has more than {_MAX_RULES} rules")
+    if len(rules) > ALLOWED.rules:
+        raise LimitError(f"it has more than {ALLOWED.rules} rules")
     for rule in rules:
         name = rule.get("rule")
         if name == OWN:
@@ -1096,8 +1108,8 @@ def _own(rule: Rule, units: int) -> None:
 
 def _rational(value: Any) -> Fraction:
     require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
-    if len(value) > _DIGITS_READ:
-        raise LimitError(f"a fraction has more than {_DIGITS_READ:,} digits")
+    if len(value) > ALLOWED.digits:
+        raise LimitError(f"a fraction has more than {ALLOWED.digits:,} digits")
     number = Fraction(value)
     require(str(number) == value, "expected a fraction in lowest terms")
     return number

@@ -13,8 +13,6 @@ from foon_asp.text.object_list import ListedObject
 quoted = encode_basestring_ascii
 encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode
 
-_MAX_DIGITS = 4000  # of a rate or price; Python reads numbers of up to 4,300 digits
-
 
 class NodeColumns(NamedTuple):
     """The parts of an object node as JSON; certificates name digests of lists of nodes in this form."""
@@ -102,8 +100,11 @@ def _name(value: object) -> str:
 
 
 def number_of(text: str) -> Fraction:
-    """Return an exact rate or price; raises :class:`ValueError` for any other text."""
-    number = Fraction(text if len(text) < _MAX_DIGITS and "e" not in text.lower() else "")
+    """Return an exact rate or price of less than 4,000 letters; raises :class:`ValueError` for other texts.
+
+    Python reads numbers of up to 4,300 digits.
+    """
+    number = Fraction(text if len(text) < 4000 and "e" not in text.lower() else "")
     if number < 0:
         raise ValueError(f"found {number}, expected a number from 0")
     return number

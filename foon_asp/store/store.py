@@ -40,8 +40,6 @@ from foon_asp.text.repeated_node import RepeatedNode
 if TYPE_CHECKING:  # few answers need numpy
     from foon_asp.store.outline import Outline
 
-LISTED_IDS = 12  # node ids returned with a label, as many as a message lists
-
 _NODE = (
     "SELECT node.id, name, states, relations, contents, kitchen, starting "
     "FROM node JOIN label ON label.id = label"
@@ -286,9 +284,9 @@ class Store:
 
     @reporting_damage
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Return how many nodes have a label, and the ids of the first :data:`LISTED_IDS`."""
+        """Return how many nodes have a label, and the ids of the first twelve, as many as a message lists."""
         ids = [*self._named(label)]
-        return len(ids), ids[:LISTED_IDS]
+        return len(ids), ids[:12]
 
     @reporting_damage
     def beginning(self, start: str, max_labels: int) -> list[str]:

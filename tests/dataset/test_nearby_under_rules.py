@@ -14,7 +14,7 @@ from foon_asp.asp.assembly import ReachOfRules, hold_for_parts, reach_of_rules
 from foon_asp.asp.outcome import Outcome
 from foon_asp.dataset import nearby_under_rules
 from foon_asp.dataset.nearby import NearbyProblem
-from foon_asp.dataset.nearby_under_rules import solve_nearby_under
+from foon_asp.dataset.nearby_under_rules import NEARBY, solve_nearby_under
 from foon_asp.dataset.reading_store import read_stored
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
@@ -266,7 +266,7 @@ def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         )
         assert found.stopped
     with monkeypatch.context() as patched:  # where what is elsewhere cannot be told, the rest is read
-        patched.setattr(nearby_under_rules, "_MAX_UNITS", -1)
+        patched.setattr(nearby_under_rules, "NEARBY", NEARBY._replace(max_units=-1))
         again = answered_under(near_stew(tmp_path, *more), UNITS, WAVE)
         assert (again.status, again.costs) == (Status.OPTIMAL, found.costs)
         patched.setattr("foon_asp.questions.answer._answered_reading", stopped)
@@ -344,7 +344,7 @@ def random_ways(rng: random.Random) -> list[tuple[str, str, str]]:
 def test_random_ways_to_what_rules_ask_for(
     part: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(nearby_under_rules, "_SEARCH_WIDTHS", ((1, 0),))
+    monkeypatch.setattr(nearby_under_rules, "NEARBY", NEARBY._replace(widths=((1, 0),)))
     proved = 0
     for seed in range(100 if part == 1 else 30):
         rng = random.Random(seed)
@@ -383,10 +383,9 @@ def test_random_problems_under_rules(part: int, tmp_path: Path, monkeypatch: pyt
         if not isinstance(posed, NearbyProblem):
             continue
         # a poor first tree, and little that may be read besides: without these, all is found near
-        monkeypatch.setattr(
-            nearby_under_rules, "_SEARCH_WIDTHS", rng.choice((((1, 0),), ((100, 0), (100, 6))))
-        )
-        monkeypatch.setattr(nearby_under_rules, "_MAX_UNITS", rng.choice((0, 2, 30_000, 30_000)))
+        widths = rng.choice((((1, 0),), ((100, 0), (100, 6))))
+        tuning = NEARBY._replace(widths=widths, max_units=rng.choice((0, 2, 30_000, 30_000)))
+        monkeypatch.setattr(nearby_under_rules, "NEARBY", tuning)
         near = solve_nearby_under(posed, objectives, how, Reporter())
         found: Answer = answered_under(posed, objectives, how)
         expected = solve(dataset.problem(problem.goals, rule.value, everything=True), objectives, how)

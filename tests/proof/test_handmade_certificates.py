@@ -572,8 +572,8 @@ def test_work_of_all_kinds_is_counted(
     monkeypatch: pytest.MonkeyPatch, most: int, at: Problem, values: Content
 ) -> None:
     assert accepted(at, **values).claim == "bound"
-    monkeypatch.setattr(verifier, "_STEPS_EACH", 0)
-    monkeypatch.setattr(verifier, "_STEPS_ALLOWED", most)
+    limits = verifier.ALLOWED._replace(steps=most, steps_each=0)
+    monkeypatch.setattr(verifier, "ALLOWED", limits)
     assert refusal(at, **values) == f"to check it takes more than {most:,} steps"
 
 
