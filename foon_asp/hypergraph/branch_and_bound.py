@@ -23,10 +23,6 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 from foon_asp.hypergraph.optimality_proof import Branch, Cases, CostFixing, Hopeless, Packing, Proof
 
-_WHOLE = 1e-6  # integrality tolerance of LP values
-
-_PACKING_LENGTH = 5000  # objects and actions, counted per cost partition: limits the branching depth
-
 Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
 
 
@@ -187,7 +183,7 @@ class Branching:
                 return True
             if self._stopped(expired):
                 return False
-            halves = self._np.flatnonzero(free & (shares > _WHOLE) & (shares < 1 - _WHOLE))
+            halves = self._np.flatnonzero(free & (shares > 1e-6) & (shares < 1 - 1e-6))
             if not len(halves):
                 chosen = self._rounded_derivation(cutter, shares, node)
                 if not chosen:
@@ -302,7 +298,7 @@ class Branching:
     def _packing(self, node: _Node) -> tuple[Packing, set[int]]:
         """Return the cost partition of a node, and the forbidden actions that its proof relies on."""
         weights: list[tuple[Cut, tuple[Fraction]]] = []
-        self._length_budget -= _PACKING_LENGTH
+        self._length_budget -= 5000  # for each partition, beside its own length: limits the branching depth
         for row, weight in self._carrying(node):
             cut = self._stated(self._relaxation.cuts[row], node)
             self._length_budget -= len(cut.objects) + len(cut.members)

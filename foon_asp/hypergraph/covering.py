@@ -26,7 +26,6 @@ _INTERIOR_POINT: Final[dict[str, bool | str | float]] = {
 _VERTEX: Final[dict[str, bool | str | float]] = (
     _INTERIOR_POINT | _OPTIONS | {"solver": "ipm", "run_crossover": "on"}
 )
-_RUN_SECONDS = 2.0  # limit of a run: the interior-point method cannot be continued
 
 
 class UnsolvedError(BugError):
@@ -109,7 +108,8 @@ class Covering:
         return Weighed(value, list(solution.col_value), list(solution.row_dual))
 
     def _run(self, options: dict[str, bool | str | float], expired: Callable[[], bool]) -> None:
-        self._set(options | {"time_limit": self._highs.getRunTime() + _RUN_SECONDS})
+        # two seconds: the interior-point method cannot be continued
+        self._set(options | {"time_limit": self._highs.getRunTime() + 2.0})
         run(self._highs, expired)
 
     def solve(self, expired: Callable[[], bool] = lambda: False) -> Relaxed:

@@ -15,7 +15,6 @@ from foon_asp.problem import Costs, Objective, Problem, multiplies
 _COARSE = 1000  # scale of -ln(rate) and of fractions in estimates
 _SCALE = 10**40  # scale of logarithms where rounding must not decide
 _ROUNDED = 10**20  # more than the sum of all rounding errors at that scale
-_FINEST = 10**9  # the largest denominator of a rate that the logarithms distinguish for sure
 _FINE = Context(prec=60, rounding=ROUND_CEILING)
 _SHOWN = Context(prec=18, rounding=ROUND_CEILING)  # of bounds on success
 _LONGEST = 50_000  # sum of exponents up to which products of rates are compared
@@ -239,8 +238,11 @@ def _coarse(rate: Fraction) -> int:
 
 
 def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
-    """Return for each rate the sum of the rounded scaled logarithms of its coprime factors."""
-    if not all(0 < rate <= 1 and rate.denominator <= _FINEST for rate in rates):
+    """Return for each rate the sum of the rounded scaled logarithms of its coprime factors.
+
+    Raises :class:`TooFineError` for denominators above 10^9, where the logarithms may not tell rates apart.
+    """
+    if not all(0 < rate <= 1 and rate.denominator <= 10**9 for rate in rates):
         raise TooFineError
     base = coprime_base(n for rate in rates for n in rate.as_integer_ratio())
     logarithms = {factor: _logarithm(factor) for factor in base}

@@ -12,8 +12,6 @@ from foon_asp.hypergraph.lazy_h_max import within_reach
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.problem import Problem
 
-_ROUNDS = 6  # of cuts and reduced-cost fixing
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Subproblem:
@@ -116,7 +114,7 @@ class Subproblem:
         """
         graph, costs, cuts = self.graph, self.costs, self.cuts
         remaining: Collection[int] = self._all() if self.redundant else self.remaining
-        for _ in range(_ROUNDS):
+        for _ in range(6):  # rounds of cuts and reduced-cost fixing, at most
             gap = limit - cuts.bound + costs.doubt
             if gap < 0:
                 return ()

@@ -1,15 +1,28 @@
 """Runs of HiGHS that end when time is up."""
 
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any, NamedTuple
 
 from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import uninterrupted
 
-_SMALL: Final = 6000  # columns and rows, a run of that many steps takes about a second
-_STEPS: Final = 4000  # of the simplex algorithm
-_LOOKS = 0.05  # seconds between two looks at the time
-_LATE = 0.3  # seconds that HiGHS has to end; a step of the interior point method may take longer
+
+class RunTuning(NamedTuple):
+    """How HiGHS is run such that it ends when time is up.
+
+    ``small_size``: columns and rows of a program that is run here, ``steps`` of the simplex algorithm at a
+    time, which take about a second; larger ones are run in a thread.
+    ``poll_seconds``: between two looks at the time.
+    ``end_seconds``: that HiGHS has to end; a step of the interior-point method may take longer.
+    """
+
+    small_size: int = 6000
+    steps: int = 4000
+    poll_seconds: float = 0.05
+    end_seconds: float = 0.3
+
+
+RUN = RunTuning()
 
 
 def libraries() -> tuple[Any, Any]:
@@ -43,11 +56,11 @@ def run(highs: Any, expired: Callable[[], bool], whole: bool = False) -> bool:
     Otherwise its current solution can be read. Raises ``KeyboardInterrupt`` where HiGHS does not stop, after
     which the instance must not be used.
     """
-    if whole or highs.getNumCol() + highs.getNumRow() > _SMALL:
+    if whole or highs.getNumCol() + highs.getNumRow() > RUN.small_size:
         return _Run(highs, expired).wait()
     import highspy  # noqa: PLC0415 (slow to import, so only when it is there already)
 
-    highs.setOptionValue("simplex_iteration_limit", _STEPS)
+    highs.setOptionValue("simplex_iteration_limit", RUN.steps)
     highs.run()
     while highs.getModelStatus() == highspy.HighsModelStatus.kIterationLimit:
         if expired():
@@ -76,11 +89,11 @@ class _Run:
             self._highs.startCallback(getattr(kinds, name))
         thread = DaemonThread(self._highs.run)
         try:
-            while not thread.ended(_LOOKS) and not self._expired():
+            while not thread.ended(RUN.poll_seconds) and not self._expired():
                 pass
         finally:
             self._stopped = not thread.ended(0)
-            ended = thread.ended(_LATE)
+            ended = thread.ended(RUN.end_seconds)
         if not ended:
             raise KeyboardInterrupt
         return bool(self._highs.getModelStatus() != highspy.HighsModelStatus.kInterrupt)

@@ -12,7 +12,6 @@ if TYPE_CHECKING:  # few questions need it
     from foon_asp.hypergraph.cost_partition import SharedCosts
 
 _FINE = 1000  # scale of LP values and of perturbed costs
-_MAX_TREES = 160  # trees of a perturbation search
 
 
 def irredundant(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
@@ -99,7 +98,7 @@ def perturbation_search(
     total = sum(map(cost, tree))
     ordered = sorted(actions)
     effort = tries * len(ordered)
-    for _ in range(_MAX_TREES):
+    for _ in range(160):  # trees
         if effort <= 0 or total <= enough or expired():
             break
         if random_number() < 0.5:

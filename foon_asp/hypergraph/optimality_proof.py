@@ -29,9 +29,6 @@ from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, time
 from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
 
 _SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
-_STEP = 0.99  # of the step of costs: bounds are rounded up
-_FINER = 1e-4  # factor from a cost level to the next in floats
-
 _EXCESS_COST_FACTOR = 1000  # times the goal of the proof: what exceeding a limit by 1 costs an LP solution
 
 
@@ -168,7 +165,7 @@ class Prover:
             # rates may all be next to 1, where a solver would see nothing
             unit = largest or 1.0 if rates else 1.0
             self._scales.append(scale / unit)
-            scale *= _FINER / (1 + largest / unit)
+            scale *= 1e-4 / (1 + largest / unit)  # the next level weighs far less than this one
 
     def scaled(self, vector: Vector) -> float:
         """Return a cost as one float: a sum in which each level weighs much less than the one before."""
@@ -582,8 +579,9 @@ class _Node:
         """
         order = self._prover._order
         wanted = math.inf if enough is None else self._prover.scaled(enough)
-        if enough is not None and len(enough) == len(self._prover._multiples) == 1:  # more than one step less
-            wanted -= _STEP * self._prover.scaled((self._prover._multiples[0],))
+        if enough is not None and len(enough) == len(self._prover._multiples) == 1:
+            # from more than one step less, bounds are rounded up
+            wanted -= 0.99 * self._prover.scaled((self._prover._multiples[0],))
         while True:
             self._check()
             relaxed = self._covering.solve(self._prover._expired)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from foon_asp.hypergraph.branch_and_bound import Branching
 from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
@@ -15,11 +16,28 @@ from foon_asp.hypergraph.landmark_relaxation import PARTS
 from foon_asp.hypergraph.reductions import Reduction
 from foon_asp.hypergraph.task import Task
 
-_THOROUGH = 4  # times the looks: a search after the last solution
-_SOLUTIONS = 8  # LP solutions between two searches for a better tree
-_LARGE_LANDMARK = 50, 0.01  # actions, or share of all: larger landmarks make the LP slow and are weak
-_DENSITY = 2  # landmark sizes together, for each action: with more, the LP begins without large landmarks
-_USED = 1e-4  # an action of a greater LP value counts as used by an LP solution
+
+class StageTuning(NamedTuple):
+    """How LP solutions are followed to trees, and with which landmarks the relaxation begins.
+
+    ``solutions``: LP solutions between two searches for a better tree.
+    ``last_search``: times the looks of others that the search after the last solution has.
+    ``used_value``: LP value above which a solution uses an action.
+    ``dense_size``: sizes of all landmarks together, for each action; above it, the LP begins without large
+    landmarks, which make it slow and are weak.
+    ``large_landmark``, ``large_share``: a large landmark has more actions than this, and more than this
+    share of all actions.
+    """
+
+    solutions: int = 8
+    last_search: int = 4
+    used_value: float = 1e-4
+    dense_size: int = 2
+    large_landmark: int = 50
+    large_share: float = 0.01
+
+
+STAGE = StageTuning()
 
 
 def partition_costs(task: Task, gap: Gap) -> Stage:
@@ -36,7 +54,7 @@ def partition_costs(task: Task, gap: Gap) -> Stage:
         before, almost_closed, starting = len(gap.candidates), False, gap.evidence.starting
         partitioning = CostPartitioning(graph, graph.goals, gap.candidates, costs, task.expired, starting)
         while True:
-            shared = partitioning.advance(task.total(gap), _SOLUTIONS)
+            shared = partitioning.advance(task.total(gap), STAGE.solutions)
             if shared is None:
                 return gap
             if partitioning.converged:
@@ -48,7 +66,7 @@ def partition_costs(task: Task, gap: Gap) -> Stage:
             if gap.proved or almost_closed or len(gap.candidates) < tuning.worthwhile_share * before:
                 break
         if not gap.proved:
-            gap = yield from follow_solution(task, gap, shared, _THOROUGH * tuning.search_looks)
+            gap = yield from follow_solution(task, gap, shared, STAGE.last_search * tuning.search_looks)
         if gap.proved or almost_closed or task.expired():
             break
     return gap
@@ -57,9 +75,8 @@ def partition_costs(task: Task, gap: Gap) -> Stage:
 def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
     """Return the greedy cuts to begin the relaxation with: without large landmarks, where these are many."""
     cuts = gap.evidence.cuts.cuts if gap.evidence.cuts else []
-    min_members, share = _LARGE_LANDMARK
-    dense = sum(len(cut.members) for cut in cuts) > _DENSITY * len(gap.candidates)
-    max_members = max(min_members, share * len(gap.candidates)) if dense else math.inf
+    dense = sum(len(cut.members) for cut in cuts) > STAGE.dense_size * len(gap.candidates)
+    max_members = max(STAGE.large_landmark, STAGE.large_share * len(gap.candidates)) if dense else math.inf
     return tuple(cut.objects for cut in cuts if len(cut.members) <= max_members)
 
 
@@ -67,7 +84,7 @@ def follow_solution(task: Task, gap: Gap, shared: SharedCosts, looks: int) -> St
     """Look for better trees by an LP solution, and fix by it; ``looks`` is the budget of each candidate."""
     costs, graph = task.costs, task.graph
     assert costs is not None
-    used = {action for action, share in shared.shares.items() if share > _USED} | gap.incumbent
+    used = {action for action, share in shared.shares.items() if share > STAGE.used_value} | gap.incumbent
     for tree in following(graph, gap.candidates, costs, shared):
         used |= tree
         if task.is_better(tree, gap):

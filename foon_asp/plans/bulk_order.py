@@ -15,9 +15,6 @@ from foon_asp.plans.whole_program import Stopped
 Run = tuple[int, int]
 """An action, and how often it is executed at once."""
 
-_MAX_STEPS = 20_000  # runs tried before the search is given up; most orders take as many as there are actions
-_MAX_SINGLE = 300  # executions up to which every order is tried, one execution at a time
-
 
 def bulk_order(
     flows: Flows, counts: Counts, start: Mapping[int, int], expired: Callable[[], bool]
@@ -29,7 +26,7 @@ def bulk_order(
     if not _is_founded(flows, counts, start):
         return None
     runs = _Search(flows, counts, start, expired, single=False).runs()
-    if runs is None and sum(counts.values()) <= _MAX_SINGLE:
+    if runs is None and sum(counts.values()) <= 300:  # every order is tried, one execution at a time
         search = _Search(flows, counts, start, expired, single=True)
         runs = search.runs()
         if runs is None and search.is_exhausted:
@@ -86,7 +83,7 @@ class _Search:
     ) -> None:
         self._flows, self._expired, self._single = flows, expired, single
         self._copies, self._waiting = Counter(start), dict(counts)
-        self._steps_left = _MAX_STEPS
+        self._steps_left = 20_000  # runs that are tried; most orders take as many as there are actions
         # what all executions that wait consume, and the most that one of them has to find beyond that
         self._consumed = Counter[int]()
         for action, times in counts.items():

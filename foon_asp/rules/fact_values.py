@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import islice
-from typing import Final, NamedTuple
+from typing import ClassVar, Final, NamedTuple
 
 from foon_asp.encoding.fact_writer import quote, source_names
 from foon_asp.escapes import encodable
@@ -13,9 +13,6 @@ from foon_asp.problem import Problem
 Names = tuple[str, ...]
 Value = str | int | None
 """A text, a number, or ``None`` for a term that occurs in no fact: a word without quotes."""
-
-_MAX_LOOKUPS = 20  # suggestions for one question
-_MAX_NODES_READ = 200_000  # units or object nodes of a store that are searched for a name
 
 
 class Columns(NamedTuple):
@@ -102,12 +99,14 @@ class FactValues:
     """Facts about the whole network of a question, not only about the part that goals can need.
 
     Of a store, the part in memory is searched first, and then all others of its units and nodes, one by one,
-    up to a limit beyond which a name counts as known.
+    up to ``max_read``; beyond these, a name counts as known.
     """
+
+    max_read: ClassVar[int] = 200_000
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        self._lookups_left = _MAX_LOOKUPS
+        self._lookups_left = 20
 
     def matches(self, name: str, columns: Columns, values: Mapping[int, Value]) -> bool:
         """Whether some fact has these values, by position; texts have to be in one fact together."""
@@ -132,7 +131,7 @@ class FactValues:
     def nearest(self, name: str, columns: Columns, words: Mapping[int, str]) -> dict[int, str] | None:
         """Return the texts of the fact, by position, whose spelling is most similar to some words.
 
-        ``None`` where no text is similar, and once ``_MAX_LOOKUPS`` suggestions were sought.
+        ``None`` where no text is similar, and once twenty suggestions were sought.
         """
         self._lookups_left -= 1
         if self._lookups_left < 0:
@@ -154,7 +153,7 @@ class FactValues:
         return {columns.texts[number]: spelt[matches[0]][number] for number in wanted}
 
     def _rows(self, name: str, network: Network) -> Iterable[Names]:
-        limit = _MAX_NODES_READ if _is_read_one_by_one(network) else None
+        limit = self.max_read if _is_read_one_by_one(network) else None
         sources, objects = islice(network.sources, limit), islice(network.objects, limit)
         return _TEXTS[name](_NetworkPart(network.different_motions, sources, objects, self._problem.utensils))
 
@@ -173,7 +172,7 @@ class FactValues:
         whole = self._whole
         if whole is None or self._has(name, wanted, whole):
             return True
-        is_cut = _is_read_one_by_one(whole) and max(len(whole), len(whole.objects)) > _MAX_NODES_READ
+        is_cut = _is_read_one_by_one(whole) and max(len(whole), len(whole.objects)) > self.max_read
         return is_cut and name not in {"motion", "utensil"}
 
 

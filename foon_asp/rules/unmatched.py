@@ -28,9 +28,6 @@ from foon_asp.rules.clause import (
 from foon_asp.rules.fact_values import COLUMNS, LISTED_FACTS, FactValues, has_text, nearest_text, unknown_text
 from foon_asp.text.diagnostics import Diagnostic, Severity
 
-_MAX_COMBINATIONS = 10_000  # of values of one literal; with more, it counts as matched
-_MAX_VALUES = 3  # values of a list
-
 _Values = Mapping[str, Sequence[Symbol]]  # by variable, where all values are known
 
 
@@ -106,16 +103,20 @@ class _Search:
         )
 
     def _rows(self, literal: Literal, conjuncts: Iterable[Conjunct]) -> Sequence[Mapping[int, Symbol]]:
-        """Return the combinations of values that a literal over a fact requires, by position."""
+        """Return the combinations of values that a literal over a fact requires, by position.
+
+        Of more than 10,000, none: then the literal counts as matched.
+        """
+        max_combinations = 10_000
         values_by_position = (
             self._arguments(literal, self._bound(conjuncts)) if literal.signature in COLUMNS else {}
         )
         combinations = (
-            list(islice(product(*values_by_position.values()), _MAX_COMBINATIONS + 1))
+            list(islice(product(*values_by_position.values()), max_combinations + 1))
             if values_by_position
             else []
         )
-        if len(combinations) > _MAX_COMBINATIONS:
+        if len(combinations) > max_combinations:
             return []
         return [dict(zip(values_by_position, combination, strict=True)) for combination in combinations]
 
@@ -286,4 +287,4 @@ def _text(literal: Literal, arguments: Mapping[int, str]) -> str:
 
 def _shortened(words: Sequence[str]) -> list[str]:
     words = list(dict.fromkeys(words))
-    return [*words[:_MAX_VALUES], "..."] if len(words) > _MAX_VALUES else words
+    return [*words[:3], "..."] if len(words) > 3 else words

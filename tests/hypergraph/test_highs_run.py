@@ -68,7 +68,7 @@ def test_it_ends_where_it_asks_when_time_is_up(columns: int, rows: int, whole: b
 
 
 def test_where_it_does_not_end_nobody_waits_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(highs_run, "_LATE", 0.01)
+    monkeypatch.setattr(highs_run, "RUN", highs_run.RUN._replace(end_seconds=0.01))
     highs = Endless(9000, 9000, deaf=True)
     with pytest.raises(KeyboardInterrupt):
         highs_run.run(highs, lambda: True)
@@ -112,7 +112,7 @@ def test_a_small_program_is_asked_for_some_steps_at_a_time() -> None:
 
 
 def test_large_programs_have_the_same_solutions(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(highs_run, "_SMALL", -1)
+    monkeypatch.setattr(highs_run, "RUN", highs_run.RUN._replace(small_size=-1))
     program = WholeProgram(2)
     program.row({0: 2, 1: 1}, 3)
     assert program.solve({0: 2, 1: 3}) == Solved([1.5, 0.0], Fraction(3))

@@ -11,6 +11,7 @@ from typing import Any
 import highspy
 import pytest
 
+from foon_asp.hypergraph import highs_run
 from foon_asp.hypergraph.highs_run import silent_highs
 from foon_asp.plans import whole_program
 from foon_asp.plans.whole_program import Relaxation, Solved, Stopped, WholeProgram
@@ -236,7 +237,7 @@ def test_a_relaxation_ends_when_time_is_up(monkeypatch: pytest.MonkeyPatch) -> N
         looks.append(True)
         return len(looks) == 2
 
-    monkeypatch.setattr("foon_asp.hypergraph.highs_run._STEPS", 1)
+    monkeypatch.setattr(highs_run, "RUN", highs_run.RUN._replace(steps=1))
     rows = [{n: 1, n + 1: 2, (7 * n) % 30: 1} for n in range(29)]
     made = [WholeProgram(30, asked) for asked in (lambda: False, expired)]
     for one, (number, parts) in product(made, enumerate(rows)):
