@@ -1,7 +1,9 @@
-"""Words that hide a meaning: ``python -m tests.docs.words``, a part of `make lint`, lists them.
+"""Words and numbers that hide a meaning: ``python -m tests.docs.words``, a part of `make lint`, lists them.
 
 A name says what it holds, in a term of planning, linear programming, answer-set programming or FOON; a
-docstring begins with what is done or returned. docs/dev/words.md has the terms.
+docstring begins with what is done or returned. docs/dev/words.md has the terms. A number stands where it is
+used, is a default of a parameter, or a field of the class that says what it limits or steers; a constant of a
+module is the exception.
 """
 
 import ast
@@ -95,9 +97,60 @@ EXCEPTIONS = {
     ),
 }
 
+# Numeric constants of modules, by why they are constants; all others are refused, and more than MAX_NUMBERS.
+NUMBERS = {
+    "a number of a protocol, a file format or a language": """
+        APPLICATION_ID VERSION INT32_MAX LEVELS OUT_OF_MEMORY UNTIL_SUCCESS _HEADER _TICK_SECONDS""",
+    "a sentinel": "FAR UNREACHED _LARGE",
+    "a scale that exact numbers or bounds rely on": """
+        LOGARITHM_SCALE PARTS USUAL_SCALE _COARSE _COST_STEPS _FINE _MAX_FACTOR _ROUNDED _SCALE""",
+    "a tolerance of floats or of digits, by which nothing is proved": """
+        INTEGRALITY _DIGITS _GAP _GREATEST _MARGIN _MAX_EXACT_COST _MAX_EXPONENT _SATISFIED _TINY _TWICE""",
+    "a limit that users are told of, or that several rooms keep": """
+        BOXED_UNITS CHUNK_BYTES CLINGO_SECONDS GREATEST_WEIGHT MANY MAX_AMOUNT MAX_COMPLETIONS MAX_KINDS
+        MAX_LETTERS MAX_UNITS REPORT_BYTES _MAX_CANDIDATES _MAX_COUNT _MAX_DIGITS _MAX_ITEMS""",
+    "steers one search; where there are several, a tuning class of their stage is better": """
+        _BATCH_SIZE _DELAY_SECONDS _EXCESS_COST_FACTOR _FAR _FEWER _FIRST _GROWTH _INDEXED _LONGEST
+        _MAX_CACHED_NODES _MAX_COMPARED _MAX_CUT_OBJECTS _MAX_EXECUTIONS _MAX_EXTRA_COPIES _MAX_KNOWN_UNITS
+        _MAX_PLAIN_ATOMS _MAX_ROUNDS _MAX_STOCKS _MAX_UNITS_WITHOUT_CLINGO _MAX_UNORDERED _MAX_WAYS
+        _MOST_DEPTH _MOST_LEAVES _MOST_PARTS _MOST_UNCAPPED _NEAREST_GROWTH _NEAREST_UNITS _ORDERS _PROBES
+        _QUICKLY_GROUNDED _ROUNDS _ROWS_PER_WRITE _SMALL _STEPS""",
+}
+MAX_NUMBERS = 90
+
+
+def numbers(file: Path) -> Iterator[tuple[int, str]]:
+    """Yield line and name of each constant of a module that is a number, or a tuple of numbers."""
+    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value) if name.strip("_").isupper():
+                pass
+            case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value) if name.strip(
+                "_"
+            ).isupper():
+                pass
+            case _:
+                continue
+        if _is_number(value):
+            yield node.lineno, name
+
+
+def _is_number(value: ast.expr) -> bool:
+    """Return whether an expression is made of numbers alone."""
+    match value:
+        case ast.UnaryOp(operand=operand):
+            return _is_number(operand)
+        case ast.BinOp(left=left, right=right):
+            return _is_number(left) and _is_number(right)
+        case ast.Tuple(elts=elements):
+            return bool(elements) and all(map(_is_number, elements))
+        case ast.Constant(value=number):
+            return type(number) in {int, float}
+    return False
+
 
 def remarks(file: Path) -> Iterator[str]:
-    """Yield a line for each empty name and each docstring of a file that does not say what is done."""
+    """Yield a line for each name, docstring and number of a file that does not say what it is."""
     inside = file.relative_to(ROOT / "foon_asp").as_posix()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         for name in _bound(node):
@@ -111,6 +164,10 @@ def remarks(file: Path) -> Iterator[str]:
             if opening:
                 line = getattr(node, "lineno", 1)
                 yield f"{file.relative_to(ROOT)}:{line}: a docstring begins with {opening.group()!r}"
+    allowed = {name for names in NUMBERS.values() for name in names.split()}
+    for line, name in numbers(file):
+        if name not in allowed:
+            yield f"{file.relative_to(ROOT)}:{line}: {name} is a number, and neither a field nor a default"
 
 
 def _bound(node: ast.AST) -> list[str]:
@@ -125,7 +182,11 @@ def _bound(node: ast.AST) -> list[str]:
 
 def main() -> int:
     """Print the remarks on the whole package; return the exit code."""
-    lines = [line for file in sorted((ROOT / "foon_asp").rglob("*.py")) for line in remarks(file)]
+    files = sorted((ROOT / "foon_asp").rglob("*.py"))
+    lines = [line for file in files for line in remarks(file)]
+    count = sum(len([*numbers(file)]) for file in files)
+    if count > MAX_NUMBERS:
+        lines.append(f"{count} constants of modules are numbers, expected at most {MAX_NUMBERS}")
     print(*lines, sep="\n", end="\n" if lines else "")
     return 1 if lines else 0
 
