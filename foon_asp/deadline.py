@@ -474,6 +474,7 @@ class Watch:
 
     @property
     def _is_woken_by_signals(self) -> bool:
+        """Whether a signal interrupts the watched thread: it is the main one, and ctrl-C raises there."""
         return (
             self._thread == threading.main_thread().ident
             and hasattr(signal, "pthread_kill")
@@ -481,6 +482,7 @@ class Watch:
         )
 
     def _interrupt(self) -> None:
+        """Raise ``KeyboardInterrupt`` in the watched thread."""
         if self._is_woken_by_signals:
             signal.pthread_kill(self._thread, signal.SIGINT)  # also wakes it from blocking reads
             return

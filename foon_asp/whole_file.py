@@ -134,6 +134,7 @@ def _clear(folder: Path) -> None:
 
 
 def _remove_unlocked(file: Path) -> None:
+    """Remove a partial file unless the process that writes it has locked it."""
     found = os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     try:
         if stat.S_ISREG(os.fstat(found).st_mode) and _locked(found, otherwise=False):

@@ -169,6 +169,10 @@ def _write(
     subject: verifier.Subject | None,
     bound: Vector | None = None,
 ) -> Certificate | None:
+    """Return the certificate of a claim, in which each cut and each limit has a number.
+
+    ``None`` where the numbers of its proof are too long for certificates.
+    """
     problem, network = arrays.problem, arrays.problem.network
     subject = subject or subject_of(problem)
     cuts: dict[tuple[int, ...], int] = {}

@@ -85,6 +85,7 @@ class SafeStream:
 
     @contextlib.contextmanager
     def _faults(self) -> Iterator[None]:
+        """Raise :class:`UserError` where standard output cannot be written; remarks are lost silently."""
         try:
             yield
         except BrokenPipeError:

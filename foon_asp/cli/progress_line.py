@@ -60,6 +60,7 @@ class Progress(Reporter):
             self._thread = DaemonThread(self._show)
 
     def _show(self) -> None:
+        """Show the line until the search has finished, unless that is soon."""
         with contextlib.suppress(Empty):
             self._finished.get(timeout=_DELAY_SECONDS)
             return

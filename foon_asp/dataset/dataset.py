@@ -165,6 +165,7 @@ class Dataset:
         return self._data(network, frozenset(kitchen))
 
     def _data(self, network: Network, kitchen: frozenset[int]) -> Data:
+        """Return the data of this dataset with another network and kitchen."""
         return Data(
             network,
             kitchen,
@@ -182,6 +183,7 @@ class Dataset:
         )
 
     def _unit_prices(self, network: Network) -> UnitPrices | None:
+        """Return the prices of units, those of a store included; ``None`` without any."""
         motions, units, from_file = self.prices
         stored = self.source.unit_prices(network, from_file)
         if motions is None and not units and stored is None:

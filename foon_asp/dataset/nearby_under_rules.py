@@ -192,6 +192,7 @@ class _Search:
         return next(extra for extra in count() if key <= least_with_more(least_costs, order, extra + 1))
 
     def _proved(self, outcome: Outcome) -> Outcome:
+        """Return the outcome with the proof of both searches, without cuts, which are those of a part."""
         assert outcome.costs is not None
         self._reporter.tree(outcome.costs)
         proofs = self._unconstrained.proof, outcome.proof

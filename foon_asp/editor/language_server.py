@@ -95,6 +95,7 @@ class LanguageServer:
         raise RequestError(ErrorCode.METHOD_NOT_FOUND, f"there is no method {method}")
 
     def _initialize(self, parameters: object) -> Json:
+        """Return what the server can do."""
         parameter(parameters, "capabilities", dict)
         return {
             "capabilities": _CAPABILITIES,
@@ -112,6 +113,7 @@ class LanguageServer:
             self._begin(EditedText(text.uri, parameter(change, "text", str)), 0.25)
 
     def _close(self, parameters: object) -> None:
+        """Forget a text that the editor has closed, and its findings."""
         uri = self._text(parameters).uri
         self._checks.pop(uri).cancel()
         self._checked.pop(uri, None)

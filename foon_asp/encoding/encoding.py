@@ -169,6 +169,7 @@ class _Collector(Transformer):
         self._in_head = False
 
     def statement(self, statement: AST) -> None:
+        """Record a statement: its text, and the predicates and constants that it defines and uses."""
         encoding = self.encoding
         encoding.text += f"{statement}\n"
         encoding.statements.append(statement)
@@ -203,6 +204,7 @@ class _Collector(Transformer):
         return external
 
     def visit_ConditionalLiteral(self, literal: AST) -> AST:  # noqa: N802
+        """Visit a conditional literal, whose condition is no head."""
         in_head, self._in_head = self._in_head, False
         self.visit_sequence(literal.condition)
         self._in_head = in_head
@@ -214,6 +216,7 @@ class _Collector(Transformer):
         return atom
 
     def _atom(self, symbol: AST, sign: str) -> None:
+        """Record the signature of an atom as defined or used, with its first place."""
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation: -p(X)
             self._atom(symbol.argument, "" if sign else "-")
         elif symbol.ast_type == ASTType.Pool:  # p(1;2)
@@ -342,6 +345,7 @@ def _is_ours(rules: Loaded) -> bool:
 
 
 def _statements(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnostic]:
+    """Return an error for each statement of a refused kind."""
     return [
         encoding.remark(Severity.ERROR, _CODES.get(kind, "statement"), f"found {_REFUSED[kind]}", source)
         for kind, source in encoding.special

@@ -45,6 +45,7 @@ class GroundProgram:
             self._ground([("base", []), *parts])
 
     def _load(self, files: Sequence[str | Stated], logger: Callable[[MessageCode, str], None]) -> None:
+        """Load encodings and rules without a file into clingo."""
         for file in files:
             if isinstance(file, Stated):
                 from foon_asp.encoding.parsing import load  # noqa: PLC0415 (slow to import)

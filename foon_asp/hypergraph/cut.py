@@ -234,6 +234,7 @@ class _Growth:
         return new
 
     def _undo(self, new: list[int]) -> None:
+        """Take back that objects were reached."""
         missing, reached = self._missing, self.reached
         for o in new:
             reached[o] = False

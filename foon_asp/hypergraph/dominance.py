@@ -69,6 +69,7 @@ class _PreconditionTrie:
                 yield from (actions if len(actions) <= _INDEXED else self._achieving(node).get(effect, ()))
 
     def _achieving(self, node: int) -> dict[int, list[int]]:
+        """Return the actions at a node by each of their effects, computed once."""
         if node not in self._by_effect:
             achievers: dict[int, list[int]] = {}
             for action in self._actions_at[node]:

@@ -180,6 +180,7 @@ class ExactCosts:
         return self._problem.rate(action)
 
     def _figure(self, objective: Objective, action: int) -> int:
+        """Return the cost of an action by one objective: of a unit, or of a kitchen item."""
         if action >= self._units:
             return objective.row.item
         if objective in self._multiplied:

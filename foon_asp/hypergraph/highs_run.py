@@ -80,6 +80,10 @@ class _Run:
         self._stopped = False
 
     def wait(self) -> bool:
+        """Run HiGHS until it ends or time is up; return whether it ended.
+
+        Raises ``KeyboardInterrupt`` where it does not stop.
+        """
         import highspy  # noqa: PLC0415 (slow to import, so only when it is there already)
 
         kinds = highspy.cb.HighsCallbackType

@@ -45,6 +45,7 @@ class LintSettings:
         ]
 
     def _is_ignored_in(self, file: str, code: str) -> bool:
+        """Whether a pattern for single files ignores a code in this file."""
         patterns = [pattern for pattern, codes in self.per_file.items() if code in codes]
         if not patterns or self.file is None:
             return False
@@ -134,6 +135,7 @@ def _faults(table: object) -> Iterator[_Fault]:
 
 
 def _faults_of_codes(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
+    """Yield the faults of a list of codes of rules in the settings."""
     if not isinstance(value, list) or not all(isinstance(code, str) for code in value):
         yield path, f'expected a list of codes such as {path[-1]} = ["near-name"]'
         return

@@ -95,6 +95,7 @@ class Names:
 
 
 def _names_in(node: ObjectNode) -> Iterator[tuple[Kind, str]]:
+    """Yield each name in a node with its kind."""
     yield Kind.OBJECT, node.label
     yield from ((Kind.STATE, state) for state in node.states)
     for word, related_object in node.relations:

@@ -23,6 +23,7 @@ def table(context: Context) -> Iterator[Diagnostic]:
 
 
 def _faults(sheet: Sheet) -> Iterator[Diagnostic]:
+    """Yield the errors with which a table cannot be read."""
     file = Path(sheet.file)
     try:
         TABLES[file.name].rows(file, "\n".join(sheet.lines))

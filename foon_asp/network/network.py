@@ -314,6 +314,7 @@ class Network:
 
     @cached_property
     def _by_lookup_key(self) -> dict[LookupKey, list[int]]:
+        """The ids of the nodes by each of their lookup keys."""
         ids: dict[LookupKey, list[int]] = {}
         for object_id, node in enumerate(self.objects):
             for key in lookup_keys(node):

@@ -30,6 +30,7 @@ def mermaid_markdown(drawing: Drawing) -> str:
 
 
 def _lines(drawing: Drawing) -> Iterator[str]:
+    """Yield the lines of a flowchart: header, boxes, arrows, and a style for each role."""
     # The header is YAML, which includes the strings of JSON.
     yield f"---\ntitle: {json_line(' | '.join(drawing.caption))}\n---"
     yield "flowchart TD"

@@ -56,6 +56,7 @@ def _section(section: Pair) -> str:
 
 
 def _pair(row: Row) -> str:
+    """Return the HTML of two units beside each other, with their differences marked and listed."""
     unit_a, unit_b, differences = row
     column_a = _unit(unit_a, {(difference.kind, difference.a) for difference in differences})
     column_b = _unit(unit_b, {(difference.kind, difference.b) for difference in differences})

@@ -99,6 +99,7 @@ class _Model:
         return self._starts[step] + self._task.lengths[step]
 
     def _solver(self) -> Any:
+        """Return a deterministic solver."""
         solver = self._library.CpSolver()
         # more workers find no schedule sooner for plans of some hundred steps, and are not deterministic
         solver.parameters.num_workers = 1

@@ -112,6 +112,7 @@ class _Reader:
         return values
 
     def _operator(self) -> SasOperator:
+        """Read an operator; an effect's value before it counts as a precondition."""
         self._expect("begin_operator")
         name, source = self._next().rstrip(), Source(self._file, self._line)
         preconditions, effects = [*self._values()], list[SasEffect]()
@@ -129,6 +130,7 @@ class _Reader:
         return SasOperator(f"({name})", tuple(dict.fromkeys(preconditions)), effects, cost, source)
 
     def _axiom(self) -> SasAxiom:
+        """Read an axiom, which has to set a derived variable."""
         self._expect("begin_rule")
         source = Source(self._file, self._line)
         body = self._values()

@@ -158,6 +158,7 @@ class _Search:
         return max(self._flows.targets.get(o, 0), *readers)
 
     def _execute(self, run: Run, sign: int) -> None:
+        """Execute a run, or undo it with a ``sign`` of -1."""
         action, times = run
         for o, n in self._flows.uses[action].items():
             self._copies[o] -= sign * n * times

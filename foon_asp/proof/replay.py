@@ -128,6 +128,7 @@ class _Kitchen:
         self._least: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
 
     def run(self, plan: Sequence[FunctionalUnit]) -> Replay:
+        """Execute the units in order up to the first that lacks a copy; then look for the goals."""
         steps: list[Step] = []
         shortage: Shortage | None = None
         for position, unit in enumerate(plan):
@@ -145,6 +146,7 @@ class _Kitchen:
         return Replay(tuple(steps), shortage, remaining, self._least)
 
     def _step(self, position: int, unit: FunctionalUnit) -> Step:
+        """Execute a unit, which lacks nothing; the oldest copies are taken first."""
         preconditions, consumes, adds = self._executions.of(unit)
         gone, stayed, came = list[Copy](), list[Copy](), list[Copy]()
         for node, amount in preconditions.items():
@@ -173,6 +175,7 @@ class _Kitchen:
         return len(self._copies.get(node, ())) >= amount
 
     def _take(self, node: ObjectNode, amount: int, position: int) -> list[Copy]:
+        """Remove and return the oldest copies of a node; of an endless one, nothing is removed."""
         endless = self._endless(node)
         if endless:
             return [endless] * amount

@@ -209,6 +209,7 @@ def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> M
 
 
 def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
+    """Return a limit on the utensils that the units of a tree touch, by label."""
     network, utensils = question.network, question.utensils
     labels = {o: node.label for o, node in enumerate(network.objects) if node.label in utensils}
     touching: dict[str, list[int]] = {label: [] for label in sorted(utensils)}

@@ -155,6 +155,7 @@ class _Servers:
         return self._of[served]
 
     def _candidates(self, node: ObjectNode) -> Iterator[int]:
+        """Yield what may be used in place of a node: nodes of its label, and those of pairs of the table."""
         yield from self._spelled[_bare(node.label)]
         for serving, served in self._table.pairs:
             if served == node.label and isinstance(serving, str):

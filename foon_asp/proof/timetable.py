@@ -162,6 +162,10 @@ class _Run:
         self._states: dict[Tool, frozenset[ObjectNode]] = {}
 
     def fault(self) -> str | None:
+        """Return the first fault of the schedule in words; ``None`` without one.
+
+        Steps that end at a time end before others start at it.
+        """
         events = [(step.end, False, number) for number, step in enumerate(self._steps)]
         events += [(step.start, True, number) for number, step in enumerate(self._steps)]
         for _, starts, number in sorted(events):
@@ -172,6 +176,7 @@ class _Run:
         return None
 
     def _start(self, number: int) -> Iterator[str]:
+        """Start a step; yield each reason why it cannot."""
         unit, step = self._plan[number], self._steps[number]
         hands = _hands(step)
         if len(set(hands)) < len(hands):
@@ -193,6 +198,7 @@ class _Run:
         self._working.update(dict.fromkeys(hands, number))
 
     def _end(self, number: int) -> None:
+        """End a step: what it adds is there, and its tools are free again."""
         unit, step = self._plan[number], self._steps[number]
         needed, consumes, made = self._executions.of(unit)
         for node, amount in needed.items():

@@ -200,6 +200,7 @@ class _OrderSearch:
         self._next[self._previous[step]] = self._previous[self._next[step]] = step
 
     def _shift(self, step: int, sign: int) -> None:
+        """Execute a step that waits, or undo it with a ``sign`` of -1."""
         self._done ^= 1 << step
         _, consumes, adds = self._steps[step]
         for node, _ in _reads(self._steps[step]):

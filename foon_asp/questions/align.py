@@ -196,6 +196,7 @@ def _one_edit_away(node: ObjectNode, network: Network, table: StandInTable, pric
 def _aligned(
     node: ObjectNode, nearest: int | None, recipe: Network, other: Network, table: StandInTable
 ) -> AlignedNode:
+    """Return how a node of a recipe matches the nearest node of another network, if it has any."""
     value = named_node(recipe, node)
     if nearest is None:
         match = Match.NEW if other.object_id(node) is None else Match.IN_NETWORK

@@ -143,6 +143,7 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
             yield from self._parting_lines()
 
     def _optimal_claim(self) -> Iterator[str]:
+        """Yield lines on optimal trees: their number, whether it is proved, and the steps in all of them."""
         rule, by, number = self.conditions, ", then ".join(self.objectives), len(self.trees)
         costs = costs_text(self.trees[0].costs, self.objectives)
         if number == self.unproved:

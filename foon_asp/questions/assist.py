@@ -94,6 +94,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
         return tuple(map(self._tree, self.rows))
 
     def _tree(self, row: AssistedTree) -> Tree | None:
+        """Return the tree of a row; ``None`` where it has none."""
         if row.units is None or row.costs is None:
             return None
         ids = self.problem.network.units_of_numbers(step.id for step in row.units if step.id is not None)
@@ -156,6 +157,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
             before = row.by_person
 
     def _remarks(self) -> Iterator[str]:
+        """Yield lines on whether the wanted success is reached, and on what more help changes."""
         last, greatest = self.rows[-1], self.greatest_success
         if self.reach is not None:
             # the number that was asked for as a decimal where it is a short one
@@ -267,6 +269,7 @@ def _rates(problem: Problem, person: File | Mapping[str, Number] | None) -> dict
 
 
 def _row(problem: Problem, max_helped: int, outcome: Outcome) -> AssistedTree:
+    """Return the best tree with help for up to ``max_helped`` units as a row of the result."""
     units, helped, bound = outcome.units, outcome.problem.own_rates, outcome.bounds.get(Objective.SUCCESS)
     return AssistedTree(
         max_helped,

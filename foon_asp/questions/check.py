@@ -122,6 +122,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         yield from (*self._about_rules(), *self.notes)
 
     def _about_rules(self) -> Iterator[str]:
+        """Yield lines on whether the tree keeps to the rules, and on those that it breaks."""
         if self.breaks is UNSET:
             return
         if self.breaks is None:

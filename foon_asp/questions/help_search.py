@@ -99,6 +99,7 @@ class PricedHelp:
         return Outcome(problem, _SUCCESS, Status.FEASIBLE, units, problem.costs(units), {}, {})
 
     def _at(self, price: Fraction) -> Outcome:
+        """Return the best outcome where help for a unit has this price, computed once."""
         if price not in self._outcomes:
             reporter = (
                 Reporter() if self._outcomes else self._reporter

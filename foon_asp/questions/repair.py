@@ -122,6 +122,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
         yield from self.notes
 
     def _without_repair(self) -> Iterator[str]:
+        """Yield why there is no repair."""
         if self.status is not Status.INFEASIBLE:
             yield "unknown: stopped at a limit before a repair was found"
             return

@@ -163,6 +163,7 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
             yield from self._advice()
 
     def _cells(self, interval: RateInterval) -> tuple[str, ...]:
+        """Return the row of a motion: its rate, the ends of its interval, its name, and the trees beyond."""
         best, ends, beyond = self.answer.units or (), [], []
         for end, limit in ((interval.below, "0"), (interval.above, "1")):
             ends.append((decimal_text(end.at.inwards) if end.at else limit) + "?" * (not end.proved))

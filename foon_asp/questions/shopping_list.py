@@ -151,6 +151,7 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
                 yield "nothing to do"
 
     def _none(self) -> str:
+        """Return why there is no list."""
         if not self.complete:
             return f"unknown: stopped at a limit before any list was found ({self.conditions})"
         if self.offer is Offer.PRICED:
@@ -158,6 +159,7 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         return f"whatever is bought, the constraints leave no tree: proved ({self.conditions})"
 
     def _item_lines(self, item: Item) -> Iterator[str]:
+        """Yield an item with its price, and the steps of the tree that need it."""
         yield f"  {item}" + (f"    {_decimal(item.price)}" if self.offer is Offer.PRICED else "")
         steps = () if self.answer is None else self.answer.units or ()
         consumers = [step for step in steps if any(used.node == item.node for used in step.inputs)]
@@ -176,6 +178,7 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         )
 
     def _price(self, bought: ShoppingList) -> str:
+        """Return the number of items of a list and its price in words."""
         items = counted(len(bought.items), "object node")
         if self.items != "lasting":
             copies = sum(item.copies for item in bought.items if item.copies is not UNSET)

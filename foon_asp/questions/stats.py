@@ -182,6 +182,7 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
             yield f"  ... and {others} more; --format json lists all"
 
     def _table(self) -> Table:
+        """Return the table of figures, with a column for each level."""
         rows: list[Sequence[str] | str] = []
         heading = ""
         for group, name, figure in _ROWS:
@@ -340,6 +341,7 @@ def _explained(
 
 
 def _starting_nodes(network: Network) -> StartingNodes:
+    """Return the starting kitchen of a network: what no unit makes, and what units make too."""
     kitchen = starting_kitchen(network)
     not_made, made_too = (
         nodes_of(network, sorted(nodes)) for nodes in (kitchen.nodes - kitchen.made_too, kitchen.made_too)

@@ -50,6 +50,7 @@ def _counted(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
 
 
 def _lack_text(problem: Problem, units: Sequence[FunctionalUnit], lack: Shortage) -> str:
+    """Return in words which steps compete for the copy that is missing."""
     node, before = lack.node, [position + 1 for position in lack.consumers]
     used = f"{_steps_text(before)} use{'s' if len(before) == 1 else ''} up"
     if lack.step is None:

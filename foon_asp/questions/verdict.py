@@ -92,6 +92,7 @@ def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
 
 
 def _obstacle_text(tree: Tree, obstacle: Obstacle) -> str:
+    """Return in words why a tree does not execute."""
     missing = f"{obstacle.amount} x {obstacle.missing}" if obstacle.amount > 1 else str(obstacle.missing)
     if obstacle.unit is None:
         text = f"every unit runs, but the goal is not made: {missing}"

@@ -164,6 +164,7 @@ class View(Result, frozen=True):
         return self.data.json_dict()
 
     def _trees(self) -> Iterator[tuple[Problem, Iterable[int]]]:
+        """Yield each tree of the page, by unit ids, with the problem that it is a tree of."""
         bought = None if self.shopping_list is None else self.shopping_list.answer
         for answer in (self.answer, self.lasting, self.without_rules, bought):
             if answer is not None:

@@ -279,6 +279,7 @@ class _Reader:
         return tuple(map(self.conjunct, body))
 
     def conjunct(self, node: AST) -> Conjunct:
+        """Return a part of a body: an aggregate, a conditional literal or a literal."""
         if node.ast_type == ASTType.ConditionalLiteral:
             literal = self.literal(node.literal)
             return Conditional(literal, self.conjuncts(node.condition), str(node))
@@ -290,6 +291,7 @@ class _Reader:
         return self.literal(node)
 
     def literal(self, node: AST) -> Literal | Test | Strange:
+        """Return a literal over a predicate, a comparison or a constant; ``Strange`` for anything else."""
         text = str(node)
         if node.ast_type != ASTType.Literal:
             return Strange(text)
@@ -323,6 +325,7 @@ class _Reader:
         )
 
     def _aggregate(self, node: AST) -> Aggregate:
+        """Return an aggregate with its guards on the right of it."""
         atom = node.atom
         guards = []
         if atom.left_guard is not None:

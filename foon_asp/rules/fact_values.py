@@ -169,6 +169,7 @@ class FactValues:
         return None if origin is None else origin.whole_network
 
     def _may_have_beyond(self, name: str, wanted: Mapping[int, Value]) -> bool:
+        """Whether the part of a store that is not in memory may have such a fact."""
         whole = self._whole
         if whole is None or self._has(name, wanted, whole):
             return True

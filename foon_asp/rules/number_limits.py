@@ -79,6 +79,7 @@ def beyond(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
 
 
 def _checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
+    """Yield rules whose head holds where a term is beyond clingo's numbers."""
     for term in _terms(node):
         leaves: dict[str, AST] = {}
         text = " ".join(_postfix(term, leaves))
@@ -96,6 +97,7 @@ def _checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
 
 
 def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
+    """Yield a term in postfix notation; its ``leaves`` are numbered in the order in which they come."""
     if term.ast_type == ASTType.BinaryOperation:
         yield from _postfix(term.left, leaves)
         yield from _postfix(term.right, leaves)

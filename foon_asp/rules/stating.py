@@ -85,6 +85,7 @@ class _Renaming(Transformer):
         return atom.update(symbol=self._symbol(atom.symbol))
 
     def _symbol(self, symbol: AST) -> AST:
+        """Return a symbol in which the predicates that are renamed have their new names."""
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation
             return symbol.update(argument=self._symbol(symbol.argument))
         if symbol.ast_type == ASTType.Pool:

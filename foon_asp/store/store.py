@@ -76,6 +76,7 @@ class Store:
 
     @reporting_damage
     def _read_head(self) -> None:
+        """Read what the store says of itself: its size, whether it has a kitchen and prices, and remarks."""
         about = self.file.about
         self.units, self.objects, self.left_out = (int(about(n)) for n in ("units", "objects", "left_out"))
         self.has_kitchen = bool(about("kitchen"))  # or an empty one

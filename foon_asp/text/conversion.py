@@ -115,6 +115,7 @@ class Converter:
         return self._writer.objects(texts)
 
     def _units(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
+        """Return a network in the other dialect; losses are counted in ``lost``."""
         listed = list(format_.listed_units(text, file, self._reading))
         videos = self._videos(text, format_, listed, lost)
         meant = [unit.with_totals if format_.machine_written else unit.without_repeats for unit in listed]

@@ -44,6 +44,7 @@ def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
 
 
 def _is_foon(file: Path, relative: Path) -> bool:
+    """Whether a file of a folder looks like FOON, by its name and its content; hidden files do not."""
     if any(name[:1] == "." for name in relative.parts) or not file.is_file():
         return False
     if file.name.endswith(NEUTRAL_SUFFIXES):

@@ -65,6 +65,7 @@ class JsonList:
         return Source(self._file, self._line, offset - self._text.rfind("\n", 0, offset))
 
     def _elements(self) -> Iterator[tuple[int, object]]:
+        """Yield each element of the list, or of the list in an object, with its position."""
         start = self._skip(0)
         if self._key is not None and self._text[start : start + 1] == "{":
             yield from self._in_object(start + 1)
@@ -112,6 +113,7 @@ class JsonList:
         return position + 1
 
     def _value(self, position: int) -> tuple[object, int]:
+        """Return the JSON value at a position, and the position after it."""
         try:
             return DECODER.raw_decode(self._text, position)
         except JsonFaultError as fault:
@@ -124,6 +126,7 @@ class JsonList:
         return self._skip(position + 1)
 
     def _expect_end(self, end: int) -> None:
+        """Raise :class:`JsonFaultError` where anything but blanks follows."""
         position = self._skip(end)
         if position != len(self._text):
             raise self._unexpected(
@@ -131,6 +134,7 @@ class JsonList:
             )
 
     def _unexpected(self, expected: str, position: int) -> "JsonFaultError":
+        """Return the error that something else was expected at a position."""
         if position == self._skip(0) and (message := before_json(self._text)):
             return JsonFaultError(message, position)
         text = self._text[position:].split("\n", 1)[0].rstrip("\r")
@@ -163,6 +167,7 @@ def _repeated(key: str, position: int) -> JsonFaultError:
 
 
 def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    """Return an object of JSON; raises :class:`JsonFaultError` for a repeated key."""
     value = dict(pairs)
     if len(value) < len(pairs):
         keys = [key for key, _ in pairs]

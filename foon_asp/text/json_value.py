@@ -27,6 +27,7 @@ def json_text(value: object) -> str:
 
 
 def _laid_out(value: object, newline: str) -> str:
+    """Return a value as JSON, on one line where it fits, else with an element on each line."""
     inner = f"{newline}  "
     if isinstance(value, dict):
         opening, closing = "{}"

@@ -46,6 +46,7 @@ class _LineBuilder(Transformer[Token, object]):
     """A transformer of parse trees into lines and nodes; columns in remarks come from the tokens."""
 
     def object(self, tokens: list[Token]) -> ObjectLine:
+        """Return an object line."""
         remarks: list[Remark] = []
         id_ = _id(tokens[0], remarks)
         label = _name(tokens[1], remarks)
@@ -55,6 +56,7 @@ class _LineBuilder(Transformer[Token, object]):
         return ObjectLine(label, id_, fields, tuple(remarks))
 
     def motion(self, tokens: list[Token]) -> MotionLine:
+        """Return a motion line."""
         remarks: list[Remark] = []
         id_ = _id(tokens[0], remarks)
         motion = _name(tokens[1], remarks)
@@ -78,6 +80,7 @@ class _LineBuilder(Transformer[Token, object]):
         return MotionLine(motion, id_, composite, mended + fields[len(times) :], tuple(remarks))
 
     def plain(self, tokens: list[Token]) -> StateLine:
+        """Return the line of a state, or of a relation or contents whose brackets are missing."""
         remarks: list[Remark] = []
         id_ = _id(tokens[0], remarks)
         _blank_end(tokens, remarks)
@@ -106,6 +109,7 @@ class _LineBuilder(Transformer[Token, object]):
     holding = related
 
     def node(self, parts: list[Token | str | Relation | Contents]) -> ObjectNode:
+        """Return an object node in one-line notation."""
         label, *notes = (token for token in parts if not isinstance(token, Token) or token.type == "NAME")
         return ObjectNode(
             unquoted(str(label)),
@@ -208,6 +212,7 @@ def _tabbed(tokens: list[Token], remarks: list[Remark]) -> tuple[str, Token]:
 
 
 def _name(token: Token, remarks: list[Remark]) -> str:
+    """Return a name without the spaces after it, which are remarked on."""
     name = token.rstrip(" ")
     if name != token:
         remarks.append(_remark(token, "outer-space", f"spaces after {name!r} left out", len(name)))
@@ -240,6 +245,7 @@ def _bracketed(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> St
 
 
 def _related(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
+    """Return the line of a relation; with empty brackets, that of a state."""
     related = bracket[1:-1].strip(" ")
     if not related:
         remarks.append(
@@ -270,6 +276,7 @@ def build(start: str, text: str) -> object:
 
 
 def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
+    """Return the error of Lark in words: what was found at which column, and what is expected."""
     column = len(text) + 1
     names: set[str] = set()
     if isinstance(error, UnexpectedCharacters):

@@ -155,6 +155,7 @@ class _LineError(Exception):
 
 
 def _unit(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[ReadUnit, str]:
+    """Return the unit of a line, and its price as written, which may be empty."""
     try:
         value = DECODER.decode(line)
     except json.JSONDecodeError as problem:

@@ -87,6 +87,7 @@ class Renaming:
         return self.rename.new if (kind, name) == self.rename[:2] else name
 
     def _renamed(self, line: Line) -> Line:
+        """Return a line in which the name is replaced."""
         if isinstance(line, ObjectLine):
             return line._replace(label=self.name(NameKind.OBJECT, line.label))
         if isinstance(line, MotionLine):
@@ -94,6 +95,7 @@ class Renaming:
         return line._replace(attribute=self._attribute(line.attribute), listed=self._items(line.listed))
 
     def _attribute(self, attribute: str | Relation | Contents) -> str | Relation | Contents:
+        """Return a state, relation or contents in which the name is replaced."""
         if isinstance(attribute, str):
             return self.name(NameKind.STATE, attribute)
         word = self.name(NameKind.WORD, attribute.word)

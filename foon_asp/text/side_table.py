@@ -59,6 +59,7 @@ class SideTable(FoonText):
 
 
 def _renamed_row(line: str, table: str, renaming: "Renaming") -> str:
+    """Return the row of a table in which the name is replaced."""
     if line.lstrip()[:1] in {"", "#"}:
         return line
     first, *fields = line.split("\t")

@@ -61,6 +61,7 @@ def stated_name(name: str) -> str | ObjectNode:
 
 
 def _rate(name: str, value: str, column: int) -> tuple[str, Fraction]:
+    """Read a row of success rates."""
     motion = motion_column(name, "a success rate")
     rate = read_decimal(value, column, "a success rate as a decimal such as 0.85")
     if not 0 < rate <= 1:
@@ -69,6 +70,7 @@ def _rate(name: str, value: str, column: int) -> tuple[str, Fraction]:
 
 
 def _duration(name: str, value: str, column: int) -> tuple[str, Duration]:
+    """Read a row of durations."""
     motion = motion_column(name, "a duration")
     written, tab, word = value.partition("\t")
     if tab and word.strip() != "passive":
@@ -77,6 +79,7 @@ def _duration(name: str, value: str, column: int) -> tuple[str, Duration]:
 
 
 def _seconds(written: str, column: int) -> Fraction:
+    """Read a duration, which may have a unit, in seconds."""
     number, _, unit = written.partition(" ")
     unit = unit.strip()
     if unit not in _TIME_UNITS:

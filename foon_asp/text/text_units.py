@@ -282,6 +282,7 @@ class TextUnits:
         return Source(self.file, self._number + index, column)
 
     def _remark(self, line: Line, index: int) -> None:
+        """Report the remarks on a line, with the fix that a rewritten line would be."""
         if line.remarks:
             mended = write_line(line)
             fix = mended if mended != self._lines[index] else None

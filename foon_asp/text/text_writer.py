@@ -69,6 +69,10 @@ class TextWriter:
         return line
 
     def _line(self, line: Line) -> WrittenPart:
+        """Return a line as text, and what is lost in it.
+
+        Raises :class:`CannotHoldError` where the line cannot be read back.
+        """
         written = write_line(self.in_dialect(line))
         if any("\ud800" <= c <= "\udfff" for c in written):
             raise CannotHoldError(f"{written!r} contains half a character")

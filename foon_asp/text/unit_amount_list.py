@@ -14,6 +14,7 @@ _AMOUNT = re.compile(r"[1-9]\d{0,6}", re.ASCII)
 
 
 def _row(name: str, value: str, column: int) -> tuple[UnitAmount, int]:
+    """Read a row of amounts of units."""
     motion = motion_column(name, "an object node")
     *fields, written = value.split("\t")
     written = written.strip()
