@@ -169,8 +169,8 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
 def _is_close(objective: Objective, ours: Costs, theirs: Costs) -> bool:
     """Return whether an engine that computes in floats may not distinguish the costs of two trees.
 
-    It may compute logarithms of rates in millionths, so two millionths for each unit, relative to the costs,
-    are equal. More would hide wrong answers, less would report rounding as a bug.
+    Costs count as equal whose difference, relative to them, is at most two millionths for each unit, since an
+    engine may round logarithms to millionths. More would hide wrong answers, less report rounding as a bug.
     """
     our_cost, their_cost = Fraction(ours.measure(objective)), Fraction(theirs.measure(objective))
     tolerance = 2e-6 * (1 + ours.units + theirs.units)

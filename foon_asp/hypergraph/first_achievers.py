@@ -72,6 +72,7 @@ class FirstAchievers:
 
 
 def _bits(objects: Iterable[int]) -> int:
+    """Return a set of objects as a bit set."""
     bits = 0
     for o in objects:
         bits |= 1 << o

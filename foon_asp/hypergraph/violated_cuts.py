@@ -16,9 +16,10 @@ def disjoint_violated_cuts(
 ) -> Iterator[Cut]:
     """Yield violated cuts with disjoint landmarks and no action of ``used``, until a grown cut is satisfied.
 
-    ``shares`` is an array of the LP value of each action; the values of a cut's landmark actions become 1.
-    Actions of great values are kept out of landmarks first, then cheap ones, by the array ``costs`` times a
-    factor from 0.5 to 1.5 by ``random_number``. A landmark whose values add up to ``satisfied`` is satisfied.
+    ``shares`` is an array of the LP value of each action; those of the landmark actions of a yielded cut are
+    set to 1, so that later cuts are disjoint from it. Actions of great values are kept out of landmarks
+    first, then cheap ones, by the array ``costs`` times a factor from 0.5 to 1.5 by ``random_number``.
+    A landmark whose values add up to ``satisfied`` is satisfied.
     """
     import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 

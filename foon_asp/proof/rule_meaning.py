@@ -63,14 +63,17 @@ class Question(NamedTuple):
 
 
 class Meaning(NamedTuple):
-    """The meaning of a constraint: conditions on the trees that keep to it, all of them together.
+    """The meaning of a constraint: conditions that a tree has to satisfy, all of them together.
 
-    They have no unit of ``removed``. Each of the ``wanted`` lists alternatives, and of one of them a tree has
-    a unit of each set. The amounts of the ``things`` that it uses add up to at most ``max_sum``: a thing is a
-    set of units with an amount from 0, and a tree uses it that has one of the units. Where ``never`` is true,
-    there is no such tree. A tree with all units of one set and none of another has none of the units that
-    ``barred`` returns for the two. Each of the ``limits`` has the amounts of units, from 0, and their
-    greatest sum.
+    Attributes:
+        removed: The tree has none of these units.
+        wanted: Each entry lists alternatives, and of one alternative the tree has a unit of each set.
+        things: Sets of units, each with an amount from 0; the tree uses a thing if it has one of its units.
+        max_sum: The amounts of the things that the tree uses add up to this at most.
+        never: No tree satisfies the constraint.
+        barred: Returns, for two sets of units, the units that a tree with all of the first set and none of
+            the second has not.
+        limits: Each entry has amounts of units, from 0, and the greatest sum of those in the tree.
     """
 
     removed: Units = frozenset()

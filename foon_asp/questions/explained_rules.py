@@ -125,7 +125,7 @@ class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules
     meaning: str
 
     def show(self) -> Iterator[Block]:
-        """Return the effect of each rule, of facts of one predicate the first, and of all rules together."""
+        """Yield the effect of each rule, and of all rules together; of similar facts, only the first."""
         for (alike, _), group in groupby(self.rules, lambda rule: rule.likeness):
             together = list(group)
             shown = [(together[0], len(together) - 1)] if alike else [(rule, 0) for rule in together]

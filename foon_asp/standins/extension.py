@@ -69,7 +69,7 @@ def _extended(network: Network, pairs: Sequence[Pair]) -> Network:
 
 
 class _Nearest:
-    """The stand-ins that a best tree by dissimilarity can have.
+    """Search for the stand-ins that a tree of least dissimilarity can have.
 
     ``available`` has a 1 for each node that can be made without stand-ins, by id.
     """
