@@ -24,7 +24,7 @@ S\tfried
 """
 GOAL = "egg; fried"
 TIMES = "".join(f"{motion}\t9\n" for motion in ("crack", "fry", "twist", "crush"))
-NAMED_BY_NOBODY = "no network is named, so it is "
+NAMED_BY_NOBODY = "No --network: using "
 
 
 @pytest.fixture
