@@ -17,7 +17,7 @@ from foon_asp.results.table import Block, rendered
 if TYPE_CHECKING:
     from rich.console import Console
 
-_SAID = "foon_asp.said"  # in the context of a command: the remarks that it wrote once
+_WRITTEN_ONCE = "foon_asp.written_once"  # in the context of a command: the remarks that it wrote once
 _SIGNS = {"→": "->", "≈": "~", "×": "x", "†": "+"}
 
 
@@ -170,9 +170,11 @@ def say(text: str) -> None:
 def say_once(text: str) -> None:
     """Write a remark to standard error, unless the command wrote the same one before."""
     context = click.get_current_context(silent=True)
-    said: set[str] = set() if context is None else context.find_root().meta.setdefault(_SAID, set())
-    if text not in said:
-        said.add(text)
+    written_remarks: set[str] = (
+        set() if context is None else context.find_root().meta.setdefault(_WRITTEN_ONCE, set())
+    )
+    if text not in written_remarks:
+        written_remarks.add(text)
         say(text)
 
 

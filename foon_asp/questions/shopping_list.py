@@ -310,7 +310,7 @@ def _with_copies(
     limited = replace(problem, kitchen=problem.endless)  # what there is an amount of can be bought, too
     shop, needs = Shop(limited), {*problem.goals, *(o for needs in problem.needs for o in needs)}
     offers = [(Offer.PRICED, dict(priced))] if priced is not None else _for_sale(limited, shop)
-    found, made_of = _Lists([], complete=True), (Offer.FOR_SALE, dict[int, Fraction]())
+    cheapest, made_of = _Lists([], complete=True), (Offer.FOR_SALE, dict[int, Fraction]())
     for made_of in offers:
         wares = {o: price for o, price in made_of[1].items() if o in needs}
         second_choices = frozenset(filter(shop.is_second_choice, wares))
@@ -319,15 +319,15 @@ def _with_copies(
             offered = {o: price for o, price in wares.items() if o not in left_out}  # noqa: B023 (called here)
             return Purchases(problem, offered, second_choices.intersection(offered), objectives)  # noqa: B023
 
-        found = _Shopper(problem, settings, purchases, objectives, wares).lists(max_lists)
-        if found.lists or not found.complete:
+        cheapest = _Shopper(problem, settings, purchases, objectives, wares).lists(max_lists)
+        if cheapest.lists or not cheapest.complete:
             break
-    outcomes = [(listed, listed.outcome) for listed in found.lists if listed.outcome is not None]
+    outcomes = [(listed, listed.outcome) for listed in cheapest.lists if listed.outcome is not None]
     return Shopping(
         **head_of(problem, objectives),
         offer=made_of[0],
         lists=tuple(listed.shown(problem, made_of[1], outcome.costs) for listed, outcome in outcomes),
-        complete=found.complete,
+        complete=cheapest.complete,
         answer=Answer.of(outcomes[0][1], outcomes[0][0].bought) if outcomes else None,
     )
 
