@@ -57,8 +57,8 @@ def test_a_kitchen_with_amounts_is_a_stock(wood: Path, cli: Cli, kitchen: str) -
     assert cli(*words, "33", "--stock", str(stock)).code == 0
     store = wood / "wood.foon"
     assert cli("merge", "--data", str(wood), "--store", str(store)).code == 0
-    words = ("solve", str(store), "--goal", "torch", "--amount")
-    assert (cli(*words, "32").code, cli(*words, "33").code) == (0, 1)
+    of_store = ("solve", str(store), "--goal", "torch", "--amount")
+    assert (cli(*of_store, "32").code, cli(*of_store, "33").code) == (0, 1)
 
 
 @pytest.mark.parametrize("goals", GOALS)
