@@ -156,6 +156,8 @@ def test_a_plan_is_replayed_traced_and_scheduled_copy_by_copy() -> None:
     durations = {"saw": 10, "craft": 10, "light": 10}
     found = foon_asp.schedule(problem, plan, durations=durations, agents=2)
     assert found.makespan == 30
+    assert "light (4 x torch)" in found.text()
+    assert [step.amount for step in found.timetable] == [4, 4, 4, 4]
 
 
 def test_planners_get_numbers_and_no_merged_copies(tmp_path: Path) -> None:
