@@ -40,7 +40,7 @@ _DATA_OPTIONS = (
         "--kitchen",
         type=_PATH,
         metavar="FILE",
-        help="Available object nodes, and how many: JSON, or FOON objects.",
+        help="What is available, and how many: JSON, or FOON objects.",
     ),
     click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
     click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),
