@@ -64,7 +64,7 @@ def test_a_tree_of_the_bundled_kitchen_is_about_that(cli: Cli, eggs: Path) -> No
     tree.write_text(EGGS + ice)
     mixed = cli("check", tree, "--goal", "ice")
     assert mixed.code == 1
-    said = "it is the bundled kitchen, which has 2 of 4 units; another one is named with --network"
+    said = "no --network: using the bundled kitchen, which has 2 of 4 units"
     assert said in mixed.err
     tree.write_text("".join(ice.partition("//\n")[:2]) + EGGS)  # one of three
     assert cli("check", tree, "--goal", GOAL).out == cli("check", tree, tree, "--goal", GOAL).out
