@@ -21,8 +21,6 @@ class BatchQuestion(Value, frozen=True):
 
     Attributes:
         goal: A goal, or several that one tree makes.
-        amount: How many copies of the goal are wanted, or of each of several goals in their order; null for
-            the amounts of the goals file.
         objective: A list by commas of which the first counts most.
         items: Whether items last, or are used up; by default they are used up where amounts of goals are
             stated, and last elsewhere.
@@ -30,10 +28,11 @@ class BatchQuestion(Value, frozen=True):
         stock: Where items are used up: a file of what is in stock.
         stays: Where items are used up: a file of what stays.
         time_limit: In seconds.
+        amount: How many copies of the goal are wanted, or of each of several goals in their order; null for
+            the amounts of the goals file.
     """
 
     goal: Goals
-    amount: Amounts | None = None
     objective: Name = "units"
     containers: ContainerRule = DEFAULT_RULE
     items: Name | None = None
@@ -41,6 +40,7 @@ class BatchQuestion(Value, frozen=True):
     stock: Name | None = None
     stays: Name | None = None
     time_limit: Seconds | None = None
+    amount: Amounts | None = None
 
     @property
     def goals(self) -> tuple[str, ...]:

@@ -57,7 +57,7 @@ class BatchData:
 
     def items(self, question: BatchQuestion) -> str:
         """Return whether items last, or are used up, as they are where the goals file has amounts."""
-        dataset = self._dataset_with_kitchen(question.kitchen)
+        dataset = self._datasets[None]  # all kitchens have the same goals
         if not dataset.wanted:
             return ITEMS[0]
         try:

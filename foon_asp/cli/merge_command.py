@@ -52,7 +52,8 @@ def command(
     \b
     # From:→recipes/salad.txt:12→https://example.org/salad.mp4
 
-    with the file, the line, and the videos that the file names. Merging again keeps these places, and every
+    with the file, the line, and the videos that the file names, and an amount that is not one is in a line
+    "# Amount:" under its object. Merging again keeps these places, and every
     answer on the merged network shows them. In a folder, the networks are FOON.txt, or else all *.txt and
     *.json except kitchen, goals and tables; a warning names lists of objects with other names.
 
@@ -74,7 +75,7 @@ def command(
         raise UserError("name the networks to merge, or a folder of data with --data")
     if store is not None and (output is not None or report):
         raise UserError("--store writes a store: leave out -o and --report")
-    if store is None and any(table for name, table in tables.items() if name != "unit_prices"):
+    if store is None and any(tables[name] for name in tables.keys() - {"unit_prices", "unit_amounts"}):
         raise UserError("kitchen, rates, utensils and goals are kept in a store only: name one with --store")
     files = find_data(folder, named, **tables)
     with bytes_bar("merging", files.network):

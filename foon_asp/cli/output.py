@@ -85,7 +85,6 @@ class SafeStream:
 
     @contextlib.contextmanager
     def _faults(self) -> Iterator[None]:
-        """Raise :class:`UserError` where standard output cannot be written; remarks are lost silently."""
         try:
             yield
         except BrokenPipeError:
@@ -171,11 +170,11 @@ def say(text: str) -> None:
 def say_once(text: str) -> None:
     """Write a remark to standard error, unless the command wrote the same one before."""
     context = click.get_current_context(silent=True)
-    written: set[str] = (
+    written_remarks: set[str] = (
         set() if context is None else context.find_root().meta.setdefault(_WRITTEN_ONCE, set())
     )
-    if text not in written:
-        written.add(text)
+    if text not in written_remarks:
+        written_remarks.add(text)
         say(text)
 
 

@@ -37,7 +37,10 @@ _DATA_OPTIONS = (
         help="FOON text or JSON, repeatable; or a single store.",
     ),
     click.option(
-        "--kitchen", type=_PATH, metavar="FILE", help="Available object nodes: JSON, or FOON objects."
+        "--kitchen",
+        type=_PATH,
+        metavar="FILE",
+        help="What is available, and how many: JSON, or FOON objects.",
     ),
     click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
     click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
-from typing import Protocol
+from typing import Any, Protocol
 
 from foon_asp.errors import UserError
 from foon_asp.network import MAX_AMOUNT, FunctionalUnit, Network, ObjectNode, UnitPrices, node_at_level
@@ -58,10 +58,7 @@ def node_ids(dataset: Named, names: Names, what: str) -> list[int]:
 
 
 def stated_copies(
-    dataset: Named,
-    amounts: Mapping[str | ObjectNode, int | None] | Mapping[ObjectNode, int],
-    what: str,
-    least: int = 1,
+    dataset: Named, amounts: Mapping[Any, int | None], what: str, least: int = 1
 ) -> dict[ObjectNode, int]:
     """Return amounts by object node, from amounts by name; ``None`` is none stated.
 

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 from foon_asp.linting.context import Context
 from foon_asp.linting.names import is_of_another_network
-from foon_asp.linting.rule import NOTE, WARNING, rule
+from foon_asp.linting.rule import ERROR, NOTE, WARNING, rule
 from foon_asp.linting.sheet import Sheet
-from foon_asp.network import Network
+from foon_asp.network import Network, NodePattern
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import ObjectLine
 
@@ -23,7 +23,7 @@ def unmade_goal(context: Context) -> Iterator[Diagnostic]:
             yield from _tagged(sheet, context)
     for sheet in _lists(context, of_goals=True):
         yield from _unknown(sheet, context.network)
-        for pattern, index in sheet.entries or ():
+        for pattern, index, _ in sheet.entries or ():
             nodes = context.network.find(pattern)
             if nodes and context.made.isdisjoint(nodes):
                 message = f"{str(pattern)!r} is a goal, and no unit makes it"
@@ -39,6 +39,20 @@ def unknown_item(context: Context) -> Iterator[Diagnostic]:
     """
     for sheet in _lists(context, of_goals=False):
         yield from _unknown(sheet, context.network)
+
+
+@rule("amount", ERROR, "an amount that is no number from 1 to 1,000,000, or a second one")
+def amount(context: Context) -> Iterator[Diagnostic]:
+    """A line `# Amount:`, a tab and a number is under an object line, once, and says how many there are.
+
+    An object that a kitchen or a list of goals has several times has the same amount each time, or none.
+    """
+    yield from context.remarks.get("amount", [])
+    for sheet in context.sheets:
+        first_amounts: dict[NodePattern, int | None] = {}
+        for pattern, index, stated in sheet.entries or ():
+            if first_amounts.setdefault(pattern, stated) != stated:
+                yield sheet.finding(f"a second amount of {str(pattern)!r}", index, pattern.label)
 
 
 def _lists(context: Context, of_goals: bool) -> Iterator[Sheet]:
@@ -71,14 +85,14 @@ def _unknown(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
     entries = sheet.entries or ()
     unknown = [entry for entry in entries if not network.find(entry.pattern)]
     if is_of_another_network(len(unknown), len(entries)):
-        pattern, index = unknown[0]
+        pattern, index, _ = unknown[0]
         message = (
             f"{len(unknown)} of the {len(entries)} entries are no object nodes of the network, "
             f"{str(pattern)!r} first; is the list for another network?"
         )
         yield sheet.finding(message, index, pattern.label)
         return
-    for pattern, index in unknown:
+    for pattern, index, _ in unknown:
         message = f"{str(pattern)!r} is no object node of the network; {_alike(pattern.label, network)}"
         yield sheet.finding(message, index, pattern.label)
 

@@ -85,7 +85,7 @@ class LintedFiles:
         self.sheets.append(sheet)
         if format_.lists_objects(text):
             sheet.entries = [
-                Entry(NodePattern.of(block.node), block.source.line - 1)
+                Entry(NodePattern.of(block.node), block.source.line - 1, block.amount)
                 for block in self.reader.object_blocks(text, str(file))
             ]
         elif "# From:" in text:  # units of a merged file name the places that they come from
@@ -122,7 +122,7 @@ class LintedFiles:
             self.remarks += [
                 Diagnostic(Severity.WARNING, "json-value", message, block.source) for message in unknown
             ]
-            sheet.entries.append(Entry(pattern, len(lines)))
+            sheet.entries.append(Entry(pattern, len(lines), block.amount))
             container = [] if pattern.container is None else [f"S\tin\t[{pattern.container}]"]
             write(block.lines, block.source, *container)
         self.remarks += elements.errors

@@ -23,10 +23,11 @@ _QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)("?)')
 
 
 class Entry(NamedTuple):
-    """An entry of a kitchen or of a list of goals, and the index of its object line."""
+    """An entry of a kitchen or of a list of goals, the index of its object line, and its amount."""
 
     pattern: NodePattern
     at: int
+    amount: int | None
 
 
 class WrittenLine(NamedTuple):

@@ -1,16 +1,18 @@
 """The tables beside a network: rates, utensils, durations, tools, prices."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from foon_asp.linting.context import Context
 from foon_asp.linting.names import Kind, is_of_another_network
 from foon_asp.linting.rule import ERROR, WARNING, rule
 from foon_asp.linting.sheet import Sheet
-from foon_asp.network import counted
+from foon_asp.network import NO_AMOUNTS, counted
 from foon_asp.network.spelling import near_labels
 from foon_asp.text.diagnostics import Diagnostic, InputError
 from foon_asp.text.side_table import TABLES
+from foon_asp.text.stated_amounts import with_table
+from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 
 _RATES = "motion.txt"
 
@@ -35,8 +37,9 @@ def _faults(sheet: Sheet) -> Iterator[Diagnostic]:
 def unknown_row(context: Context) -> Iterator[Diagnostic]:
     """The name is probably misspelt, in the table or in a network.
 
-    The tables are those of rates, durations, prices, utensils and tools. Utensils that the vocabulary has are
-    not reported.
+    The tables are those of rates, durations, prices, amounts, utensils and tools. A row of amounts is also
+    reported where no unit of the motion takes, or makes, the node. Utensils that the vocabulary has are not
+    reported.
     """
     for sheet in context.files.tables if len(context.network) else ():
         kind = TABLES[Path(sheet.file).name].names
@@ -51,10 +54,28 @@ def unknown_row(context: Context) -> Iterator[Diagnostic]:
             )
             yield sheet.finding(message, rows[unknown[0]])
             continue
+        if Path(sheet.file).name == "unit_amounts.txt":
+            yield from _without_unit(sheet, context, set(unknown))
         for name in unknown:
             similar_names = near_labels(name, network_names, 1)
             hint = f"; is it {similar_names[0]!r}?" if similar_names else ""
             yield sheet.finding(f"{name!r} is no {kind} of the network{hint}", rows[name])
+
+
+def _without_unit(sheet: Sheet, context: Context, unknown: Collection[str]) -> Iterator[Diagnostic]:
+    """Yield a finding for each amount that no unit of a known motion takes, or makes."""
+    if _any_fault(sheet):
+        return
+    rows = UNIT_AMOUNTS.rows(Path(sheet.file), "\n".join(sheet.lines))
+    units = map(context.network.unit, range(len(context.network)))
+    for finding in with_table(NO_AMOUNTS, rows, units)[1]:
+        index = finding.source.line - 1
+        if sheet.lines[index].partition("\t")[0].strip() not in unknown:
+            yield sheet.finding(finding.message, index)
+
+
+def _any_fault(sheet: Sheet) -> bool:
+    return next(_faults(sheet), None) is not None
 
 
 @rule("missing-rate", WARNING, "motions of the network without a success rate")

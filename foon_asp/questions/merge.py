@@ -14,7 +14,7 @@ from foon_asp.questions.result import Result
 from foon_asp.results.document import Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values_of import differences_of, listed_unit
-from foon_asp.text.data_folder import DataFiles, find_data, unit_amounts
+from foon_asp.text.data_folder import DataFiles, amounts_of_units, find_data
 from foon_asp.text.diagnostics import summarize
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.merged_network import merged_text
@@ -111,7 +111,12 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
 
 @typed
 def merge(
-    paths: Files, *, store: File | None = None, unit_prices: File | None = None, lenient: bool = False
+    paths: Files,
+    *,
+    store: File | None = None,
+    unit_prices: File | None = None,
+    unit_amounts: File | None = None,
+    lenient: bool = False,
 ) -> Merged:
     """Merge FOONs into a universal FOON, with every distinct functional unit once.
 
@@ -122,13 +127,16 @@ def merge(
         store: The store to write, for networks too large to read for each question. Of a single folder, it
             also keeps the kitchen, rates, utensils, goals and prices.
         unit_prices: The file with the prices of units, used when copies of a unit have different ones.
+        unit_amounts: The file that says how many of an object node units take and make; it precedes what
+            the networks state.
         lenient: Whether lines that are not understood are skipped instead of being errors.
 
     Returns:
         The network, or the store that was written, with counts.
 
     Raises:
-        UserError: for a file that cannot be read or written, and copies of a unit with different prices.
+        UserError: for a file that cannot be read or written, and copies of a unit with different prices or
+            amounts.
 
     Example:
         >>> merged = foon_asp.merge(["data/kitchen/FOON.txt", "data/starter/FOON.txt"])
@@ -139,8 +147,8 @@ def merge(
     if not named:
         raise UserError("name the networks to merge")
     folder = named[0] if isinstance(paths, str | PathLike) and named[0].is_dir() else None
-    prices = None if unit_prices is None else as_path(unit_prices)
-    data_files = find_data(folder, () if folder else named, unit_prices=prices)
+    prices, table = (None if file is None else as_path(file) for file in (unit_prices, unit_amounts))
+    data_files = find_data(folder, () if folder else named, unit_prices=prices, unit_amounts=table)
     return merge_files(data_files, None if store is None else as_path(store), lenient)
 
 
@@ -172,7 +180,7 @@ def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Mer
     network = builder.build()
     if not len(network):
         raise UserError("there is no functional unit in these files")
-    amounts = unit_amounts(reader.amounts, data_files.unit_amounts, network, reader.diagnostics)
+    amounts = amounts_of_units(reader.amounts, data_files.unit_amounts, network, reader.diagnostics)
     if amounts.conflict:
         raise UserError(amounts.conflict)
     merged = Merged(

@@ -6,13 +6,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Unpack
 
-from msgspec import field
+from msgspec import UNSET, field
 
 from foon_asp.asp import Status
 from foon_asp.dataset.paths import File
 from foon_asp.errors import BugError, UserError
 from foon_asp.escapes import escaped
-from foon_asp.network import FunctionalUnit, counted
+from foon_asp.network import ALL_ONE, FunctionalUnit, counted
 from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
 from foon_asp.planning.scheduling import BestSchedule, shortest, timed_steps
@@ -340,9 +340,11 @@ def schedule(
 
 def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, ...]]) -> Iterator[TimedStep]:
     """Yield the steps of a schedule as values."""
+    problem = tree.problem
     for number, (unit, step, earlier) in enumerate(zip(tree.units, timed, after, strict=False), 1):
         named = tree.step_unit(number)
         made = [node for node in unit.outputs if node not in unit.inputs] or unit.outputs
+        amounts = ALL_ONE if problem.items is None else problem.amounts.get(unit, ALL_ONE)
         yield TimedStep(
             number,
             named.id,
@@ -354,6 +356,7 @@ def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, 
             step.agent,
             tuple(Tool(str(tool.name), tool.number) for tool in step.tools),
             earlier,
+            amounts.outputs.get(made[0], UNSET) if made else UNSET,
         )
 
 

@@ -29,6 +29,7 @@ def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
             "if items lasted, every goal could be made: each plan would use up more than there is, or break "
             "a constraint"
         )
+        yield "foon-asp shopping-list says how many copies of what to buy"
         return
     if all(available[goal] for goal in problem.goals):
         yield "without the constraints there is one: together they rule out every tree"

@@ -2,6 +2,8 @@
 
 from fractions import Fraction
 
+from msgspec import UNSET, UnsetType
+
 from foon_asp.results.values import NumberedStep, Value
 
 
@@ -32,6 +34,7 @@ class TimedStep(NumberedStep, frozen=True):
         agent: From 1; null where nobody has to stand by.
         tools: Those that it alone uses at the time, in the order of the unit's objects.
         after: The steps that have to be done before, as it takes what they make, or uses up what they need.
+        amount: How many copies of the product it makes, where items are used up and that is not one.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -46,8 +49,10 @@ class TimedStep(NumberedStep, frozen=True):
     agent: int | None
     tools: tuple[Tool, ...]
     after: tuple[int, ...]
+    amount: int | UnsetType = UNSET
 
     @property
     def name(self) -> str:
         """The motion, and what it is done to."""
-        return f"{self.motion} ({self.product})" if self.product else self.motion
+        product = self.product if self.amount is UNSET else f"{self.amount} x {self.product}"
+        return f"{self.motion} ({product})" if product else self.motion

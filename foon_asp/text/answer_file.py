@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source
+from foon_asp.network import Amounts, FunctionalUnit, Network, ObjectNode, Source
 from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import Json, read_json, schema_name
 from foon_asp.text.plain_file import read_plain_text
@@ -27,7 +27,8 @@ class ListedTree(NamedTuple):
     ``goals``, ``status``, and the words for ``containers`` and ``items`` are those of an answer, empty for
     other files; ``wanted`` has the goals of which it wants several copies. ``numbers`` are the ids of the
     atoms ``use(U)`` of clingo, in place of units.
-    ``is_tree`` is false for FOON that does not say that it is a task tree, and may be a network.
+    ``is_tree`` is false for FOON that does not say that it is a task tree, and may be a network; ``amounts``
+    are those of its units.
     """
 
     units: tuple[tuple[FunctionalUnit, Source], ...] | None
@@ -38,6 +39,7 @@ class ListedTree(NamedTuple):
     items: str = ""
     numbers: tuple[int, ...] = ()
     is_tree: bool = True
+    amounts: Amounts = MappingProxyType({})
 
     def with_units(self, file: Path, network: Callable[[], Network]) -> "ListedTree":
         """Return the tree with the units that its ``numbers`` stand for, in the whole network.
@@ -74,7 +76,8 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
         return ListedTree((), numbers=numbers)
     if document is None:
         is_tree = _TREE_COMMENT in text.partition("//")[0]
-        return ListedTree(tuple(reader.tree_units(text, str(file))), is_tree=is_tree)
+        listed = tuple(reader.tree_units(text, str(file)))
+        return ListedTree(listed, is_tree=is_tree, amounts=reader.amounts.settled().units)
     try:
         answer = _with_tree(document)
         steps = answer["units"]

@@ -205,7 +205,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         warnings += (
             unit_price_warning(*entry) for entry in listed.sources.items() if whole.unit_id(entry[0]) is None
         )
-    amounts = unit_amounts(reader.amounts, files.unit_amounts, whole, warnings)
+    amounts = amounts_of_units(reader.amounts, files.unit_amounts, whole, warnings)
     return Data(
         network,
         frozenset(kitchen),
@@ -255,7 +255,7 @@ def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrice
     return UnitPrices(listed.motions if listed else {}, settled | chosen) if listed or settled else None
 
 
-def unit_amounts(
+def amounts_of_units(
     stated: StatedAmounts, file: Path | None, network: Network, warnings: list[Diagnostic]
 ) -> DataAmounts:
     """Return the amounts of a table and those that networks state of their units; the table takes precedence.

@@ -79,10 +79,12 @@ class FoonReader(Reading):
             InputError: with all errors of the text.
         """
         earlier = len(self.diagnostics)
-        units = [
-            (FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs), unit.source)
-            for unit in self.units(text, file)
-        ]
+        units = []
+        for motion, inputs, outputs, sources, amounts in self.units(text, file):
+            unit = FunctionalUnit.of(motion, inputs, outputs)
+            units.append((unit, sources[0]))
+            if amounts:
+                self.amounts.add(unit, amounts, sources[0])
         self.raise_errors(earlier)
         return units
 

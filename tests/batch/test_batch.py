@@ -151,6 +151,9 @@ class Misbehaving:
     def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
         return ()
 
+    def items(self, asked: BatchQuestion) -> str:
+        return "lasting"
+
     def problem(self, asked: BatchQuestion) -> Problem:
         (name,) = asked.goals
         if name == "die":
@@ -335,6 +338,9 @@ class Deadly:
 
     def named(self, *_: object) -> Sequence[str]:
         return ()
+
+    def items(self, _: BatchQuestion) -> str:
+        return "lasting"
 
     def problem(self, asked: BatchQuestion) -> Problem:
         (goal,) = asked.goals

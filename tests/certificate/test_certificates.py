@@ -224,7 +224,7 @@ def test_certify_a_given_tree(cli: Cli, tmp_path: Path) -> None:
     tree.write_text("//\nO\tnothing\nM\tlook\nO\tsomething\n//\n")
     foreign = cli(*words)  # none of its units is in the bundled kitchen, so it is its own network
     assert foreign.code == 2
-    assert "no network is named" in foreign.err
+    assert "No --network: using" in foreign.err
     assert "add --certificate" in cli("check", tree, "--objective", "success").err
 
 

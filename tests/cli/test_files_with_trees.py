@@ -24,7 +24,7 @@ S\tfried
 """
 GOAL = "egg; fried"
 TIMES = "".join(f"{motion}\t9\n" for motion in ("crack", "fry", "twist", "crush"))
-NAMED_BY_NOBODY = "no network is named, so it is "
+NAMED_BY_NOBODY = "No --network: using "
 
 
 @pytest.fixture
@@ -64,7 +64,7 @@ def test_a_tree_of_the_bundled_kitchen_is_about_that(cli: Cli, eggs: Path) -> No
     tree.write_text(EGGS + ice)
     mixed = cli("check", tree, "--goal", "ice")
     assert mixed.code == 1
-    said = "it is the bundled kitchen, which has 2 of 4 units; another one is named with --network"
+    said = "no --network: using the bundled kitchen, which has 2 of 4 units"
     assert said in mixed.err
     tree.write_text("".join(ice.partition("//\n")[:2]) + EGGS)  # one of three
     assert cli("check", tree, "--goal", GOAL).out == cli("check", tree, tree, "--goal", GOAL).out
@@ -90,3 +90,12 @@ def test_an_answer_about_other_data_says_what_to_name(cli: Cli, eggs: Path) -> N
         assert "e.json: not of the bundled kitchen; name the data with --network: eggs.txt" in refused.err
         assert cli(*words, "--network", eggs).code == 0
     assert cli("diff", "e.json", eggs).code == 0
+
+
+def test_warnings_of_a_file_that_is_tree_and_data_are_printed_once(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "eggs.txt"
+    file.write_text("O\tegg\nM\tcrack\nO\tegg\nS\tcracked\n//\nO\tmilk\nM\tspill\n//\n", encoding="utf-8")
+    for words in (("check", str(file)), ("check", str(file), "--network", str(file)), ("trace", str(file))):
+        ran = cli(*words)
+        assert ran.err.count("the unit 'spill' has no output objects") == 1
+        assert ran.err.count("No --goal") == 1

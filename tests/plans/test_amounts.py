@@ -143,6 +143,12 @@ def test_a_plan_is_replayed_traced_and_scheduled_copy_by_copy() -> None:
         "torch": 8,
     }
     assert len(traced.executed[0].came) == 4
+    assert "     + 4 x plank" in traced.text().splitlines()
+    kitchen = "O\tcoal\nO\tlog\n" if traced.kitchen_text(1)[2] == "c" else "O\tlog\nO\tcoal\n"
+    assert traced.kitchen_text(1) == f"{kitchen}O\tplank\n# Amount:\t4\n"
+    again = foon_asp.trace(problem, plan, failed=4).answer
+    assert again is not None
+    assert [goal.wanted for goal in again.goals] == [8]
     assert foon_asp.check(problem, plan).executes
     fewer = foon_asp.check(problem, list(plan)[1:])
     assert not fewer.executes
@@ -150,6 +156,8 @@ def test_a_plan_is_replayed_traced_and_scheduled_copy_by_copy() -> None:
     durations = {"saw": 10, "craft": 10, "light": 10}
     found = foon_asp.schedule(problem, plan, durations=durations, agents=2)
     assert found.makespan == 30
+    assert "light (4 x torch)" in found.text()
+    assert [step.amount for step in found.timetable] == [4, 4, 4, 4]
 
 
 def test_planners_get_numbers_and_no_merged_copies(tmp_path: Path) -> None:
@@ -173,7 +181,7 @@ def test_amounts_of_goals_are_one_for_each_goal_and_count_copies() -> None:
         foon.problem("torch", amounts=0)
     with pytest.raises(foon_asp.UserError, match="leave --items lasting out"):
         foon.problem("torch", items="lasting", amounts=2)
-    assert foon.problem("torch", amounts=1).items is None
+    assert foon.problem("torch", amounts=1).items is not None
     both = foon_asp.solve(foon.problem("torch", "stick", amounts=[4, 4]))
     assert both.costs is not None
     assert both.costs.units == 4

@@ -194,6 +194,18 @@ def test_an_item_that_is_made_is_not_taken() -> None:
     assert "  -1 kitchen    dough\n" in found.text()
 
 
+def test_many_goals_of_one_tree_are_not_solved_one_by_one() -> None:
+    units = [("cut", ["loaf"], [f"slice {n}"]) for n in range(9)]
+    foon = foon_asp.build(units, kitchen="loaf")
+    few, many = (foon_asp.solve(foon.problem(*(f"slice {n}" for n in range(last)))) for last in (8, 9))
+    assert isinstance(few.goals_alone, tuple)
+    assert (len(few.goals_alone), few.sum_of_goals_alone) == (8, 8)
+    assert many.goals_alone is UNSET
+    assert isinstance(many.serves, tuple)
+    assert len(many.serves) == 9
+    assert "0 units shared; what each goal costs by itself: --all-goals" in many.text()
+
+
 @pytest.mark.parametrize("rule", RULES)
 def test_several_goals_have_the_joint_optimum_beside_the_single_ones(rule: ContainerRule) -> None:
     shared = 0

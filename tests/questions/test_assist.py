@@ -297,3 +297,17 @@ def test_a_rule_that_would_see_units_twice_is_refused(cli: Cli) -> None:
     assert ran.code == 2
     assert "error: rule 2:1: this rule looks at units that the tree need not have" in ran.err
     assert "it would see those twice that a person does better" in ran.err
+
+
+@pytest.mark.parametrize(
+    "numbered",
+    [":- use(78).", ":- not use(78).", ":- use(U), U < 30.", ":- motion(78,M), use(U), motion(U,M)."],
+)
+def test_a_rule_that_names_a_unit_by_number_is_refused_beside_one_about_who_does_it(
+    cli: Cli, numbered: str
+) -> None:
+    """What a person does has another number there, so the rule would not be kept to."""
+    asked = ["assist", "--goal", "macaroni", "--assist", 1, "--rule", numbered]
+    assert cli(*asked).code in {0, 1}
+    ran = cli(*asked, "--rule", ":- use(U), rate(U,N), N < 300000.")
+    assert (ran.code, "names a unit by its number" in ran.err) == (2, True)

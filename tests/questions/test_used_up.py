@@ -107,7 +107,7 @@ def test_a_stock_is_a_table_or_a_list_of_copies(tmp_path: Path) -> None:
         (3, {"items": "mine"}, "found the items 'mine'"),
         (3, {"stock": {"ice; crushed; in [drinking glass]": 1}}, "which the kitchen does not have"),
         (3, {"stays": {"unicorn": True}}, "no object node of the network has the label 'unicorn'"),
-        (3, {"stock": {"knife; clean": -1}}, "found the stock -1"),
+        (3, {"stock": {"knife; clean": -1}}, "found the amount -1"),
         (2, {}, "at level 3 only"),
     ],
 )

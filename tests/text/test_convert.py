@@ -460,7 +460,8 @@ def test_text_to_text_keeps_the_network_its_comments_and_blank_lines(text: str) 
 
 def patterns(text: str, file: Path) -> list[object]:
     file.write_text(text, newline="")
-    return [(p.label, p.states, p.ingredients, p.container, p.relations) for p, _ in read_object_list(file)]
+    entries = read_object_list(file)
+    return [(p.label, p.states, p.ingredients, p.container, p.relations, n) for p, _, n in entries]
 
 
 @settings(steady, max_examples=50)

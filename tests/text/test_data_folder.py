@@ -136,7 +136,7 @@ def test_a_folder_without_networks_is_an_error(folder: Path) -> None:
 def test_no_network_at_all_is_an_error(tmp_path: Path) -> None:
     kitchen = tmp_path / "mine.txt"
     kitchen.write_text("O\tice\n")
-    with pytest.raises(UserError, match="no network is given"):
+    with pytest.raises(UserError, match="no network: name a recipe"):
         find_data(tmp_path, kitchen=kitchen)
 
 

@@ -230,7 +230,7 @@ def test_what_an_object_says(tmp_path: Path, value: str, written: str) -> None:
 
 
 OBJECT_KEYS = (
-    "container, has_portions, ingredients, label, object_id, object_in_motion, object_label, "
+    "amount, container, has_portions, ingredients, label, object_id, object_in_motion, object_label, "
     "object_states, recipe_category, states"
 )
 

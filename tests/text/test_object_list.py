@@ -234,13 +234,13 @@ def test_a_line_that_begins_with_no_letter_says_what_to_write(tmp_path: Path, li
 )
 def test_a_state_says_the_same_in_json_and_in_foon_text(tmp_path: Path, state: str, line: str) -> None:
     (by_json,) = patterns(tmp_path, {"label": "a", "states": [state]})
-    ((by_text, _),), _ = blocks(tmp_path, f"O\ta\n{line}\n")
+    ((by_text, *_),), _ = blocks(tmp_path, f"O\ta\n{line}\n")
     assert by_json == by_text
 
 
 def test_contents_in_a_text_are_by_word_and_those_of_json_are_not(tmp_path: Path) -> None:
     coated = ObjectNode.of("pan", [], [], [("coated", ["oil"])])
-    ((pattern, _),), _ = blocks(tmp_path, "O\tpan\nS\tcontains\t{oil}\n")
+    ((pattern, *_),), _ = blocks(tmp_path, "O\tpan\nS\tcontains\t{oil}\n")
     assert not pattern.matches(coated)
     assert patterns(tmp_path, {"label": "pan", "ingredients": ["oil"]})[0].matches(coated)
 

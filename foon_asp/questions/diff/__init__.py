@@ -4,13 +4,14 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from os import PathLike
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple, Unpack
 
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon, load
-from foon_asp.network import LEVELS, Network, NetworkBuilder, ObjectNode
+from foon_asp.network import LEVELS, Amounts, Network, NetworkBuilder, ObjectNode
 from foon_asp.problem import DEFAULT_RULE, Problem
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.common_options import Posed, begin
@@ -29,10 +30,11 @@ from foon_asp.text.plain_file import is_store
 
 
 class Named(NamedTuple):
-    """A task tree or a network, and the file that it was read from."""
+    """A task tree or a network, the file that it was read from, and the amounts of a network."""
 
     name: str
     read: Tree | Network
+    amounts: Amounts = MappingProxyType({})
 
 
 _Comparable = Answer | Tree | Foon | File | Named
@@ -54,7 +56,7 @@ def _of_files(
     data: Callable[[Mapping[Path, ListedTree]], Dataset],
 ) -> tuple[Named, Named]:
     """Read two files as trees, with the data that these are about, or as networks."""
-    read: dict[Path, ListedTree | Tree | Network] = {file: _read(file) for file in dict.fromkeys(files)}
+    read: dict[Path, ListedTree | Tree | Foon] = {file: _read(file) for file in dict.fromkeys(files)}
     listed = {file: content for file, content in read.items() if isinstance(content, ListedTree)}
     if goals or any(tree.is_tree for tree in listed.values()):
         dataset = data(listed)
@@ -63,7 +65,7 @@ def _of_files(
             read[file] = listed_tree(
                 dataset, file, tree, goals, containers or tree.containers or DEFAULT_RULE.value
             )
-    a, b = (Named(str(file), _network(read[file])) for file in files)
+    a, b = (_named_network(str(file), read[file]) for file in files)
     return a, b
 
 
@@ -74,28 +76,30 @@ def _data_of(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
     return load(network_files, level=level).dataset if network_files else kitchen.dataset
 
 
-def _read(file: Path) -> ListedTree | Network:
-    """Read a file as a list of units in order, and a folder or a store as a network."""
-    return load(file).network if file.is_dir() or is_store(file) else read_answer(file)
+def _read(file: Path) -> ListedTree | Foon:
+    """Read a file as a list of units in order, and a folder or a store as data."""
+    return load(file) if file.is_dir() or is_store(file) else read_answer(file)
 
 
-def _network(read: ListedTree | Tree | Network) -> Tree | Network:
-    """Return the network of a list of units; other values unchanged."""
-    if not isinstance(read, ListedTree):
-        return read
+def _named_network(name: str, read: ListedTree | Tree | Foon) -> Named:
+    """Return data, or a list of units, as a network with its name; a tree stays one."""
+    if isinstance(read, Tree):
+        return Named(name, read)
+    if isinstance(read, Foon):
+        return Named(name, read.network.detailed or read.network, read.dataset.source.amounts.units)
     builder = NetworkBuilder()
     for unit, source in read.units or ():
         builder.add(unit.motion, unit.inputs, unit.outputs, source)
-    return builder.build()
+    return Named(name, builder.build(), read.amounts)
 
 
 def _named(name: str, compared: _Comparable, problem: Problem | None) -> Named:
     """Return a compared value with its name; a file is read as a tree of ``problem`` or a network."""
     if isinstance(compared, str | PathLike):
         name, file = str(compared), Path(compared)
-        return Named(name, Tree.read(problem, file) if problem else _network(_read(file)))
+        return Named(name, Tree.read(problem, file)) if problem else _named_network(name, _read(file))
     if isinstance(compared, Foon):
-        return Named(name, compared.network.detailed or compared.network)
+        return _named_network(name, compared)
     if isinstance(compared, Answer):
         if compared.tree is None:
             raise NoTreeError(f"{name}: the answer has no tree")
@@ -182,9 +186,10 @@ def diff(
             data = partial(_data_of, level)
             a, b = _of_files((Path(a), Path(b)), goals, limits.get("containers"), data)
         problem = next((value.problem for value in (a, b) if isinstance(value, Answer | Tree)), None)
-        (name_a, value_a), (name_b, value_b) = _named("a", a, problem), _named("b", b, problem)
-        if isinstance(value_a, Tree) and isinstance(value_b, Tree):
-            return compare_trees((name_a, name_b), (value_a, value_b))
-        if isinstance(value_a, Network) and isinstance(value_b, Network):
-            return compare_networks((name_a, name_b), (value_a, value_b), level)
-        raise UserError(f"{name_a} and {name_b}: found a task tree and a network, expected two of a kind")
+        one, other = _named("a", a, problem), _named("b", b, problem)
+        names = one.name, other.name
+        if isinstance(one.read, Tree) and isinstance(other.read, Tree):
+            return compare_trees(names, (one.read, other.read))
+        if isinstance(one.read, Network) and isinstance(other.read, Network):
+            return compare_networks(names, (one.read, other.read), (one.amounts, other.amounts), level)
+        raise UserError(f"{' and '.join(names)}: found a task tree and a network, expected two of a kind")

@@ -2,14 +2,17 @@
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import Self
+from typing import Final, Literal, Self
 
-from foon_asp.network import LEVELS, Network, network_at_level
+from foon_asp.network import ALL_ONE, LEVELS, Amounts, Network, counted, network_at_level
 from foon_asp.questions.diff.difference import Difference, difference_fields
 from foon_asp.results.table import Block, Table
-from foon_asp.results.values import Value
-from foon_asp.results.values_of import unit_of
+from foon_asp.results.values import Node, Unit, Value
+from foon_asp.results.values_of import named_node, unit_of
 from foon_asp.text.json_value import schema_name
+
+Side = Literal["inputs", "outputs"]
+_SIDES: Final[tuple[Side, Side]] = ("inputs", "outputs")
 
 
 class Agreement(Value, frozen=True):
@@ -46,6 +49,24 @@ class LevelAgreement(Value, frozen=True):
     nodes: Agreement
 
 
+class AmountDifference(Value, frozen=True):
+    """An object node of which a unit takes or makes another number in the two networks.
+
+    Attributes:
+        side: Whether the unit takes it (inputs) or makes it (outputs).
+    """
+
+    unit: Unit
+    node: Node
+    side: Side
+    a: int
+    b: int
+
+    def __str__(self) -> str:
+        verb = "takes" if self.side == "inputs" else "makes"
+        return f"{verb} {self.a} x {self.node} in A, {self.b} x in B"
+
+
 class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("diff-network")):
     """Two networks, compared at a level.
 
@@ -53,6 +74,7 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
         a: The name of the first network.
         b: The name of the other one.
         agreement: How much they agree at each level.
+        other_amounts: The amounts in which units of both differ; at level 3 only.
 
     Example:
         >>> foon = foon_asp.load()
@@ -67,6 +89,7 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
     b: str
     level: int
     agreement: tuple[LevelAgreement, ...]
+    other_amounts: tuple[AmountDifference, ...]
 
     def figures(self) -> Sequence[Sequence[str]]:
         """Return how much the networks agree at each level."""
@@ -90,10 +113,16 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
         headings, *rows = self.figures()
         yield from (Table(headings, rows), "")
         yield from self.unit_lines()
+        if self.other_amounts:
+            yield from ("", f"other amounts: {counted(len(self.other_amounts), 'object node', ',')}")
+        for difference in self.other_amounts:
+            yield f"  {difference.unit.motion}    [{difference.unit.source[0]}]  {difference}"
 
 
-def compare_networks(names: Sequence[str], networks: Sequence[Network], level: int) -> NetworkDifference:
-    """Compare two networks of level 3, and list the units at a level."""
+def compare_networks(
+    names: Sequence[str], networks: Sequence[Network], amounts: tuple[Amounts, Amounts], level: int
+) -> NetworkDifference:
+    """Compare two networks of level 3 with their amounts, and list the units at a level."""
     at_level = {detail: [network_at_level(network, detail) for network in networks] for detail in LEVELS}
     a, b = ({n.unit(u): unit_of(n, u) for u in range(len(n))} for n in at_level[level])
     agreement = tuple(
@@ -101,5 +130,27 @@ def compare_networks(names: Sequence[str], networks: Sequence[Network], level: i
         for detail, both in at_level.items()
     )
     return NetworkDifference(
-        a=names[0], b=names[1], level=level, agreement=agreement, **difference_fields(a, b)
+        a=names[0],
+        b=names[1],
+        level=level,
+        agreement=agreement,
+        other_amounts=tuple(_other_amounts(networks, amounts)) if level == max(LEVELS) else (),
+        **difference_fields(a, b),
     )
+
+
+def _other_amounts(
+    networks: Sequence[Network], amounts: tuple[Amounts, Amounts]
+) -> Iterator[AmountDifference]:
+    """Yield the amounts in which units of both networks differ, in the order of the first one."""
+    (a, b), (amounts_a, amounts_b) = networks, amounts
+    for number in range(len(a)) if amounts_a or amounts_b else ():
+        unit = a.unit(number)
+        if b.unit_id(unit) is None:
+            continue
+        of_a, of_b = (of_data.get(unit, ALL_ONE) for of_data in amounts)
+        for side, nodes, in_a, in_b in zip(_SIDES, (unit.inputs, unit.outputs), of_a, of_b, strict=True):
+            for node in nodes:
+                pair = in_a.get(node, 1), in_b.get(node, 1)
+                if pair[0] != pair[1]:
+                    yield AmountDifference(unit_of(a, number), named_node(a, node), side, *pair)
