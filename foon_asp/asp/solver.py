@@ -15,7 +15,7 @@ from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
-from foon_asp.hypergraph import ExactCosts, Listener, Reduced, Reduction, Subproblem
+from foon_asp.hypergraph import ExactCosts, Listener, Reduced, Reduction, SolvedGoals, Subproblem
 from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 
@@ -48,13 +48,15 @@ def solve(
     settings: Settings | None = None,
     reporter: Reporter | None = None,
     mattered: set[int] | None = None,
+    solved: SolvedGoals | None = None,
 ) -> Outcome:
     """Find the best task tree under a lexicographic list of objectives, and prove it.
 
     ``units`` decides last, so that the tree is irredundant. Stops at the time limit or at ctrl-C with the
     incumbent. ``mattered`` are public numbers of units that mattered in a similar question; the units that
-    matter in this one are added. Raises :class:`UserError` for faults in constraints,
-    encodings and options, and where ``success`` is asked for and no rates are known.
+    matter in this one are added. ``solved`` are other goals of the same question; this one is added. Raises
+    :class:`UserError` for faults in constraints, encodings and options, and where ``success`` is asked for
+    and no rates are known.
     """
     settings, reporter = settings or Settings(), reporter or Reporter()
     if not problem.has_stand_ins_for(objectives):
@@ -62,7 +64,7 @@ def solve(
     program = program_of(problem, settings, reporter.warning)
     began = time.perf_counter()
     listener = _IncumbentListener(problem, objectives, reporter)
-    prepared = prepare(problem, objectives, settings, program, listener, brief=bool(mattered))
+    prepared = prepare(problem, objectives, settings, program, listener, (), bool(mattered), solved)
     seconds = {"cut": time.perf_counter() - began}
     outcome = _Solver(prepared, objectives, listener, seconds, mattered=mattered).solve()
     if settings.asks_for_statistics and not listener.clingo_ran:
