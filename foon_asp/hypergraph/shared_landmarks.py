@@ -85,10 +85,10 @@ class SharedLandmarks:
         ``None`` where HiGHS fails.
         """
         np, relaxation, target = self._np, self._relaxation, self._number[goal]
-        known = [row for row, reached in enumerate(self._reached_without) if not reached[target]]
-        uses = self._sums(known, self._values(dict.fromkeys(tree, 1.0)))
+        landmarks = [row for row, reached in enumerate(self._reached_without) if not reached[target]]
+        uses = self._sums(landmarks, self._values(dict.fromkeys(tree, 1.0)))
         # by complementary slackness, others have no weight where the tree is optimal and the relaxation tight
-        rows = [row for row, count in zip(known, uses, strict=True) if count == 1]
+        rows = [row for row, count in zip(landmarks, uses, strict=True) if count == 1]
         covering, cutter = Covering(relaxation.relative.tolist()), None
         for row in rows:
             covering.add(relaxation.rows[row])
@@ -108,10 +108,10 @@ class SharedLandmarks:
             if lacks <= 0 or stalled(values, lacks) or task.expired():
                 break
             chosen = frozenset(rows)
-            sums = self._sums(known, x)
+            sums = self._sums(landmarks, x)
             violated = sorted(
                 (value, row)
-                for row, value in zip(known, sums, strict=True)
+                for row, value in zip(landmarks, sums, strict=True)
                 if value < _VIOLATED and row not in chosen
             )
             added = [row for _, row in violated[: tuning.SHARED.violated_landmarks]]
@@ -123,7 +123,7 @@ class SharedLandmarks:
                 relaxation.separate([cutter], (), x.copy(), budget, task.expired)
                 added = list(range(count, len(relaxation.rows)))
                 self._learn(added)
-                known += added
+                landmarks += added
             if not added:
                 break
             rows += added

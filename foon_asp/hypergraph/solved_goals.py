@@ -60,10 +60,10 @@ class SolvedGoals:
         for achiever in graph.makers[goal]:
             if achiever in derivations.h_actions:
                 needs = graph.needs[achiever]
-                known = [self._trees[o] for o in needs if o in self._trees]
+                solved = [self._trees[o] for o in needs if o in self._trees]
                 others = derivations.tree(graph, [o for o in needs if o not in self._trees])
                 assert others is not None
-                trees.append(others.union([achiever], *known))
+                trees.append(others.union([achiever], *solved))
         trees.sort(key=lambda tree: sum(map(costs, tree)))
         smallest = (irredundant(graph, tree, costs) for tree in trees[: tuning.SHARED.unions])
         return frozenset(min(smallest, key=lambda tree: sum(map(costs, tree))))

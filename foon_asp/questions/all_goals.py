@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
-from operator import itemgetter
 from typing import Unpack
 
 from foon_asp.asp import Outcome, Settings, Status
@@ -148,9 +147,9 @@ def solve_all_goals(
     settings, each_limits = settings_of(options), limits_of(options)
     outer = Deadline(within=caller().deadline)
     solved = [SolvedGoals() for _ in lists]
-    found: dict[int, list[Outcome]] = {}
+    outcomes_of: dict[int, list[Outcome]] = {}
     for number, goal in _in_order(_each_goal(problem, settings), solved[0]):
-        found[number] = []
+        outcomes_of[number] = []
         for chosen, others in zip(lists, solved, strict=True):
             goal_settings = settings._replace(deadline=Deadline(*each_limits, within=outer))
             nearby = near_goals(goal, chosen, goal_settings)
@@ -158,8 +157,8 @@ def solve_all_goals(
                 outcome = find(read(goal), chosen, goal_settings, caller().reporter, solved=others)
             else:
                 outcome = answered_nearby(nearby, chosen, goal_settings).outcome
-            found[number].append(outcome)
-    outcomes = [outcome for _, of_goal in sorted(found.items(), key=itemgetter(0)) for outcome in of_goal]
+            outcomes_of[number].append(outcome)
+    outcomes = [outcome for number in range(len(outcomes_of)) for outcome in outcomes_of[number]]
     objectives_of_all = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)
     return Optima(**head_of(shown(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes)))
 
