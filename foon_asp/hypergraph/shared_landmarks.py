@@ -1,8 +1,7 @@
-"""Trees and landmarks that questions about single goals of one network share.
+"""Landmarks that questions about one network share.
 
 A disjunctive action landmark belongs to no goal: it is one of every object that cannot be reached without its
-actions. So the landmarks found for one goal bound the trees of others, and the trees of goals are parts of
-trees of the goals made from them.
+actions. So the landmarks found for one goal bound the trees of others, and the trees without some actions.
 """
 
 from collections.abc import Iterable, Sequence
@@ -36,8 +35,8 @@ class _Relaxed(NamedTuple):
 class SharedLandmarks:
     """Landmarks of all objects that some network makes from a kitchen, for costs without rounding.
 
-    The linear relaxation for a goal takes the landmarks of this goal, and adds those that it separates for
-    the goals after it.
+    The linear relaxation for a question takes the landmarks of its goals, and adds those that it separates
+    for the questions after it. A question may exclude actions.
     """
 
     def __init__(self, task: Task, costs: ExactCosts, actions: Iterable[int], objects: Sequence[int]) -> None:
@@ -50,23 +49,25 @@ class SharedLandmarks:
         self._position = {action: i for i, action in enumerate(self._relaxation.actions)}
         self._reached_without: list[bytearray] = []  # for each landmark, what is reached without its actions
 
-    def tighten(self, task: Task, goal: int, tree: frozenset[int]) -> Gap:
-        """Return the gap of a goal: a tree at least as good, its bound, and the candidates between them.
+    def tighten(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> Gap:
+        """Return the gap of a question: a tree at least as good, its bound, and the candidates between them.
 
         Cuts are evidence only where the gap is open, since there are many, and large ones.
         """
-        relaxed = self._relax(task, goal, tree)
+        relaxed = self._relax(task, excluded, tree)
+        candidates = self._actions - excluded
         if relaxed is None:
-            return Gap(tree, 0, self._actions)
-        relaxation, gap = self._relaxation, Gap(relaxed.tree, 0, self._actions)
+            return Gap(tree, 0, candidates)
+        relaxation, gap = self._relaxation, Gap(relaxed.tree, 0, candidates)
         capacity = relaxation.in_parts()
+        capacity[[self._position[action] for action in excluded]] = capacity.sum()  # they limit no weight
         weights = relaxation.shared_out(zip(relaxed.rows, relaxed.weights, strict=False), capacity)
         bound, total = sum(weights.values()), task.total(gap)
         if bound > (total - 1) * PARTS:
             return gap.raised(total, gap.evidence).closed()
-        sums = self._sums(relaxed.rows, self._np.array(relaxed.x))
+        sums, targets = self._sums(relaxed.rows, self._np.array(relaxed.x)), self._targets(task)
         cuts = {
-            row: self._cut(row, self._number[goal])
+            row: self._cut(row, targets)
             for row, value in zip(relaxed.rows, sums, strict=True)
             if weights.get(row) or value < _TIGHT
         }
@@ -79,17 +80,26 @@ class SharedLandmarks:
         )
         return apply(task, gap, shared)
 
-    def _relax(self, task: Task, goal: int, tree: frozenset[int]) -> _Relaxed | None:
-        """Solve the relaxation for a goal until its value meets the tree or no violated cut is found.
+    def _targets(self, task: Task) -> list[int]:
+        """Return the goals of a question by their numbers in the relaxation."""
+        return [self._number[goal] for goal in task.graph.goals]
+
+    def _relax(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> _Relaxed | None:
+        """Solve the relaxation for a question until its value meets the tree or no violated cut is found.
 
         ``None`` where HiGHS fails.
         """
-        np, relaxation, target = self._np, self._relaxation, self._number[goal]
-        landmarks = [row for row, reached in enumerate(self._reached_without) if not reached[target]]
+        np, relaxation, targets = self._np, self._relaxation, self._targets(task)
+        landmarks = [
+            row for row, reached in enumerate(self._reached_without) if not all(reached[o] for o in targets)
+        ]
+        forbidden = frozenset(self._position[action] for action in excluded)
         uses = self._sums(landmarks, self._values(dict.fromkeys(tree, 1.0)))
         # by complementary slackness, others have no weight where the tree is optimal and the relaxation tight
         rows = [row for row, count in zip(landmarks, uses, strict=True) if count == 1]
         covering, cutter = Covering(relaxation.relative.tolist()), None
+        for column in forbidden:
+            covering.bound(column, 0.0, 0.0)
         for row in rows:
             covering.add(relaxation.rows[row])
         values: list[float] = []
@@ -116,9 +126,7 @@ class SharedLandmarks:
             )
             added = [row for _, row in violated[: tuning.SHARED.violated_landmarks]]
             if not added:
-                if cutter is None:
-                    everything = bytearray(b"\1") * relaxation.graph.size
-                    cutter = Cutter(relaxation.graph, [target], reachable=everything)
+                cutter = cutter or Cutter(relaxation.graph, targets, forbidden)
                 count = len(relaxation.rows)
                 relaxation.separate([cutter], (), x.copy(), budget, task.expired)
                 added = list(range(count, len(relaxation.rows)))
@@ -162,10 +170,11 @@ class SharedLandmarks:
         trees = guessed(task.graph, shares, costs, shares, ())
         return min(tree, *map(frozenset, trees), key=lambda tree: sum(map(costs, tree)))
 
-    def _cut(self, row: int, target: int) -> frozenset[int]:
-        """Return the objects of a cut of a target whose landmark are actions of a row."""
+    def _cut(self, row: int, targets: Iterable[int]) -> frozenset[int]:
+        """Return the objects of a cut of one of the targets whose landmark are actions of a row."""
         relaxation, reached = self._relaxation, self._reached_without[row]
         graph, landmark = relaxation.graph, frozenset(relaxation.rows[row].tolist())
+        target = next(o for o in targets if not reached[o])
         cut, stack = {target}, [target]
         while stack:
             for action in graph.makers[stack.pop()]:

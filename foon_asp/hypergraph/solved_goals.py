@@ -1,4 +1,4 @@
-"""What answers for some goals of a network teach about others."""
+"""What answers to some questions about a network teach about others."""
 
 from contextlib import suppress
 from typing import TYPE_CHECKING
@@ -16,14 +16,14 @@ if TYPE_CHECKING:  # few questions need it
 
 
 class SolvedGoals:
-    """The best trees of questions that differ in their one goal alone, and the landmarks that they share.
+    """Trees of questions that differ in goals and removed units alone, and landmarks that they share.
 
     Landmarks are shared from the first question on that greedy cuts did not answer: with easier questions it
     is faster to begin each anew.
     """
 
     def __init__(self) -> None:
-        self._trees: dict[int, frozenset[int]] = {}
+        self._trees: dict[tuple[int, ...], frozenset[int]] = {}  # by goals; with units that others remove
         self._derivations: Derivations | None = None  # by h_add, once landmarks are shared
         self._landmarks: SharedLandmarks | None = None
         self._declined = False  # whether costs are rounded, so that nothing is shared
@@ -41,39 +41,57 @@ class SolvedGoals:
         """Return the gap of a question with shared costs; ``None`` where nothing is, or there is no tree."""
         if self._landmarks is None or self._derivations is None:
             return None
-        (goal,) = task.graph.goals
-        if goal not in self._derivations.cost:
+        if not self._derivations.cost.keys() >= set(task.graph.goals):
             return None
-        return self._landmarks.tighten(task, goal, self._first_tree(task, goal))
+        restriction, units = task.problem.restriction, task.graph.units
+        removed = frozenset(
+            action
+            for action in self._derivations.h_actions
+            if restriction is not None and action < units and restriction.removed(action)
+        )
+        tree = self._tree_without(task, removed) if removed or len(task.graph.goals) > 1 else self._tree(task)
+        return None if tree is None else self._landmarks.tighten(task, removed, tree)
 
     @property
     def costs(self) -> ExactCosts | None:
         """The costs of all actions that can run, by which shared gaps are measured."""
         return None if self._landmarks is None else self._landmarks.costs
 
-    def _first_tree(self, task: Task, goal: int) -> frozenset[int]:
-        """Return the best tree of known trees of the preconditions of an achiever, and of h_add."""
-        graph, costs, derivations = task.graph, task.costs, self._derivations
+    def _tree(self, task: Task) -> frozenset[int]:
+        """Return the best tree of trees of the preconditions of an achiever, solved or by h_add."""
+        graph, costs, derivations, trees = task.graph, task.costs, self._derivations, list[set[int]]()
         assert costs is not None
         assert derivations is not None
-        trees: list[set[int]] = []
+        (goal,) = graph.goals
         for achiever in graph.makers[goal]:
             if achiever in derivations.h_actions:
                 needs = graph.needs[achiever]
-                solved = [self._trees[o] for o in needs if o in self._trees]
-                others = derivations.tree(graph, [o for o in needs if o not in self._trees])
+                solved = [self._trees[o,] for o in needs if (o,) in self._trees]
+                others = derivations.tree(graph, [o for o in needs if (o,) not in self._trees])
                 assert others is not None
                 trees.append(others.union([achiever], *solved))
         trees.sort(key=lambda tree: sum(map(costs, tree)))
         smallest = (irredundant(graph, tree, costs) for tree in trees[: tuning.SHARED.unions])
         return frozenset(min(smallest, key=lambda tree: sum(map(costs, tree))))
 
+    def _tree_without(self, task: Task, removed: frozenset[int]) -> frozenset[int] | None:
+        """Return a tree without some actions, by h_add and the tree of the same goals, if any."""
+        graph, costs, derivations = task.graph, task.costs, self._derivations
+        assert costs is not None
+        assert derivations is not None
+        allowed = derivations.h_actions.keys() - removed
+        tree = derive(graph, allowed, costs, h_add=True).tree(graph, graph.goals)
+        if tree is None:
+            return None
+        union = (tree | self._trees.get(graph.goals, frozenset())) - removed
+        trees = (irredundant(graph, actions, costs) for actions in (union, tree))
+        return frozenset(min(trees, key=lambda tree: sum(map(costs, tree))))
+
     def learn(self, task: Task, gap: Gap | None) -> None:
         """Keep the tree of a proved gap; share landmarks from now on if greedy cuts did not prove it."""
         if gap is None or not gap.proved:
             return
-        (goal,) = task.graph.goals
-        self._trees[goal] = gap.incumbent
+        self._trees[task.graph.goals] = gap.incumbent
         if not gap.evidence.tight or self._landmarks is not None or self._declined:
             return
         self._declined = True
@@ -92,9 +110,10 @@ class SolvedGoals:
 
 
 def is_open_to(task: Task) -> bool:
-    """Return whether a question has one goal, no rules, and a network that is looked at as a whole."""
+    """Return whether a question has goals to make, no sets to require, and a network looked at as a whole."""
+    restriction = task.problem.restriction
     return (
-        len(task.graph.goals) == 1
-        and task.problem.restriction is None
+        len(task.graph.goals) > 0
+        and (restriction is None or not restriction.required)
         and len(task.graph.needs) <= task.tuning.lazy_actions
     )
