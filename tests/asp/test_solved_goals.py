@@ -9,7 +9,7 @@ from foon_asp.certificate import certify_outcome
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import SolvedGoals, tuning
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Objective, Problem, Restriction
 from foon_asp.proof.verifier import read_certificate, verify
 from tests.support.gap_problem import gap_problem
 from tests.support.hard_problem import hard_problem
@@ -59,6 +59,22 @@ def test_goals_of_layered_networks_have_the_costs_that_they_have_alone(
 @pytest.mark.parametrize("objective", EXACT)
 def test_goals_whose_relaxation_leaves_a_gap_are_proved_too(objective: Objective) -> None:
     assert sum(costs_agree(every_goal(gap_problem(seed)), objective) for seed in range(3)) == 3
+
+
+def without_each_unit(problem: Problem, tree: tuple[int, ...]) -> list[Problem]:
+    """Return a problem without each unit of a tree, and one without two of them."""
+    removed = [*({unit} for unit in tree), {*tree[:2]}]
+    return [replace(problem, restriction=Restriction(units.__contains__)) for units in removed]
+
+
+@pytest.mark.parametrize("objective", EXACT[:2])
+def test_trees_without_units_have_the_costs_that_they_have_alone(objective: Objective) -> None:
+    problem = hard_problem(width=5, depth=3, producers=3, inputs=2)
+    last = len(problem.network.objects)
+    problem = replace(problem, goals=(last - 1, last - 2, *problem.goals))
+    tree = solve(problem, (objective,)).units
+    assert tree
+    assert costs_agree([problem, *without_each_unit(problem, tree)], objective)
 
 
 def test_each_answer_has_a_certificate_of_its_own() -> None:
