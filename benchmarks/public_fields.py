@@ -9,6 +9,11 @@ published optima and peers, are asked by ``benchmarks/records.py``.
 Each question is asked with ``--limit`` seconds (60). *Verified*: the certificate of the proof was written and
 checked against the data. A peer that was ended at the limit has ``>`` before its seconds. Seconds of the
 program are those of the question, with everything read.
+
+With ``--before CHECKOUT``, the last row of metabolism is about all metabolites, each by itself: asked in
+one question, and every tenth of them from a checkout of earlier code, which shares nothing among goals.
+Its seconds are of the processor, and those of the checkout are multiplied by ten. It is an error if an
+optimum differs.
 """
 
 import argparse
@@ -17,9 +22,11 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar
 
+from against import Checkout, Question
 from contest.engines import ENGINES
 from contest.instance import raw_units
 from contest.page import put, table
@@ -28,9 +35,10 @@ from fields import factorio, minecraft, sbml
 from fields.peers import PeerAnswer, ask_meneco, ask_seed2lp, install_peers
 
 import foon_asp
-from foon_asp.asp import Reporter, Settings, Status, solve
+from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.certificate import certify
 from foon_asp.certificate.certificate import subject_of
+from foon_asp.comparison.many import makeable
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem, reach
 from foon_asp.proof.verifier import read_certificate, verify
@@ -38,6 +46,7 @@ from foon_asp.proof.verifier import read_certificate, verify
 T = TypeVar("T")
 _MINECRAFT = "1.21.9"
 _PEERS = ("HiGHS", "CP-SAT")
+_EVERY = 10  # metabolites from one that earlier code is asked to the next, and so with certificates
 
 
 def fetched(cache: Path, package: str, pattern: str) -> Path:
@@ -64,7 +73,13 @@ def proved(problem: Problem, objective: Objective, limit: float) -> list[str]:
         lambda: solve(problem, (objective,), Settings(deadline=Deadline(limit)), Reporter())
     )
     cost = "" if outcome.costs is None else str(outcome.costs.measure(objective))
-    checked = "no"
+    size = certificate_size(problem, objective, outcome, limit)
+    checked = "no" if size is None else f"yes, {size // 1000} kB"
+    return [cost, f"{seconds:.1f}", str(outcome.proof or "no"), checked]
+
+
+def certificate_size(problem: Problem, objective: Objective, outcome: Outcome, limit: float) -> int | None:
+    """Return the length of a certificate of an optimum, after it was verified; ``None`` without one."""
     if outcome.status is Status.OPTIMAL and outcome.units is not None:
         end = time.monotonic() + limit
         certificate = certify(
@@ -78,8 +93,8 @@ def proved(problem: Problem, objective: Objective, limit: float) -> list[str]:
         if certificate is not None and certificate.claim == "optimal":
             text = certificate.text()
             verify(read_certificate(text), subject_of(problem))
-            checked = f"yes, {len(text) // 1000} kB"
-    return [cost, f"{seconds:.1f}", str(outcome.proof or "no"), checked]
+            return len(text)
+    return None
 
 
 def metabolism(cache: Path, limit: float) -> Iterator[list[str]]:
@@ -109,6 +124,35 @@ def metabolism(cache: Path, limit: float) -> Iterator[list[str]]:
     theirs = ask_seed2lp(programs, cache / "ijo1366.xml", problem, cache, limit)
     cells = [*sizes, f"{seconds:.1f}", proof, ""]
     yield ["biomass: fewest seeds", *cells, "Seed2LP", _size(theirs.optimum), _seconds(theirs, limit)]
+
+
+def metabolites(before: Path, cache: Path, limit: float) -> Iterator[list[str]]:
+    """Yield the row of all metabolites, each by itself; raises ``ValueError`` where an optimum differs."""
+    folder = cache / "ijo1366"
+    sbml.write_network(sbml.read_model(fetched(cache, "cobra", "cobra-*.whl"), "iJO1366"), folder)
+    foon = foon_asp.load(folder)
+    made = [str(foon.network.objects[o]) for o in makeable(foon.problem(*foon.goals))]
+    began = time.process_time()
+    optima = foon_asp.solve_all_goals(foon.problem(*made), time_limit=limit)
+    seconds = time.process_time() - began
+    outcomes = [answer.outcome for answer in optima.answers]
+    sizes = [0 if outcome.costs is None else outcome.costs.units for outcome in outcomes]
+    proved = sum(outcome.status is Status.OPTIMAL for outcome in outcomes)
+    checked = [
+        certificate_size(outcome.problem, Objective.UNITS, outcome, limit) for outcome in outcomes[::_EVERY]
+    ]
+    earlier, theirs = Checkout(before), list[float]()
+    for name, size in list(zip(made, sizes, strict=True))[::_EVERY]:
+        answer = earlier.ask(Question("", str(folder), (name,), ("units",), limit))
+        theirs.append(answer.seconds)
+        if answer.status == "optimal" and answer.costs["units"] != str(size):
+            raise ValueError(f"{name}: {size}, but {answer.costs['units']} by {before}")
+    yield [
+        f"{len(made)} metabolites: fewest reactions of each",
+        *(str(sum(sizes)), f"{seconds:.1f}", f"{proved} of {len(made)}"),
+        f"{sum(size is not None for size in checked)} of {len(checked)}",
+        *("earlier code", "", f"{_EVERY * sum(theirs):.1f}"),
+    ]
 
 
 def crafting(cache: Path, limit: float) -> Iterator[list[str]]:
@@ -171,10 +215,13 @@ def main() -> None:
     parser.add_argument("field", choices=FIELDS)
     parser.add_argument("--cache", type=Path, required=True, help="a folder for data and peers")
     parser.add_argument("--limit", type=float, default=60, help="seconds for each question")
+    parser.add_argument("--before", type=Path, help="a checkout of earlier code, to ask metabolites")
     parser.add_argument("--page", type=Path, help="a page with marks for the table")
     options = parser.parse_args()
     rows = []
-    for row in FIELDS[options.field](options.cache.resolve(), options.limit):
+    cache = options.cache.resolve()
+    last = metabolites(options.before, cache, options.limit) if options.before else iter(())
+    for row in chain(FIELDS[options.field](cache, options.limit), last):
         print(" | ".join(row), flush=True)
         rows.append(row)
     if options.page:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from foon_asp.asp.program import Program
+from foon_asp.asp.search_tuning import SEARCH
 from foon_asp.asp.settings import Settings
 from foon_asp.encoding.own_encodings import ENCODING_FILES, USED_UP, exact_success, is_own
 from foon_asp.encoding.stated import Loaded, Stated
@@ -24,10 +25,6 @@ if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
 # Core-guided search with shrunk cores did best on every objective measured; see docs/dev/measured.md.
 SHRINKING = "--opt-usc-shrink=min"
 CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", SHRINKING)
-
-_MAX_UNITS_WITHOUT_CLINGO = 10_000  # a network of that size is searched faster than clingo is imported
-
-GREATEST_WEIGHT = 1_000_000  # of a constraint that may be broken or dropped
 
 # Options that would change what an answer means, or whether it is a proof; the solver sets them itself.
 _RESERVED = (
@@ -156,7 +153,7 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
     from foon_asp.rules.parameter_names import unknown_parameters  # noqa: PLC0415
 
     network = problem.network  # reading a part of a store takes longer than searching it
-    if (len(network) > _MAX_UNITS_WITHOUT_CLINGO and not network.object_numbers) or not rules.fit(problem):
+    if (len(network) > SEARCH.units_without_clingo and not network.object_numbers) or not rules.fit(problem):
         return None
     for message in unknown_parameters(settings.constraints, settings.constants, FactValues(problem)):
         warn(message)

@@ -6,6 +6,7 @@ from foon_asp.asp import solver
 from foon_asp.asp.outcome import Outcome
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
+from foon_asp.hypergraph import SolvedGoals
 from foon_asp.problem import Objective, Problem
 
 
@@ -15,6 +16,7 @@ def solve(
     settings: Settings | None = None,
     reporter: Reporter | None = None,
     mattered: set[int] | None = None,
+    solved: SolvedGoals | None = None,
 ) -> Outcome:
     """Find the best tree or plan under a lexicographic list of objectives, and prove it.
 
@@ -22,7 +24,7 @@ def solve(
     :func:`foon_asp.asp.solver.solve` and :func:`foon_asp.plans.plan_search.solve_used_up` do.
     """
     if problem.items is None:
-        return solver.solve(problem, objectives, settings, reporter, mattered)
+        return solver.solve(problem, objectives, settings, reporter, mattered, solved)
     from foon_asp.plans.plan_search import solve_used_up  # noqa: PLC0415 (numpy and HiGHS)
 
     return solve_used_up(problem, objectives, settings, reporter)

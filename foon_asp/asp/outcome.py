@@ -53,9 +53,10 @@ class Outcome(NamedTuple):
     ``encodings`` is the folder that replaced the built-in encodings, if any: they then define what is best.
     ``certified`` are the objectives, from the first on, by which a certificate proves the tree the best.
     ``left`` counts the units that were left for the search, 0 if it was not needed. ``cuts`` are the sets of
-    object nodes whose landmarks the reductions used for bounds; see :mod:`foon_asp.hypergraph`. ``stopped``
-    names the limit that stopped an unproved answer, and what was being done. ``cases`` are those that a proof
-    by cuts tells apart, if one alone was not enough: a unit, then the cases without it and those with it.
+    object nodes whose landmarks the reductions used for bounds; see :mod:`foon_asp.hypergraph`; goals that
+    share landmarks leave them out. ``stopped`` names the limit that stopped an unproved answer, and what was
+    being done. ``cases`` are those that a proof by cuts tells apart, if one alone was not enough: a unit,
+    then the cases without it and those with it.
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))

@@ -19,6 +19,7 @@ from foon_asp.hypergraph import (
     Listener,
     Reduced,
     Reduction,
+    SolvedGoals,
     bound_under_rules,
     reduce,
     reduce_under_rules,
@@ -164,6 +165,7 @@ def prepare(
     listener: Listener | None = None,
     for_sale: Collection[int] = (),
     brief: bool = False,
+    solved: SolvedGoals | None = None,
 ) -> Prepared:
     """Prepare a question: cut the network down to the units that can matter.
 
@@ -173,8 +175,8 @@ def prepare(
     which receives trees and bounds, the reductions exclude units of trees that are no better than another
     one, except with bounds, within which only the excluded tree may be.
     ``for_sale`` are object nodes that may be added to the kitchen. ``brief`` says that the best tree without
-    the unsettled rules is not needed. Raises :class:`UserError` where an objective
-    needs rates that are not known.
+    the unsettled rules is not needed. ``solved`` are other goals of the same question. Raises
+    :class:`UserError` where an objective needs rates that are not known.
     """
     if problem.items is not None:
         raise UserError("this question is not built for items that are used up")
@@ -203,7 +205,7 @@ def prepare(
             return prepared
         program, kept = prepared.program, prepared.kept or problem
         if listener is not None and (program.own or _limits_unsettled(prepared)):
-            presolve = reduce
+            presolve = partial(reduce, solved=None if prepared.kept else solved)
             if prepared.unsettled:
                 under_rules = bound_under_rules if brief else reduce_under_rules
                 presolve = partial(under_rules, redundant=prepared.redundant)

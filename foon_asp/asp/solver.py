@@ -12,10 +12,11 @@ from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
 from foon_asp.asp.reporter import Reporter
+from foon_asp.asp.search_tuning import SEARCH
 from foon_asp.asp.settings import Settings
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
-from foon_asp.hypergraph import ExactCosts, Listener, Reduced, Reduction, Subproblem
+from foon_asp.hypergraph import ExactCosts, Listener, Reduced, Reduction, SolvedGoals, Subproblem
 from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 
@@ -24,20 +25,14 @@ if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
     from foon_asp.encoding.run import Run
     from foon_asp.encoding.scales import Scales
 
-_MAX_CUT_OBJECTS = 200_000  # of the cuts stored for a certificate to try first; it finds others by itself
-_NEAREST_UNITS = 200  # size of the first reduced-cost neighbourhood
-_MAX_ROUNDS = 12  # searches for trees with open preconditions, each with fewer open ones than before
 NOT_ASKED = (
     "clingo has no statistics: the question was settled without its search; --reduce none leaves it to clingo"
 )
 _UNITS_ONLY: tuple[Objective, ...] = (Objective.UNITS,)
-_GROWTH = 1.5  # factor by which the explored units grow in each round
-_MAX_KNOWN_UNITS = 5000  # limit of explored units, without those that mattered before
 _QUICK_OPTIONS = (
     "--configuration=frumpy",
     "--opt-strategy=usc,pmres,4",
 )  # faster here than the defaults of clingo
-_NEAREST_GROWTH = 4  # factor by which the neighbourhood grows where it has no tree
 
 Units = frozenset[int]
 
@@ -48,13 +43,15 @@ def solve(
     settings: Settings | None = None,
     reporter: Reporter | None = None,
     mattered: set[int] | None = None,
+    solved: SolvedGoals | None = None,
 ) -> Outcome:
     """Find the best task tree under a lexicographic list of objectives, and prove it.
 
     ``units`` decides last, so that the tree is irredundant. Stops at the time limit or at ctrl-C with the
     incumbent. ``mattered`` are public numbers of units that mattered in a similar question; the units that
-    matter in this one are added. Raises :class:`UserError` for faults in constraints,
-    encodings and options, and where ``success`` is asked for and no rates are known.
+    matter in this one are added. ``solved`` are other goals of the same question; this one is added. Raises
+    :class:`UserError` for faults in constraints, encodings and options, and where ``success`` is asked for
+    and no rates are known.
     """
     settings, reporter = settings or Settings(), reporter or Reporter()
     if not problem.has_stand_ins_for(objectives):
@@ -62,7 +59,7 @@ def solve(
     program = program_of(problem, settings, reporter.warning)
     began = time.perf_counter()
     listener = _IncumbentListener(problem, objectives, reporter)
-    prepared = prepare(problem, objectives, settings, program, listener, brief=bool(mattered))
+    prepared = prepare(problem, objectives, settings, program, listener, (), bool(mattered), solved)
     seconds = {"cut": time.perf_counter() - began}
     outcome = _Solver(prepared, objectives, listener, seconds, mattered=mattered).solve()
     if settings.asks_for_statistics and not listener.clingo_ran:
@@ -253,10 +250,10 @@ class _Solver:
 
     def _near_goals(self, subproblem: Subproblem, tree: Units) -> "Run":
         """Search ever larger neighbourhoods of the goals for the best tree; return the last run."""
-        everything, size = subproblem.everything(), _NEAREST_UNITS
+        everything, size = subproblem.everything(), SEARCH.nearest_units
         while True:
             among = everything if size >= len(everything) else subproblem.nearest(size) | tree
-            size *= _NEAREST_GROWTH
+            size *= SEARCH.nearest_growth
             self._restrict_to(among)
             run = self._run(self.levels)
             if run.units is not None or not run.exhausted or among >= everything:
@@ -283,7 +280,7 @@ class _Solver:
         Every tree that keeps to the rules has a part that is feasible in the relaxation. So an infeasible
         relaxation proves that there is no tree, and a best tree without open preconditions is optimal.
         Every tree has a unit of each landmark, too. ``None`` where the relaxation decides nothing within
-        ``_MAX_ROUNDS``.
+        ``SEARCH.open_rounds``.
         """
         from foon_asp.encoding.fact_writer import write_known, write_objectives, write_required  # noqa: PLC0415
 
@@ -299,12 +296,12 @@ class _Solver:
         landmarks = subproblem.landmarks()
         required = write_required([map(number, sorted(landmark)) for landmark in landmarks])
         before = subproblem.left_of(self._mattered)
-        max_units = _MAX_KNOWN_UNITS + len(before)
+        max_units = SEARCH.explored_units + len(before)
         explored = subproblem.with_only_achievers(
-            before.union(tree, *(e for e in landmarks if len(e) <= _NEAREST_UNITS)), max_units
+            before.union(tree, *(e for e in landmarks if len(e) <= SEARCH.nearest_units)), max_units
         )
         by, fewest = _UNITS_ONLY, 0  # fast, and enough to prove that there is no tree
-        for _ in range(_MAX_ROUNDS):
+        for _ in range(SEARCH.open_rounds):
             self._mattered.update(map(number, explored))
             self._restrict_to(explored.union(subproblem.achievers_for(explored), *landmarks))
             prepared = replace(self.prepared, program=program)
@@ -326,7 +323,7 @@ class _Solver:
             if len(explored) > max_units:
                 return None
             fresh = subproblem.rival_achievers(run.units - explored)
-            enough = min(max_units, len(explored) * _GROWTH)
+            enough = min(max_units, len(explored) * SEARCH.explored_growth)
             while fresh and len(explored) < enough:
                 fresh = (
                     subproblem.with_only_achievers(fresh | subproblem.achievers_for(fresh), max_units)
@@ -713,10 +710,10 @@ def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
 
 
 def _few_objects(cuts: Cuts | None) -> list[frozenset[int]]:
-    """Return the objects of cuts, up to ``_MAX_CUT_OBJECTS`` in all."""
+    """Return the objects of cuts, up to ``SEARCH.cut_objects`` in all."""
     object_sets, total = list[frozenset[int]](), 0
     for cut in cuts.cuts if cuts else ():
-        if total > _MAX_CUT_OBJECTS:
+        if total > SEARCH.cut_objects:
             break
         object_sets.append(cut.objects)
         total += len(object_sets[-1])

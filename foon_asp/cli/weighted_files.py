@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from foon_asp.asp.assembly import GREATEST_WEIGHT
+from foon_asp.asp.search_tuning import SEARCH
 from foon_asp.errors import UserError
 from foon_asp.rules.passed_constraint import Constraint, find_constraint, given_constraint
 
@@ -20,10 +20,10 @@ def weighted_files(settings: Sequence[str], option: str) -> dict[Constraint, int
         file, equals, weight = setting.rpartition("=")
         if not equals or not file:
             raise UserError(f"found {option} {setting!r}, expected FILE.lp=WEIGHT")
-        if not (weight.isascii() and weight.isdigit() and 1 <= int(weight) <= GREATEST_WEIGHT):
+        if not (weight.isascii() and weight.isdigit() and 1 <= int(weight) <= SEARCH.max_weight):
             raise UserError(
                 f"found the weight {weight!r} in {option} {setting!r}, "
-                f"expected a whole number from 1 to {GREATEST_WEIGHT}"
+                f"expected a whole number from 1 to {SEARCH.max_weight}"
             )
         constraint = find_constraint(given_constraint(file))
         if weights.setdefault(constraint, int(weight)) != int(weight):

@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     from foon_asp.hypergraph.reductions import SAFE as SAFE
     from foon_asp.hypergraph.reductions import Reduction as Reduction
     from foon_asp.hypergraph.reductions import parse_reductions as parse_reductions
+    from foon_asp.hypergraph.solved_goals import SolvedGoals as SolvedGoals
 else:  # not for type checkers, which then know each name
     _MODULES = {"ExactCosts": "exact_costs", "Subproblem": "gap_bounded_subproblem"}
+    _MODULES["SolvedGoals"] = "solved_goals"
     _MODULES |= dict.fromkeys(
         ("Bounds", "Listener", "Reduced", "bound_under_rules", "reduce", "reduce_under_rules"), "reduction"
     )

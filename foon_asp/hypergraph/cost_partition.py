@@ -38,7 +38,7 @@ class SharedCosts(NamedTuple):
     tight: Sequence[frozenset[int]] = ()
 
 
-def _quotient(a: int, b: int) -> float:
+def quotient(a: int, b: int) -> float:
     """Return ``a / b``, or infinity where no float is so large."""
     try:
         return a / b
@@ -102,7 +102,7 @@ class CostPartitioning:
             self._last = relaxed
             self._values.append(relaxed.value)
             solutions += 1
-            lacks = _quotient(above, 100 * self._relaxation.dearest) - relaxed.value
+            lacks = quotient(above, 100 * self._relaxation.dearest) - relaxed.value
             ends = lacks <= 0 or stalled(self._values, lacks)
             if ends or not self._separate(relaxed.x):
                 if self._interior_point and not ends:

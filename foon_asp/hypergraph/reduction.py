@@ -24,6 +24,7 @@ from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.reductions import ALL, Reduction
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
+from foon_asp.hypergraph.solved_goals import SolvedGoals, is_open_to
 from foon_asp.hypergraph.task import Task
 from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import Objective, Problem
@@ -100,17 +101,22 @@ def reduce(
     expired: Expired = lambda: False,
     listener: Listener | None = None,
     guard: Guard = nullcontext,
+    solved: SolvedGoals | None = None,
 ) -> Reduced:
     """Reduce a problem to the units that a search for the best tree still has to look at.
 
     ``objectives`` is the list as it is optimized, with ``units`` in it, so that every unit costs something.
     Without reductions, the relevant units that can be executed remain. ``expired`` returns whether time is
-    up; longer computations are interrupted, as by ctrl-C, by the ``guard``.
+    up; longer computations are interrupted, as by ctrl-C, by the ``guard``. ``solved`` are other goals of
+    the same question, which help with this one; its answer is added.
     """
     with uncollected():
         with guard():
             presolve = _Presolve(_task(problem, objectives, reductions, expired), listener, guard)
-        presolve.extend_or_run()
+        if solved is None or not is_open_to(presolve.task):
+            presolve.extend_or_run()
+        else:
+            presolve.run_beside(solved)
         return presolve.reduced()
 
 
@@ -395,6 +401,26 @@ class _Presolve:
             tree = min(trees, key=lambda tree: sum(map(task.coarse, tree)))
             self.report(self.gap.with_incumbent(irredundant(task.graph, tree, task.coarse)))
             self.take(stages, h_values)
+
+    def run_beside(self, solved: SolvedGoals) -> None:
+        """Take all rounds, from the gap that other goals leave if any, and add the answer to them."""
+
+        def begin() -> None:
+            costs = solved.costs
+            if costs is not None:
+                self.task = replace(self.task, costs=costs)
+            gap = solved.gap(self.task)
+            if gap is None or costs is None:
+                self._run(ROUNDS, ())
+            else:
+                self.report(Gap(gap.incumbent, 0, gap.candidates))
+                self.report(gap)
+                if not gap.proved:
+                    h_values = derive(self.task.graph, gap.candidates, costs, h_add=False).cost
+                    self.take(ROUNDS.whole, h_values)
+            solved.learn(self.task, self.gap)
+
+        self.guarded(begin)
 
     def extend_or_run(self) -> None:
         """Take all rounds, from trees for the goals alone where sets are required and that helps."""

@@ -112,9 +112,21 @@ class PriceTuning(NamedTuple):
     rising_prices: int = 8
 
 
+class SharedTuning(NamedTuple):
+    """What the goals of a network share, in :mod:`foon_asp.hypergraph.shared_landmarks`.
+
+    ``violated_landmarks``: known landmarks that are added for one LP solution, at most. ``unions``: trees of
+    preconditions, taken together, that are made irredundant to find a first tree.
+    """
+
+    violated_landmarks: int = 40
+    unions: int = 3
+
+
 LOWEST_PRICE = Fraction(3, 2)  # of the rising prices, times the mean cost of a unit
 PRESOLVE = PresolveTuning()
 CUTS = CutTuning()
 RELAXATION = RelaxationTuning()
 PROOF = ProofTuning()
 PRICES = PriceTuning()
+SHARED = SharedTuning()

@@ -353,6 +353,8 @@ class Problem:
     @cached_property
     def endless(self) -> frozenset[int]:
         """The ids of the kitchen items that are not consumable: where items last, all of them."""
+        if self.items is None:
+            return self.kitchen
         return frozenset(o for o in self.kitchen if self.stock_of(o) is None)
 
     def copies_taken(self, plan: Iterable[int]) -> dict[int, int]:

@@ -1,6 +1,6 @@
 """The optimum of every goal by itself, under one or several lists of objectives."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
@@ -11,6 +11,7 @@ from foon_asp.asp import solve as find
 from foon_asp.dataset.nearby import NearbyProblem, shown
 from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.deadline import Deadline
+from foon_asp.hypergraph import SolvedGoals
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, answered_nearby
 from foon_asp.questions.caller import caller
@@ -145,17 +146,31 @@ def solve_all_goals(
     # limits are for each answer, ctrl-C is for all of them
     settings, each_limits = settings_of(options), limits_of(options)
     outer = Deadline(within=caller().deadline)
-    outcomes: list[Outcome] = []
-    for goal in _each_goal(problem, settings):
-        for chosen in lists:
+    solved = [SolvedGoals() for _ in lists]
+    outcomes_of: dict[int, list[Outcome]] = {}
+    for number, goal in _in_order(_each_goal(problem, settings), solved[0]):
+        outcomes_of[number] = []
+        for chosen, others in zip(lists, solved, strict=True):
             goal_settings = settings._replace(deadline=Deadline(*each_limits, within=outer))
             nearby = near_goals(goal, chosen, goal_settings)
             if nearby is None:
-                outcomes.append(find(read(goal), chosen, goal_settings, caller().reporter))
+                outcome = find(read(goal), chosen, goal_settings, caller().reporter, solved=others)
             else:
-                outcomes.append(answered_nearby(nearby, chosen, goal_settings).outcome)
+                outcome = answered_nearby(nearby, chosen, goal_settings).outcome
+            outcomes_of[number].append(outcome)
+    outcomes = [outcome for number in range(len(outcomes_of)) for outcome in outcomes_of[number]]
     objectives_of_all = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)
     return Optima(**head_of(shown(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes)))
+
+
+def _in_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterator[tuple[int, Problem]]:
+    """Yield problems of one goal each with their index, parts of trees first once landmarks are shared."""
+    remaining = [*range(len(problems))]
+    while remaining and not solved.sharing:
+        number = remaining.pop(0)
+        yield number, problems[number]
+    for number in sorted(remaining, key=lambda number: solved.h_add(problems[number].goals[0])):
+        yield number, problems[number]
 
 
 def _each_goal(problem: Problem, settings: Settings) -> list[Problem]:

@@ -87,13 +87,14 @@ def reading() -> AbstractContextManager[object]:
 
 def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, int]:
     """Read the weights of constraints, whole numbers from 1."""
-    from foon_asp.asp.assembly import GREATEST_WEIGHT  # noqa: PLC0415 (where there are rules)
+    from foon_asp.asp.search_tuning import SEARCH  # noqa: PLC0415 (where there are rules)
 
     weights: dict[Constraint, int] = {}
     for name, weight in weight_of_file.items():
-        if not isinstance(weight, int) or not 1 <= weight <= GREATEST_WEIGHT:
+        if not isinstance(weight, int) or not 1 <= weight <= SEARCH.max_weight:
             raise UserError(
-                f"found the weight {weight!r} of {name}, expected a whole number from 1 to {GREATEST_WEIGHT}"
+                f"found the weight {weight!r} of {name}, "
+                f"expected a whole number from 1 to {SEARCH.max_weight}"
             )
         constraint = find_constraint(given_constraint(name))
         if constraint in weights:

@@ -22,6 +22,7 @@ from foon_asp.dataset.paths import File
 from foon_asp.encoding.fact_writer import write_for_sale, write_list
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
+from foon_asp.hypergraph import SolvedGoals
 from foon_asp.network import ObjectNode, Source, counted
 from foon_asp.problem import Costs, Number, Objective, Problem, exact, levels
 from foon_asp.problem.dead_ends import dead_ends
@@ -491,6 +492,7 @@ class _Shopper:
         self._waiting: list[tuple[tuple[int | Fraction, ...], int, frozenset[int], _PricedList]] = []
         self._seen: set[frozenset[int]] = set()
         self._listed: list[_PricedList] = []
+        self._solved = SolvedGoals()
 
     def lists(self, max_lists: int) -> _Lists:
         """Return the cheapest lists."""
@@ -516,7 +518,7 @@ class _Shopper:
                 return all(self._look(left_out | {item}, reporter) for item in earlier.items)
         purchases = self._purchases(left_out)
         by = purchases.objectives
-        outcome = solve(purchases.problem, by, self._settings, reporter)
+        outcome = solve(purchases.problem, by, self._settings, reporter, solved=self._solved)
         if outcome.status is Status.OPTIMAL and outcome.costs is not None:
             listed = self._list(outcome, purchases)
             heappush(self._waiting, (outcome.costs.key(levels(by)), len(self._seen), left_out, listed))

@@ -1,0 +1,185 @@
+"""Landmarks that questions about one network share.
+
+A disjunctive action landmark belongs to no goal: it is one of every object that cannot be reached without its
+actions. So the landmarks found for one goal bound the trees of others, and the trees without some actions.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
+
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.cost_partition import SharedCosts, quotient, stalled
+from foon_asp.hypergraph.covering import Covering, UnsolvedError
+from foon_asp.hypergraph.cut import Cutter
+from foon_asp.hypergraph.exact_costs import ExactCosts
+from foon_asp.hypergraph.gap import Gap
+from foon_asp.hypergraph.incumbent_trees import guessed
+from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
+from foon_asp.hypergraph.relaxation_stages import apply
+from foon_asp.hypergraph.task import Task
+
+_USED = 1e-6  # an action of a greater LP value counts as used by an LP solution
+_VIOLATED = 0.999  # a landmark with a smaller sum of LP values is violated
+_TIGHT = 1.001  # a landmark with a greater sum of LP values is not tight
+
+
+class _Relaxed(NamedTuple):
+    """A tree, and the last LP solution: its rows, the values ``x`` of actions, and the weights of rows."""
+
+    tree: frozenset[int]
+    rows: Sequence[int]
+    x: Sequence[float]
+    weights: Sequence[float]
+
+
+class SharedLandmarks:
+    """Landmarks of all objects that some network makes from a kitchen, for costs without rounding.
+
+    The linear relaxation for a question takes the landmarks of its goals, and adds those that it separates
+    for the questions after it. A question may exclude actions.
+    """
+
+    def __init__(self, task: Task, costs: ExactCosts, actions: Iterable[int], objects: Sequence[int]) -> None:
+        import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
+
+        self._np, self.costs, self._actions = np, costs, frozenset(actions)
+        # rows are landmarks; its covering problem stays unsolved, since each goal has one of its own
+        self._relaxation = LandmarkRelaxation(task.graph, objects, self._actions, costs, task.expired)
+        self._number = dict(zip(objects, self._relaxation.targets, strict=True))
+        self._position = {action: i for i, action in enumerate(self._relaxation.actions)}
+        self._reached_without: list[bytearray] = []  # for each landmark, what is reached without its actions
+
+    def tighten(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> Gap:
+        """Return the gap of a question: a tree at least as good, its bound, and the candidates between them.
+
+        Cuts are evidence only where the gap is open, since there are many, and large ones.
+        """
+        relaxed = self._relax(task, excluded, tree)
+        candidates = self._actions - excluded
+        if relaxed is None:
+            return Gap(tree, 0, candidates)
+        relaxation, gap = self._relaxation, Gap(relaxed.tree, 0, candidates)
+        capacity = relaxation.in_parts()
+        capacity[[self._position[action] for action in excluded]] = capacity.sum()  # they limit no weight
+        weights = relaxation.shared_out(zip(relaxed.rows, relaxed.weights, strict=False), capacity)
+        bound, total = sum(weights.values()), task.total(gap)
+        if bound > (total - 1) * PARTS:
+            return gap.raised(total, gap.evidence).closed()
+        sums, targets = self._sums(relaxed.rows, self._np.array(relaxed.x)), self._targets(task)
+        cuts = {
+            row: self._cut(row, targets)
+            for row, value in zip(relaxed.rows, sums, strict=True)
+            if weights.get(row) or value < _TIGHT
+        }
+        shared = SharedCosts(
+            bound,
+            dict(zip(relaxation.actions, capacity.tolist(), strict=True)),
+            [(cuts[row], weight) for row, weight in weights.items() if weight],
+            dict(zip(relaxation.actions, relaxed.x, strict=True)),
+            [*cuts.values()],
+        )
+        return apply(task, gap, shared)
+
+    def _targets(self, task: Task) -> list[int]:
+        """Return the goals of a question by their numbers in the relaxation."""
+        return [self._number[goal] for goal in task.graph.goals]
+
+    def _relax(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> _Relaxed | None:
+        """Solve the relaxation for a question until its value meets the tree or no violated cut is found.
+
+        ``None`` where HiGHS fails.
+        """
+        np, relaxation, targets = self._np, self._relaxation, self._targets(task)
+        landmarks = [
+            row for row, reached in enumerate(self._reached_without) if not all(reached[o] for o in targets)
+        ]
+        forbidden = frozenset(self._position[action] for action in excluded)
+        uses = self._sums(landmarks, self._values(dict.fromkeys(tree, 1.0)))
+        # by complementary slackness, others have no weight where the tree is optimal and the relaxation tight
+        rows = [row for row, count in zip(landmarks, uses, strict=True) if count == 1]
+        covering, cutter = Covering(relaxation.relative.tolist()), None
+        for column in forbidden:
+            covering.bound(column, 0.0, 0.0)
+        for row in rows:
+            covering.add(relaxation.rows[row])
+        values: list[float] = []
+        budget = tuning.RELAXATION.cuts * len(relaxation.actions)
+        while True:
+            try:
+                solved = covering.solve(task.expired)
+            except UnsolvedError:
+                return None
+            x = np.where(relaxation.relative > 0, np.array(solved.x), 1.0)
+            tree = self._following(task, tree, x)
+            values.append(solved.value)
+            # costs are whole, so a bound above the total less one proves the total
+            almost = 100 * sum(map(self.costs, tree)) - 99
+            lacks = quotient(almost, 100 * relaxation.dearest) - solved.value
+            if lacks <= 0 or stalled(values, lacks) or task.expired():
+                break
+            chosen = frozenset(rows)
+            sums = self._sums(landmarks, x)
+            violated = sorted(
+                (value, row)
+                for row, value in zip(landmarks, sums, strict=True)
+                if value < _VIOLATED and row not in chosen
+            )
+            added = [row for _, row in violated[: tuning.SHARED.violated_landmarks]]
+            if not added:
+                cutter = cutter or Cutter(relaxation.graph, targets, forbidden)
+                count = len(relaxation.rows)
+                relaxation.separate([cutter], (), x.copy(), budget, task.expired)
+                added = list(range(count, len(relaxation.rows)))
+                self._learn(added)
+                landmarks += added
+            if not added:
+                break
+            rows += added
+            for row in added:
+                covering.add(relaxation.rows[row])
+        return _Relaxed(tree, rows, solved.x, covering.weights())
+
+    def _values(self, value_of_action: dict[int, float]) -> Any:
+        """Return an array of values by position; other actions have 0."""
+        values = self._np.zeros(len(self._relaxation.actions))
+        for action, value in value_of_action.items():
+            values[self._position[action]] = value
+        return values
+
+    def _sums(self, rows: Sequence[int], values: Any) -> list[float]:
+        """Return for each of the rows the sum of the values of its actions."""
+        if not rows:
+            return []
+        arrays = [self._relaxation.rows[row] for row in rows]
+        starts = self._np.cumsum([0, *map(len, arrays[:-1])])
+        return self._np.add.reduceat(values[self._np.concatenate(arrays)], starts).tolist()  # type: ignore[no-any-return]
+
+    def _learn(self, rows: Iterable[int]) -> None:
+        """Compute which objects new landmarks are landmarks of."""
+        for row in rows:
+            landmark = frozenset(self._relaxation.rows[row].tolist())
+            self._reached_without.append(self._relaxation.graph.reach(landmark))
+
+    def _following(self, task: Task, tree: frozenset[int], x: Any) -> frozenset[int]:
+        """Return the best of a tree and those among its actions and the ones of an LP solution."""
+        actions, costs = self._relaxation.actions, self.costs
+        used = self._np.flatnonzero(x > _USED).tolist()
+        shares = dict.fromkeys(tree, 0.0) | {actions[i]: float(x[i]) for i in used}
+        if len(shares) == len(tree):
+            return tree
+        trees = guessed(task.graph, shares, costs, shares, ())
+        return min(tree, *map(frozenset, trees), key=lambda tree: sum(map(costs, tree)))
+
+    def _cut(self, row: int, targets: Iterable[int]) -> frozenset[int]:
+        """Return the objects of a cut of one of the targets whose landmark are actions of a row."""
+        relaxation, reached = self._relaxation, self._reached_without[row]
+        graph, landmark = relaxation.graph, frozenset(relaxation.rows[row].tolist())
+        target = next(o for o in targets if not reached[o])
+        cut, stack = {target}, [target]
+        while stack:
+            for action in graph.makers[stack.pop()]:
+                if action not in landmark and cut.isdisjoint(graph.needs[action]):
+                    lacking = next(o for o in graph.needs[action] if not reached[o])
+                    cut.add(lacking)
+                    stack.append(lacking)
+        return relaxation.whole(frozenset(cut))

@@ -1,0 +1,119 @@
+"""What answers to some questions about a network teach about others."""
+
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.exact_costs import ExactCosts, TooFineError
+from foon_asp.hypergraph.gap import Gap
+from foon_asp.hypergraph.h_values import Derivations, derive
+from foon_asp.hypergraph.incumbent_trees import irredundant
+from foon_asp.hypergraph.reductions import Reduction
+from foon_asp.hypergraph.task import Task
+
+if TYPE_CHECKING:  # few questions need it
+    from foon_asp.hypergraph.shared_landmarks import SharedLandmarks
+
+
+class SolvedGoals:
+    """Trees of questions that differ in goals and removed units alone, and landmarks that they share.
+
+    Landmarks are shared from the first question on that greedy cuts did not answer: with easier questions it
+    is faster to begin each anew.
+    """
+
+    def __init__(self) -> None:
+        self._trees: dict[tuple[int, ...], frozenset[int]] = {}  # by goals; with units that others remove
+        self._derivations: Derivations | None = None  # by h_add, once landmarks are shared
+        self._landmarks: SharedLandmarks | None = None
+        self._declined = False  # whether costs are rounded, so that nothing is shared
+
+    @property
+    def sharing(self) -> bool:
+        """Whether questions share landmarks now."""
+        return self._landmarks is not None
+
+    def h_add(self, goal: int) -> int:
+        """Return the h_add value of a goal, 0 where landmarks are not shared and where there is no tree."""
+        return 0 if self._derivations is None else self._derivations.cost.get(goal, 0)
+
+    def gap(self, task: Task) -> Gap | None:
+        """Return the gap of a question with shared costs; ``None`` where nothing is, or there is no tree."""
+        if self._landmarks is None or self._derivations is None:
+            return None
+        if not self._derivations.cost.keys() >= set(task.graph.goals):
+            return None
+        restriction, units = task.problem.restriction, task.graph.units
+        removed = frozenset(
+            action
+            for action in self._derivations.h_actions
+            if restriction is not None and action < units and restriction.removed(action)
+        )
+        tree = self._tree_without(task, removed) if removed or len(task.graph.goals) > 1 else self._tree(task)
+        return None if tree is None else self._landmarks.tighten(task, removed, tree)
+
+    @property
+    def costs(self) -> ExactCosts | None:
+        """The costs of all actions that can run, by which shared gaps are measured."""
+        return None if self._landmarks is None else self._landmarks.costs
+
+    def _tree(self, task: Task) -> frozenset[int]:
+        """Return the best tree of trees of the preconditions of an achiever, solved or by h_add."""
+        graph, costs, derivations, trees = task.graph, task.costs, self._derivations, list[set[int]]()
+        assert costs is not None
+        assert derivations is not None
+        (goal,) = graph.goals
+        for achiever in graph.makers[goal]:
+            if achiever in derivations.h_actions:
+                needs = graph.needs[achiever]
+                solved = [self._trees[o,] for o in needs if (o,) in self._trees]
+                others = derivations.tree(graph, [o for o in needs if (o,) not in self._trees])
+                assert others is not None
+                trees.append(others.union([achiever], *solved))
+        trees.sort(key=lambda tree: sum(map(costs, tree)))
+        smallest = (irredundant(graph, tree, costs) for tree in trees[: tuning.SHARED.unions])
+        return frozenset(min(smallest, key=lambda tree: sum(map(costs, tree))))
+
+    def _tree_without(self, task: Task, removed: frozenset[int]) -> frozenset[int] | None:
+        """Return a tree without some actions, by h_add and the tree of the same goals, if any."""
+        graph, costs, derivations = task.graph, task.costs, self._derivations
+        assert costs is not None
+        assert derivations is not None
+        allowed = derivations.h_actions.keys() - removed
+        tree = derive(graph, allowed, costs, h_add=True).tree(graph, graph.goals)
+        if tree is None:
+            return None
+        union = (tree | self._trees.get(graph.goals, frozenset())) - removed
+        trees = (irredundant(graph, actions, costs) for actions in (union, tree))
+        return frozenset(min(trees, key=lambda tree: sum(map(costs, tree))))
+
+    def learn(self, task: Task, gap: Gap | None) -> None:
+        """Keep the tree of a proved gap; share landmarks from now on if greedy cuts did not prove it."""
+        if gap is None or not gap.proved:
+            return
+        self._trees[task.graph.goals] = gap.incumbent
+        if not gap.evidence.tight or self._landmarks is not None or self._declined:
+            return
+        self._declined = True
+        if not {Reduction.BOUNDS, Reduction.DEAR} <= task.reductions:
+            return
+        graph = task.graph
+        derivations = derive(graph, range(len(graph.needs)), task.coarse, h_add=True)
+        with suppress(TooFineError):
+            costs = ExactCosts(task.problem, task.objectives, derivations.h_actions)
+            if not costs.doubt:
+                from foon_asp.hypergraph.shared_landmarks import SharedLandmarks  # noqa: PLC0415 (numpy)
+
+                self._derivations = derivations
+                objects = sorted(derivations.cost)
+                self._landmarks = SharedLandmarks(task, costs, derivations.h_actions, objects)
+
+
+def is_open_to(task: Task) -> bool:
+    """Return whether a question has goals to make, no sets to require, and a network looked at as a whole."""
+    restriction = task.problem.restriction
+    return (
+        len(task.graph.goals) > 0
+        and (restriction is None or not restriction.required)
+        and len(task.graph.needs) <= task.tuning.lazy_actions
+    )
