@@ -39,11 +39,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from contest.clingo_plain import ready as clingo_ready
-from contest.egraph import EGraph
 from contest.engines import ENGINES
 from contest.instance import raw_units
 from contest.page import put, table
 from contest.trial import End, Work, attempt
+from fields.egraph import EGraph
 
 from foon_asp.certificate import certify
 from foon_asp.certificate.certificate import subject_of
