@@ -136,7 +136,7 @@ def questions_of(family: str, folder: Path, most: int, limit: float) -> Iterator
 
 def instances_of(folder: Path, made: Path, limit: float) -> Iterator[Question]:
     """Return a question for each planning task and e-graph, by price; each becomes a folder of data."""
-    from contest.egraph import EGraph  # noqa: PLC0415
+    from fields.egraph import EGraph  # noqa: PLC0415
     from neutral import write_task  # noqa: PLC0415
     from records import instances  # noqa: PLC0415
 

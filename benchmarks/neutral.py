@@ -17,7 +17,7 @@ import json
 from fractions import Fraction
 from pathlib import Path
 
-from contest.egraph import EGraph
+from fields.egraph import EGraph
 
 from foon_asp.deadline import Deadline
 from foon_asp.planning.strips_task import StripsTask

@@ -74,6 +74,7 @@ class Cutter:
             for o in {numbers[o] for o in graph.needs[action] if o in numbers}:
                 self._consumers[o].append(i)
                 self._missing[i] += 1
+        self._consumer_counts = {o: len(self._consumers[number]) for o, number in numbers.items()}
 
     def reached_by(self, actions: Collection[int]) -> bool:
         """Return whether these actions alone reach all targets."""
@@ -95,12 +96,10 @@ class Cutter:
             return None
         refused = {self.actions[i] for i in growth.refuse([positions[a] for a in order])}
         reached = bytearray(self._reachable)
-        consumer_counts: dict[int, int] = {}
-        for o, number in self._numbers.items():
-            reached[o] = growth.reached[number]
-            consumer_counts[o] = len(self._consumers[number])
+        for o in [o for o, known in zip(self._numbers, growth.reached, strict=True) if not known]:
+            reached[o] = False
         first = next(o for o in self.targets if not reached[o])
-        return self._shrink(first, refused, reached, consumer_counts)
+        return self._shrink(first, refused, reached, self._consumer_counts)
 
     def among(self, actions: Iterable[int]) -> tuple[int, ...] | None:
         """Return the allowed ones of some actions; ``None`` where one of them is not in :attr:`actions`."""
@@ -202,11 +201,13 @@ class _Growth:
     def _learn(self, refused: list[int]) -> None:
         """Record an object whose consequences alone include all targets, if ``refused`` has one."""
         for o in refused:
+            unreached = self._unreached
             new = None if len(refused) == 1 else self._spread([o])
             if new is None:
                 self._decisive[o] = True
                 return
             self._undo(new)
+            self._unreached = unreached
 
     def _spread(self, objects: list[int]) -> list[int] | None:
         """Reach objects and their consequences by admitted actions; return all new objects.
@@ -214,7 +215,8 @@ class _Growth:
         ``None``, and nothing changes, where the targets are reached.
         """
         waiting, missing, reached = self._waiting, self._missing, self.reached
-        consumers, targets = self._consumers, self._targets
+        consumers, gives, decisive, targets = self._consumers, self._gives, self._decisive, self._targets
+        unreached = self._unreached
         new: list[int] = []
         for batch in (stack := [objects]):  # grows while it is walked through
             for o in batch:
@@ -223,14 +225,15 @@ class _Growth:
                 reached[o] = True
                 new.append(o)
                 if o < targets:
-                    self._unreached -= 1
+                    unreached -= 1
                 for consumer in consumers[o]:
-                    missing[consumer] -= 1
-                    if not missing[consumer] and waiting[consumer]:
-                        stack.append(self._gives[consumer])
-                if not self._unreached or self._decisive[o]:
+                    missing[consumer] = lacking = missing[consumer] - 1
+                    if not lacking and waiting[consumer]:
+                        stack.append(gives[consumer])
+                if not unreached or decisive[o]:
                     self._undo(new)
                     return None
+        self._unreached = unreached
         return new
 
     def _undo(self, new: list[int]) -> None:
@@ -238,7 +241,5 @@ class _Growth:
         missing, reached = self._missing, self.reached
         for o in new:
             reached[o] = False
-            if o < self._targets:
-                self._unreached += 1
             for consumer in self._consumers[o]:
                 missing[consumer] += 1

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import records
-from contest.egraph import EGraph, ENode
+from fields.egraph import EGraph, ENode
 
 from foon_asp.deadline import Deadline
 from foon_asp.questions.relax import solved
