@@ -60,7 +60,7 @@ def node_ids(dataset: Named, names: Names, what: str) -> list[int]:
 def stated_copies(
     dataset: Named, amounts: Mapping[Any, int | None], what: str, least: int = 1
 ) -> dict[ObjectNode, int]:
-    """Return amounts by object node, from amounts by name; ``None`` is none stated.
+    """Return amounts by object node, from amounts by name; ``None`` where no amount is stated.
 
     Raises :class:`UserError` as :func:`node_id` does, and for what is no amount from ``least`` on.
     """

@@ -101,7 +101,7 @@ def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
 
 
 def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]:
-    """Return the labels that the most units have, with the number of these units.
+    """Return the labels that the most units have, with their numbers of units.
 
     Of labels with as many units the first in the alphabet comes first.
     """

@@ -62,7 +62,7 @@ class _TooManyStates(Exception):  # noqa: N818 (is caught here)
 
 
 def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int) -> Policy:
-    """Return the policy with the greatest chance of those that follow some trees one after the other.
+    """Return the policy with the greatest chance among policies that follow some trees one after another.
 
     Among equal chances, one with fewer branches is returned. Of more than
     :attr:`PolicyLimits.policies`, only those with the fewest branches are compared.

@@ -66,14 +66,14 @@ class Meaning(NamedTuple):
     """The meaning of a constraint: conditions that a tree has to satisfy, all of them together.
 
     Attributes:
-        removed: The tree has none of these units.
+        removed: Units that the tree has not.
         wanted: Each entry lists alternatives, and of one alternative the tree has a unit of each set.
         things: Sets of units, each with an amount from 0; the tree uses a thing if it has one of its units.
         max_sum: The amounts of the things that the tree uses add up to this at most.
         never: No tree satisfies the constraint.
         barred: Returns, for two sets of units, the units that a tree with all of the first set and none of
             the second has not.
-        limits: Each entry has amounts of units, from 0, and the greatest sum of those in the tree.
+        limits: Each entry has amounts of units, from 0, and the greatest sum that a tree may have.
     """
 
     removed: Units = frozenset()

@@ -311,7 +311,7 @@ def _with_copies(
             "shopping lists with items used up are not built under rules: leave the rules out, or ask with "
             "--items lasting"
         )
-    limited = replace(problem, kitchen=problem.endless)  # what there is an amount of can be bought, too
+    limited = replace(problem, kitchen=problem.endless)  # nodes with an amount can be bought, too
     shop, needs = Shop(limited), {*problem.goals, *(o for needs in problem.needs for o in needs)}
     offers = [(Offer.PRICED, dict(priced))] if priced is not None else _for_sale(limited, shop)
     cheapest, made_of = _Lists([], complete=True), (Offer.FOR_SALE, dict[int, Fraction]())
