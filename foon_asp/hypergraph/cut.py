@@ -96,7 +96,7 @@ class Cutter:
             return None
         refused = {self.actions[i] for i in growth.refuse([positions[a] for a in order])}
         reached = bytearray(self._reachable)
-        for o in [o for o, known in zip(self._numbers, growth.reached, strict=True) if not known]:
+        for o in [o for o, is_reached in zip(self._numbers, growth.reached, strict=True) if not is_reached]:
             reached[o] = False
         first = next(o for o in self.targets if not reached[o])
         return self._shrink(first, refused, reached, self._consumer_counts)

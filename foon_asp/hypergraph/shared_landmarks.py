@@ -18,9 +18,20 @@ from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 from foon_asp.hypergraph.relaxation_stages import apply
 from foon_asp.hypergraph.task import Task
 
-_USED = 1e-6  # an action of a greater LP value counts as used by an LP solution
-_VIOLATED = 0.999  # a landmark with a smaller sum of LP values is violated
-_TIGHT = 1.001  # a landmark with a greater sum of LP values is not tight
+
+class _LpTolerance(NamedTuple):
+    """Tolerances of LP values, which are floats; bounds do not rely on them.
+
+    ``used``: an action of a greater LP value counts as used. ``violated``: a landmark with a smaller sum of
+    LP values is violated. ``tight``: a landmark with a greater sum is not tight.
+    """
+
+    used: float = 1e-6
+    violated: float = 0.999
+    tight: float = 1.001
+
+
+_LP = _LpTolerance()
 
 
 class _Relaxed(NamedTuple):
@@ -69,7 +80,7 @@ class SharedLandmarks:
         cuts = {
             row: self._cut(row, targets)
             for row, value in zip(relaxed.rows, sums, strict=True)
-            if weights.get(row) or value < _TIGHT
+            if weights.get(row) or value < _LP.tight
         }
         shared = SharedCosts(
             bound,
@@ -122,7 +133,7 @@ class SharedLandmarks:
             violated = sorted(
                 (value, row)
                 for row, value in zip(landmarks, sums, strict=True)
-                if value < _VIOLATED and row not in chosen
+                if value < _LP.violated and row not in chosen
             )
             added = [row for _, row in violated[: tuning.SHARED.violated_landmarks]]
             if not added:
@@ -163,7 +174,7 @@ class SharedLandmarks:
     def _following(self, task: Task, tree: frozenset[int], x: Any) -> frozenset[int]:
         """Return the best of a tree and those among its actions and the ones of an LP solution."""
         actions, costs = self._relaxation.actions, self.costs
-        used = self._np.flatnonzero(x > _USED).tolist()
+        used = self._np.flatnonzero(x > _LP.used).tolist()
         shares = dict.fromkeys(tree, 0.0) | {actions[i]: float(x[i]) for i in used}
         if len(shares) == len(tree):
             return tree
