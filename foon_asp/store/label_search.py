@@ -35,7 +35,8 @@ def similar_labels(database: sqlite3.Connection, label: str, max_labels: int) ->
     ranked = "SELECT rowid FROM label_trigram WHERE label_trigram MATCH ? ORDER BY rank LIMIT ?"
     try:
         rows = database.execute(
-            f"SELECT name FROM label WHERE id IN ({ranked}) ORDER BY name", (query or '""', STORE.compared_labels)
+            f"SELECT name FROM label WHERE id IN ({ranked}) ORDER BY name",
+            (query or '""', STORE.compared_labels),
         ).fetchall()
     except sqlite3.OperationalError:  # no such table, module or tokenizer
         rows = database.execute("SELECT name FROM label ORDER BY name").fetchall()
