@@ -171,13 +171,15 @@ def _read_more(
     Where many were read, that goes on until a tree that follows h_add lacks none: such trees mostly lead to
     the units that the optimal one needs, and are found in a tenth of a proof's time.
     """
-    many = nearby.units > REFINEMENT.proved_units
-    wide = many or leave_unsettled(settings)
-    nearby.grow(lacking, REFINEMENT.wide_step if wide else REFINEMENT.narrow_step)
-    if not many or settings.constraints:
+    many_read = nearby.units > REFINEMENT.proved_units
+    long_rounds = many_read or leave_unsettled(settings)
+    nearby.grow(lacking, REFINEMENT.wide_step if long_rounds else REFINEMENT.narrow_step)
+    if not many_read or settings.constraints:
         return
     while (tree := h_add_tree(nearby.relaxed, levels(tuple(objectives)))) is not None:
-        lacking = nearby.lacking(executable_order(nearby.relaxed, tree))
+        order = executable_order(nearby.relaxed, tree)
+        assert order is not None
+        lacking = nearby.lacking(order)
         if not lacking:
             return
         nearby.grow(lacking, REFINEMENT.narrow_step)

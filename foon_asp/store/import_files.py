@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.file_permissions import pass_on, warn_of_replaced
-from foon_asp.garbage import uncollected
+from foon_asp.garbage_collection import uncollected
 from foon_asp.network import FunctionalUnit, Source
 from foon_asp.problem import unrated_remarks
 from foon_asp.store.builder import StoreBuilder
