@@ -11,6 +11,7 @@ counts it. Files are in the page cache. Answers are compared.
 
     python benchmarks/store.py                                 10,000 units and 100,000
     python benchmarks/store.py --units 1000000
+    python benchmarks/store.py --units 1000000 --family deep   one store, and all goals of its own
 """
 
 import argparse
@@ -90,9 +91,9 @@ def medians(runs: Sequence[Run]) -> Medians:
     )
 
 
-def generate(units: int, seed: int, folder: Path) -> None:
+def generate(units: int, seed: int, folder: Path, family: str = "recipe-like") -> None:
     """Write a network with all that stands beside it."""
-    words = ["--family", "recipe-like", "--units", units, "--seed", seed, "--out", folder]
+    words = ["--family", family, "--units", units, "--seed", seed, "--out", folder]
     run(Path(__file__).with_name("generate.py"), *words)
 
 
@@ -170,6 +171,25 @@ def measure_solve(stores: Sequence[Path], goal: str, cone: int, runs: int) -> Me
     return ratios
 
 
+def measure_goals(folder: Path, units: int, seed: int, runs: int, family: str) -> None:
+    """Import one network, ask each of its goals, print the trees and the medians of the figures."""
+    generate(units, seed, folder / family, family)
+    store = folder / f"{family}.foon"
+    measure_import(folder / family, store, units, runs)
+    print("\n  tree  seconds  of processor  MB peak   goal")
+    for entry in Store(store).goals:
+        words = ["solve", "--network", store, "--goal", entry.pattern.label, "--format", "json"]
+        asked = [run("-m", "foon_asp", *words) for _ in range(runs)]
+        found, figures = json.loads(asked[0].output), medians(asked)
+        if found["status"] != "optimal":
+            raise SystemExit(f"{entry.pattern.label}: {found['status']}")
+        print(
+            f"{len(found['units']):>6} {figures.seconds:8.2f} {figures.processor:13.2f} {figures.peak:8.0f}"
+            f"   {entry.pattern.label}",
+            flush=True,
+        )
+
+
 def main() -> None:
     """Make the data, run everything and print the ratios."""
     parser = argparse.ArgumentParser(
@@ -180,8 +200,12 @@ def main() -> None:
     parser.add_argument("--cone", type=int, default=1_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--family", help="of one network, whose own goals are asked")
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
+        if chosen.family is not None:
+            measure_goals(Path(name), chosen.units, chosen.seed, chosen.runs, chosen.family)
+            return
         few, many, others = (Path(name) / part for part in ("few", "many", "others"))
         generate(chosen.small, chosen.seed, few)
         shutil.copytree(few, many)

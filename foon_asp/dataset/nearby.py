@@ -112,12 +112,12 @@ class Nearby:
         lacking.update(goal for goal in problem.goals if goal not in available)
         return sorted(map(problem.network.object_number, lacking))
 
-    def grow(self, objects: Iterable[int], quickly: bool = False) -> None:
+    def grow(self, objects: Iterable[int], step: int) -> None:
         """Read more units that lead to open objects, by id in the whole network.
 
-        The number of units read grows by a tenth, or by a fifth if ``quickly``.
+        One unit more is read for each ``step`` units that were read before.
         """
-        self._cone.grow(objects, len(self._cone.units) // (5 if quickly else 10) + 1)
+        self._cone.grow(objects, len(self._cone.units) // step + 1)
         self._problem = self._relaxed = None
 
     @property

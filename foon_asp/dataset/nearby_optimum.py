@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import hold_for_parts, leave_unsettled, program_of
@@ -10,10 +10,29 @@ from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import ALL
+from foon_asp.hypergraph.reduction import h_add_tree
 from foon_asp.problem import Costs, Objective, Problem, executable_order, follow, levels, multiplies, reach
 
 if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.dataset.nearby import Nearby
+
+
+class RefinementTuning(NamedTuple):
+    """How many units of a store are read in each round, and when rounds do without a proof.
+
+    ``proved_units``: units read, from which on trees without a proof lead to more units: a proof among fewer
+    is quick, and reads fewest. With twice as many, the hardest questions take twice as long
+    (``benchmarks/store.py``, family ``deep``).
+    ``narrow_step``: for so many units that were read, a round reads one more. ``wide_step``: likewise, where
+    rounds are long, and what was read before matters less.
+    """
+
+    proved_units: int = 1_500
+    narrow_step: int = 10
+    wide_step: int = 5
+
+
+REFINEMENT = RefinementTuning()
 
 
 def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> "Nearby | None":
@@ -69,7 +88,7 @@ def solve_nearby(
         if lacking and outcome.status is Status.OPTIMAL:
             try:
                 with deadline.watched("reading"):  # stops early, so that time for a tree remains
-                    nearby.grow(lacking, quickly=unconstrained is not None)
+                    _read_more(nearby, lacking, objectives, settings)
             except KeyboardInterrupt:
                 deadline.interrupt()
                 outcome = outcome._replace(proof=None, stopped=deadline.stopped)
@@ -117,7 +136,7 @@ def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
             return True
         try:
             with deadline.watched("reading"):
-                nearby.grow(lacking, quickly=True)
+                nearby.grow(lacking, REFINEMENT.wide_step)
         except KeyboardInterrupt:
             deadline.interrupt()
             return True
@@ -138,10 +157,32 @@ def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: se
             return [*map(nearby.problem.network.unit_number, outcome.units)]
         try:
             with settings.begun.watched("reading"):
-                nearby.grow(lacking, quickly=True)
+                nearby.grow(lacking, REFINEMENT.wide_step)
         except KeyboardInterrupt:
             settings.begun.interrupt()
             return []
+
+
+def _read_more(
+    nearby: "Nearby", lacking: Sequence[int], objectives: Sequence[Objective], settings: Settings
+) -> None:
+    """Read more units that lead to the nodes that an optimal tree of the relaxation lacks.
+
+    Where many were read, that goes on until a tree that follows h_add lacks none: such trees mostly lead to
+    the units that the optimal one needs, and are found in a tenth of a proof's time.
+    """
+    many_read = nearby.units > REFINEMENT.proved_units
+    long_rounds = many_read or leave_unsettled(settings)
+    nearby.grow(lacking, REFINEMENT.wide_step if long_rounds else REFINEMENT.narrow_step)
+    if not many_read or settings.constraints:
+        return
+    while (tree := h_add_tree(nearby.relaxed, levels(tuple(objectives)))) is not None:
+        order = executable_order(nearby.relaxed, tree)
+        assert order is not None
+        lacking = nearby.lacking(order)
+        if not lacking:
+            return
+        nearby.grow(lacking, REFINEMENT.narrow_step)
 
 
 def least_with_more(

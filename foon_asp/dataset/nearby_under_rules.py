@@ -18,7 +18,7 @@ from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, program_of, reach_of_rules, varying_available
 from foon_asp.asp.optimum import solve
 from foon_asp.dataset.nearby import Nearby
-from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
+from foon_asp.dataset.nearby_optimum import REFINEMENT, least_with_more, near_goals, solve_nearby
 from foon_asp.hypergraph import bound_under_rules
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.store.outline import FAR, Mask
@@ -176,7 +176,7 @@ class _Search:
             open_nodes = nearby.open_to(units)
             if not open_nodes:
                 return {*map(relaxed.network.unit_number, units)}
-            nearby.grow(open_nodes, quickly=True)
+            nearby.grow(open_nodes, REFINEMENT.wide_step)
         return None
 
     def _max_far_cost(self, costs: Costs) -> int:

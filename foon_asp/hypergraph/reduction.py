@@ -151,6 +151,19 @@ def bound_under_rules(
     return _without_branching(problem, objectives, reductions, expired, listener, guard, redundant, course)
 
 
+def h_add_tree(problem: Problem, objectives: Sequence[Objective]) -> frozenset[int] | None:
+    """Return the units of a tree that follows h_add: near to the optimum, and found without any proof.
+
+    ``objectives`` are those of :func:`reduce`. ``None`` where there is no tree. Raises
+    ``KeyboardInterrupt`` where it is interrupted.
+    """
+    course = Course(_follow_h_add, _follow_h_add)
+    reduced = _without_branching(problem, objectives, ALL, lambda: False, None, nullcontext, False, course)
+    if reduced.interrupted:
+        raise KeyboardInterrupt
+    return reduced.tree
+
+
 def _without_branching(
     problem: Problem,
     objectives: Sequence[Objective],
@@ -318,6 +331,14 @@ def rounds_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 ROUNDS = Course(rounds_near_goals, rounds)
+
+
+def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
+    """Look for a better tree by h_add."""
+    if task.costs is not None:
+        gap = greedy.follow_h_add(task, gap)
+        yield gap
+    return gap
 
 
 def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:

@@ -17,12 +17,13 @@ import hashlib
 import json
 import math
 import re
+from collections import defaultdict
 from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from decimal import Context, Decimal
 from fractions import Fraction
 from functools import cache
-from itertools import accumulate
+from itertools import accumulate, chain
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
@@ -331,6 +332,7 @@ class Check:
         self.goals = tuple(_goal(goal, network) for goal in read_list(certificate["goals"]))
         require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
+        self.preconditions, self.cost = cache(self._preconditions), cache(self._cost)  # of a member
         self.stand_ins = subject.stand_ins
         self.rules, self.claimed = rules, 0
         each_price = cache(lambda: self._each_price(prices))
@@ -517,7 +519,7 @@ class Check:
         self._keep(frozenset(units))
         items = {o for unit in units for o in self.needs(unit) if o is not None and o in self.kitchen}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
-        total = self.sum(map(self._cost, members))
+        total = self.sum(map(self.cost, members))
         return total, self._figures(units, total)
 
     def _figures(self, units: list[int], total: Amount) -> list[int | Fraction]:
@@ -592,7 +594,7 @@ class Check:
                 "expected weights, a hopeless cut, a broken rule or a branch",
             )
             packed, reduced_cost = self._packed(node["weights"], node.get("limits", []), used, barred)
-            paid = self.sum(map(self._cost, used))
+            paid = self.sum(map(self.cost, used))
             for addition in [{}] if above_cutoff is None else map(reduced_cost, above_cutoff):
                 total = self._rounded(self.sum([packed, addition]), node.get("multiples", {}))
                 require(self._enough([total, paid], least), "the weights do not add up to enough")
@@ -622,35 +624,61 @@ class Check:
         a member cost at least the sum and the reduced cost of the member.
         """
         total: Amount = {}
-        loads: dict[int, Amount] = {}
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
         for (limit_number,), weight in self.read_weights("limits", limits, self._read):
             limit = self.limit_at(limit_number)
             self._spend(len(used))
             self._add(total, self.times(weight, -limit.remaining(used)))
             carried.append((weight, limit.amounts))
-        for (number,), weight in self.read_weights("weights", weights, self._read):
+        rows = [*self.read_weights("weights", weights, self._read)]
+        scales = self._common_denominators([weight for _, weight in rows])
+        # by part of a weight and member, over the common denominator: whole numbers are added quickly
+        loads: dict[tuple[int, Fraction | None], defaultdict[int, int]] = {
+            key: defaultdict(int) for key in scales
+        }
+        for (number,), weight in rows:
             self._add(total, weight)
-            for member in self._crossing(number, used, without):
-                self._add(loads.setdefault(member, {}), weight)
+            crossing = self._crossing(number, used, without)
+            for key, value in weight.items():
+                if not value:
+                    continue
+                self._spend_on(_bits(value) + scales[key].bit_length(), len(crossing))
+                scaled, load = value.numerator * (scales[key] // value.denominator), loads[key]
+                for member in crossing:
+                    load[member] += scaled
+
+        def load_of(member: int) -> Amount:
+            return {key: Fraction(load.get(member, 0), scales[key]) for key, load in loads.items()}
 
         def allowed(member: int) -> Amount:
             # a member that is used anyway was paid for, and can carry nothing more
-            capacity = {} if member in used else self._cost(member)
+            capacity = {} if member in used else self.cost(member)
             if carried and member not in used:
                 extra = (self.times(w, amounts[member]) for w, amounts in carried if member in amounts)
                 capacity = self.sum([capacity, *extra])
             return capacity
 
         def reduced_cost(member: int) -> Amount:
-            return self.sum([allowed(member), negative(loads.get(member, {}))])
+            return self.sum([allowed(member), negative(load_of(member))])
 
-        for member, load in loads.items():
-            if allowed(member) != load:
+        for member in dict.fromkeys(chain.from_iterable(loads.values())):
+            if allowed(member) != load_of(member):
                 require(
                     self.sign(reduced_cost(member)) >= 0, f"unit or item {member} carries more than it costs"
                 )
         return total, reduced_cost
+
+    def _common_denominators(self, amounts: Sequence[Amount]) -> dict[tuple[int, Fraction | None], int]:
+        """Return the least common denominator of each part of some amounts."""
+        scales: dict[tuple[int, Fraction | None], int] = {}
+        for amount in amounts:
+            for key, value in amount.items():
+                scale = scales.get(key, 1)
+                if scale % value.denominator:
+                    scale = math.lcm(scale, value.denominator)
+                    self._spend_on(scale.bit_length())
+                scales[key] = scale
+        return scales
 
     def _rounded(self, amount: Amount, stated: Any) -> Amount:
         """Round up a bound to a stated common divisor of all costs.
@@ -675,8 +703,11 @@ class Check:
         """Return whether the costs of all units and items by an objective are multiples of a number."""
         if self.objectives[level] == "success":
             return False
-        for member in (*range(len(self.network)), *(len(self.network) + o for o in self.kitchen)):
-            cost = self._cost_by(level, member) or Fraction(0)
+        members = (*range(len(self.network)), *(len(self.network) + o for o in self.kitchen))
+        self._spend(len(members))
+        costs = (self._cost_by(level, member) or Fraction(0) for member in members)
+        for ratio in dict.fromkeys(cost.as_integer_ratio() for cost in costs):
+            cost = Fraction(*ratio)
             self._spend_on(_bits(cost) + _bits(multiple))
             if cost % multiple:
                 return False
@@ -691,7 +722,7 @@ class Check:
         before = (
             any(goal in cut and goal not in self.kitchen for goal in self.goals)
             or not cut.isdisjoint(self.ruled.goals)
-            or any(not cut.isdisjoint(self._preconditions(member)) for member in used)
+            or any(not cut.isdisjoint(self.preconditions(member)) for member in used)
         )
         require(before, f"cut {number} holds neither a goal nor what a used unit needs")
         return self.members[index] - without
@@ -705,10 +736,10 @@ class Check:
                 require("kitchen" in self.objectives, "a cut holds a kitchen item")
                 yield len(network) + o
             elif o in own:
-                yield from (member for member in own[o] if cut.isdisjoint(self._preconditions(member)))
+                yield from (member for member in own[o] if cut.isdisjoint(self.preconditions(member)))
             else:
                 for unit in network.producers[o]:
-                    if o in self.gives(unit) and cut.isdisjoint(self._preconditions(unit)):
+                    if o in self.gives(unit) and cut.isdisjoint(self.preconditions(unit)):
                         yield unit
 
     def _preconditions(self, member: int) -> frozenset[int | None]:
@@ -945,11 +976,11 @@ class Check:
             self._add(total, amount)
         return total
 
-    def _spend_on(self, bits: int) -> None:
-        """Count the steps of an operation on fractions of ``bits`` bits, whose time grows with the square."""
+    def _spend_on(self, bits: int, times: int = 1) -> None:
+        """Count the steps of operations on fractions of ``bits`` bits, whose time grows with the square."""
         if bits > ALLOWED.sum_bits:
             raise LimitError("its fractions add up to numbers that are too long")
-        self._spend(5 + (bits // 512) ** 2)
+        self._spend(times * (5 + (bits // 512) ** 2))
 
     def _spend(self, steps: int) -> None:
         self.steps -= steps

@@ -11,7 +11,7 @@ from foon_asp.network import DataAmounts, FunctionalUnit, ObjectNode, Source
 from foon_asp.network.node_pattern import LookupKey, lookup_keys
 from foon_asp.network.starting_kitchen import recipe_kitchen
 from foon_asp.store.columns import (
-    NodeColumns,
+    attribute_columns,
     decoded_label,
     encode,
     encoded_label,
@@ -19,20 +19,17 @@ from foon_asp.store.columns import (
     ids_of,
     listed,
     listed_ids,
-    node_columns,
     node_of,
     quoted,
 )
 from foon_asp.store.digests import content_digests
 from foon_asp.store.label_search import write_trigrams
 from foon_asp.store.store_tables import OUTLINE, UNITS_OF_FILE, create_indexes, create_tables
+from foon_asp.store.tuning import STORE
 from foon_asp.text.assumed_goals import as_entry, wanted_outputs
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode
 from foon_asp.text.unit_price_list import UnitPriceList
-
-_ROWS_PER_WRITE = 1_000  # of one table
-_MAX_CACHED_NODES = 50_000  # ids by node, for nodes met lately: copies are mostly close together
 
 
 class StoreBuilder:
@@ -54,10 +51,12 @@ class StoreBuilder:
         self._stock: dict[int, int] = {}  # nodes of the kitchen with an amount
         for number, (pattern, *_) in enumerate(kitchen or ()):
             self._entries.setdefault(pattern.lookup_key, []).append(number)
-        self._nodes: dict[str, int] = {}  # ids by their columns
+        self._entry_labels = {entry.pattern.label for entry in kitchen or ()}
+        self._nodes: dict[tuple[int, int], int] = {}  # ids by label and attributes
         self._latest: dict[ObjectNode, int] = {}  # ids of nodes met lately
         self._units: dict[str, int] = {}  # ids by motion, inputs and outputs
         self._labels: dict[str, int] = {}
+        self._attributes: dict[str, int] = {}  # of nodes, by their columns
         self._motions: dict[str, int] = {}
         self._motion_sources: list[Source] = []  # of the first unit with each
         self._files: dict[str, int] = {}
@@ -95,10 +94,12 @@ class StoreBuilder:
             self._insert("unit", unit, motion_id, listed_ids(ins), listed_ids(outs))
             for o in outs:
                 self._insert("producer", o, unit)
-            for name, numbers in zip(
-                OUTLINE, ((motion_id,), (len(ins),), ins, (len(outs),), outs), strict=True
-            ):
-                self._outline[name].extend(numbers)
+            outline = self._outline
+            outline["motions"].append(motion_id)
+            outline["input_counts"].append(len(ins))
+            outline["inputs"].extend(ins)
+            outline["output_counts"].append(len(outs))
+            outline["outputs"].extend(outs)
             self._written_units += 1
         for file, line, column, videos in sources:
             self._insert("source", unit, self._sources, self._origin(file, videos), line, column)
@@ -167,7 +168,9 @@ class StoreBuilder:
         self._write()
         write_trigrams(self._database)
         units, objects = self.units, self.objects
-        for index in (self._units, self._nodes, self._latest, self._outline):  # frees memory for the indexes
+        self._units.clear()  # all this frees memory for the indexes
+        self._nodes.clear()
+        for index in (self._attributes, self._latest, self._outline):
             index.clear()
         create_indexes(self._database)
         self._write_starting()
@@ -203,17 +206,14 @@ class StoreBuilder:
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
         """Return the id of a unit that was added, or ``None`` if it was not."""
-        ins, outs = (
-            [self._nodes.get("".join(node_columns(node))) for node in nodes]
-            for nodes in (unit.inputs, unit.outputs)
-        )
+        ins, outs = ([*map(self._added_id, nodes)] for nodes in (unit.inputs, unit.outputs))
         if None in ins or None in outs:
             return None
         return self._units.get(_unit_key(unit.motion, ins, outs))  # type: ignore[arg-type]
 
     def _amounts(self, side: Mapping[ObjectNode, int]) -> list[tuple[int, int]]:
         """Return the amounts of nodes by id."""
-        return [(self._nodes["".join(node_columns(node))], amount) for node, amount in side.items()]
+        return [(self._node_id(node), amount) for node, amount in side.items()]
 
     def _by_id(self, prices: Mapping[FunctionalUnit, Fraction]) -> dict[int, Fraction]:
         """Return prices by the ids of units, for all units that were added."""
@@ -224,31 +224,39 @@ class StoreBuilder:
         """Return the id of a node, which is added if it is new."""
         number = self._latest.get(node)
         if number is None:
-            columns = node_columns(node)
+            label = self._labels.get(node.label)
+            if label is None:
+                label = self._labels[node.label] = len(self._labels)
+                self._insert("label", label, encoded_label(node.label))
+            columns = attribute_columns(*node[1:])
+            attributes = self._attributes.setdefault("".join(columns), len(self._attributes))
             new = len(self._nodes)
-            number = self._nodes.setdefault("".join(columns), new)
+            number = self._nodes.setdefault((label, attributes), new)
             if number == new:
-                self._add_node(number, node, columns)
-            if len(self._latest) >= _MAX_CACHED_NODES:
+                self._insert("node", number, label, *columns, int(self._in_kitchen(number, node)), 0)
+            if len(self._latest) >= STORE.cached_nodes:
                 self._latest.clear()
             self._latest[node] = number
         return number
 
-    def _add_node(self, number: int, node: ObjectNode, columns: NodeColumns) -> None:
-        """Add a node to the rows that are written next."""
-        in_kitchen = False
-        for key in lookup_keys(node) if self._kitchen else ():
-            for entry in self._entries.get(key, ()):
-                item = None if self._kitchen is None else self._kitchen[entry]
-                if item is not None and item.pattern.matches(node):
-                    in_kitchen = self.matched[entry] = True
-                    if item.amount is not None:
-                        self._stock[number] = item.amount
+    def _added_id(self, node: ObjectNode) -> int | None:
+        """Return the id of a node that was added, or ``None`` if it was not."""
         label = self._labels.get(node.label)
-        if label is None:
-            label = self._labels[node.label] = len(self._labels)
-            self._insert("label", label, encoded_label(node.label))
-        self._insert("node", number, label, *columns[1:], int(in_kitchen), 0)
+        attributes = self._attributes.get("".join(attribute_columns(*node[1:])))
+        return None if label is None or attributes is None else self._nodes.get((label, attributes))
+
+    def _in_kitchen(self, number: int, node: ObjectNode) -> bool:
+        """Whether a node matches entries of the kitchen file; notes each, and its amount by the node's id."""
+        matches = False
+        if self._kitchen is not None and node.label in self._entry_labels:
+            for key in lookup_keys(node):
+                for entry in self._entries.get(key, ()):
+                    item = self._kitchen[entry]
+                    if item.pattern.matches(node):
+                        matches = self.matched[entry] = True
+                        if item.amount is not None:
+                            self._stock[number] = item.amount
+        return matches
 
     def _node(self, number: int) -> ObjectNode:
         """Return the node with an id."""
@@ -285,7 +293,7 @@ class StoreBuilder:
     def _insert(self, table: str, *row: Any) -> None:
         waiting = self._rows.setdefault(table, [])
         waiting.append(row)
-        if len(waiting) >= _ROWS_PER_WRITE:
+        if len(waiting) >= STORE.rows_per_write:
             self._write_rows(table, waiting)
 
     def _write_rows(self, table: str, rows: list[tuple[Any, ...]]) -> None:

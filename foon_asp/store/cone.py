@@ -8,8 +8,7 @@ from typing import Protocol
 
 from foon_asp.garbage_collection import uncollected
 from foon_asp.problem import ContainerRule
-
-_BATCH_SIZE = 200  # nodes whose producers one query reads; a cone reads those of up to 200 nodes too many
+from foon_asp.store.tuning import STORE
 
 
 class Producers(Protocol):
@@ -61,7 +60,7 @@ class Cone:
         queue = deque(objects)
         target_size = None if max_units is None else len(self.units) + max_units
         while queue and (target_size is None or len(self.units) < target_size):
-            batch = [queue.popleft() for _ in range(min(len(queue), _BATCH_SIZE))]
+            batch = [queue.popleft() for _ in range(min(len(queue), STORE.cone_nodes))]
             batch = [o for o in dict.fromkeys(batch) if o in self.open]
             producers = self._network.producers_of(batch)
             new = [unit for unit in dict.fromkeys(chain.from_iterable(producers)) if unit not in self.units]

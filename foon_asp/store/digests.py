@@ -4,9 +4,11 @@ import hashlib
 import sqlite3
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from itertools import islice
 from pathlib import Path
 
 from foon_asp.store.columns import decoded_label, encode, quoted
+from foon_asp.store.tuning import STORE
 
 FILE_DIGEST = hashlib.sha256().digest_size  # bytes behind the last page, which SQLite ignores
 
@@ -75,11 +77,11 @@ def _digest(level: str, *lists: Iterable[str]) -> str:
     """Return the SHA-256 digest of a JSON list: a level, then lists of texts that are JSON."""
     digest = hashlib.sha256(f"[{level}".encode())
     for members in lists:
-        digest.update(b",[")
-        comma = b""
-        for member in members:
-            digest.update(comma + member.encode("ascii"))
-            comma = b","
-        digest.update(b"]")
+        remaining = iter(members)
+        comma = ",["
+        while batch := [*islice(remaining, STORE.digest_texts)]:
+            digest.update(f"{comma}{','.join(batch)}".encode("ascii"))
+            comma = ","
+        digest.update(b"]" if comma == "," else b",[]")
     digest.update(b"]")
     return digest.hexdigest()

@@ -6,8 +6,7 @@ from collections.abc import Iterable
 from foon_asp.network.spelling import near_labels
 from foon_asp.store.columns import decoded_label, encoded_label
 from foon_asp.store.store_tables import TRIGRAMS
-
-_MAX_COMPARED = 300  # labels, those that share the rarest trigrams
+from foon_asp.store.tuning import STORE
 
 
 def write_trigrams(database: sqlite3.Connection) -> None:
@@ -36,7 +35,8 @@ def similar_labels(database: sqlite3.Connection, label: str, max_labels: int) ->
     ranked = "SELECT rowid FROM label_trigram WHERE label_trigram MATCH ? ORDER BY rank LIMIT ?"
     try:
         rows = database.execute(
-            f"SELECT name FROM label WHERE id IN ({ranked}) ORDER BY name", (query or '""', _MAX_COMPARED)
+            f"SELECT name FROM label WHERE id IN ({ranked}) ORDER BY name",
+            (query or '""', STORE.compared_labels),
         ).fetchall()
     except sqlite3.OperationalError:  # no such table, module or tokenizer
         rows = database.execute("SELECT name FROM label ORDER BY name").fetchall()

@@ -21,13 +21,13 @@ from foon_asp.network import (
 from foon_asp.network.network import UnitKey
 from foon_asp.problem import ContainerRule, Unpriced, needed_inputs
 from foon_asp.store.columns import (
+    attribute_columns,
     decoded,
     decoded_label,
     encoded_label,
     entry_of,
     ids_of,
     listed,
-    node_columns,
     node_of,
     number_of,
 )
@@ -262,7 +262,7 @@ class Store:
     @reporting_damage
     def object_id(self, node: ObjectNode) -> int | None:
         """Return the id of a node, or ``None`` when the network does not have it."""
-        columns = node_columns(node)[1:]
+        columns = attribute_columns(*node[1:])
         return next(self._named(node.label, "states = ? AND relations = ? AND contents = ?", *columns), None)
 
     @reporting_damage

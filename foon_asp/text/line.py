@@ -56,7 +56,7 @@ class ObjectLine(NamedTuple):
     @property
     def is_goal(self) -> bool:
         """Whether the line is tagged as what the recipe makes: a category or the mark ``!``."""
-        return self.category is not None or "!" in self.fields
+        return bool(self.fields) and (self.category is not None or "!" in self.fields)
 
     @property
     def category(self) -> str | None:

@@ -16,7 +16,8 @@ class RepeatedNode(NamedTuple):
 def repeated_node(inputs: Sequence[ObjectNode], outputs: Sequence[ObjectNode]) -> ObjectNode | None:
     """Return the first node that is twice on one side of a unit, else ``None``."""
     for nodes in (inputs, outputs):
-        if len(set(nodes)) < len(nodes):
+        labels = {node.label for node in nodes}  # mostly enough, and strings keep their hashes
+        if len(labels) < len(nodes) and len(set(nodes)) < len(nodes):
             return next(node for index, node in enumerate(nodes) if node in nodes[:index])
     return None
 

@@ -40,11 +40,22 @@ def _clean_node(block: str) -> ObjectNode | None:
 
     ``None`` for a block with remarks, and for a goal, whose source has to be recorded.
     """
-    first, *others = map(read_line, f"O{block}".split("\n"))
-    if not isinstance(first, ObjectLine) or first.remarks or first.is_goal:
+    head, line_end, states = block.partition("\n")
+    line = read_line(f"O{head}")
+    if not isinstance(line, ObjectLine) or line.remarks or line.is_goal:
         return None
-    attributes = [line.attribute for line in others if isinstance(line, StateLine) and not line.remarks]
-    return node_of(first.label, attributes) if len(attributes) == len(others) else None
+    if not line_end:
+        return ObjectNode(line.label)
+    blank = _clean_blank(states)
+    return None if blank is None else ObjectNode(line.label, *blank[1:])
+
+
+@lru_cache(50_000)  # the states under very many objects are the same
+def _clean_blank(states: str) -> ObjectNode | None:
+    """Return a node without label that has the attributes of state lines; ``None`` where one has remarks."""
+    lines = map(read_line, states.split("\n"))
+    attributes = [line.attribute for line in lines if isinstance(line, StateLine) and not line.remarks]
+    return node_of("", attributes) if len(attributes) == states.count("\n") + 1 else None
 
 
 def _clean_nodes(blocks: str) -> list[ObjectNode] | None:

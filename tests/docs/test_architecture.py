@@ -97,6 +97,7 @@ LIBRARIES = {
             "engines",
             "cli",
             "serve",
+            "store",
         ),
     },
     "distributed": {"batch"},

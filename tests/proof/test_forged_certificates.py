@@ -401,9 +401,15 @@ TWO = bound("2")
 PARTS = {
     # the end costs 1; it seems to cost 2 where the unit that is used, and paid for, carries a weight as well
     "a unit that is used was paid for": Part(
-        "capacity = {} if member in used else self._cost(member)",
-        "capacity = self._cost(member)",
+        "capacity = {} if member in used else self.cost(member)",
+        "capacity = self.cost(member)",
         plain(**BAKED, cuts=CUTS, proof=POURED),
+    ),
+    # what makes the end of the start is of both cuts, and costs 1
+    "weights are added over their common denominator": Part(
+        "value.numerator * (scales[key] // value.denominator)",
+        "value.numerator",
+        plain(**bound("7/6"), cuts=CUTS, proof=weigh("1/2", "2/3")),
     ),
     "a goal at hand needs nothing": Part(
         "goal in cut and goal not in self.kitchen",
@@ -446,8 +452,8 @@ PARTS = {
         "members = [*units, *(", "members = [*units[:1], *(", plain(tree=[1, 2], costs=[1])
     ),
     "the costs of used units count once": Part(
-        "map(self._cost, used)",
-        "map(self._cost, [*used, *used])",
+        "map(self.cost, used)",
+        "map(self.cost, [*used, *used])",
         plain(**BAKED, cuts=CUTS, proof={**POURED, "using": weigh()}),
     ),
     # of the end, the step and what it needs, the step's cost is none and it can carry nothing

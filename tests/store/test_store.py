@@ -26,13 +26,14 @@ from foon_asp.errors import UserError
 from foon_asp.network import Network, starting_nodes
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof.verifier import Subject
-from foon_asp.store import builder, store_tables
+from foon_asp.store import builder, digests, store_tables
 from foon_asp.store.digests import FILE_DIGEST, append_digest
 from foon_asp.store.import_files import import_files
 from foon_asp.store.store import Store
 from foon_asp.store.store_tables import VERSION
 from foon_asp.store.stored_ids import StoredIds
 from foon_asp.store.stored_kitchen import StoredStartingKitchen
+from foon_asp.store.tuning import StoreTuning
 from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.foon_text import FoonText
@@ -234,8 +235,8 @@ def test_copies_that_come_much_later(tmp_path: Path) -> None:
 def test_an_import_that_remembers_little(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     stores = [tmp_path / "one.foon", tmp_path / "other.foon"]
     import_files(find_data(KITCHEN), stores[0])
-    monkeypatch.setattr(builder, "_MAX_CACHED_NODES", 3)
-    monkeypatch.setattr(builder, "_ROWS_PER_WRITE", 3)
+    monkeypatch.setattr(builder, "STORE", StoreTuning(rows_per_write=3, cached_nodes=3))
+    monkeypatch.setattr(digests, "STORE", StoreTuning(digest_texts=3))
     monkeypatch.setattr(FoonText, "piece_letters", 50)
     import_files(find_data(KITCHEN), stores[1])
     assert_holds(stores[1], read_data(find_data(KITCHEN)))
