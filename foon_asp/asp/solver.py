@@ -225,8 +225,9 @@ class _Solver:
         program = self.prepared.full_program
         assert program is not None
         assert program.added is not None
-        for counts, bound in program.added.counted(self.problem):
-            if sum(map(counts, tree)) <= bound:
+        for row in program.added.counted(self.problem, self.deadline):
+            counts, bound = row.weight, row.bound
+            if row.total(tree) <= bound:
                 continue
             try:
                 with self.deadline.watched("cutting the network", late=True):
