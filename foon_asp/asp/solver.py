@@ -226,14 +226,11 @@ class _Solver:
         assert program is not None
         assert program.added is not None
         for row in program.added.counted(self.problem, self.deadline):
-            counts, bound = row.weight, row.bound
-            if row.total(tree) <= bound:
+            if row.total(tree) <= row.bound:
                 continue
             try:
                 with self.deadline.watched("cutting the network", late=True):
-                    result = limited(
-                        subproblem, self.levels, tree, counts, bound, lambda: self.deadline.passed
-                    )
+                    result = limited(subproblem, self.levels, tree, row, lambda: self.deadline.passed)
             except KeyboardInterrupt:
                 self.deadline.interrupt()
                 return self._outcome(Status.UNKNOWN, None, {})
