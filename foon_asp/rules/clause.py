@@ -57,12 +57,6 @@ class Literal(NamedTuple):
         """Whether the literal has no ``not``, so that it binds its variables."""
         return not self.negations
 
-    @property
-    def single(self) -> bool:
-        """Whether the literal is one atom once its variables have values; an interval is several atoms."""
-        nodes_inside = (node for argument in self.arguments for node in nodes(argument))
-        return all(node.ast_type != ASTType.Interval for node in nodes_inside)
-
 
 class Test(NamedTuple):
     """A comparison, ``#true`` or ``#false``; ``holds`` is its value, ``None`` if unknown."""

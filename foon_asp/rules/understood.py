@@ -16,6 +16,7 @@ from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
 from clingo.symbol import Number, SymbolType
 
 from foon_asp.problem import Trait, Wanted
+from foon_asp.problem.number import INT32_MAX
 from foon_asp.rules.clause import (
     Aggregate,
     Clause,
@@ -400,6 +401,6 @@ def _counts_none(aggregate: Aggregate, constants: Constants) -> bool:
     bound = value(aggregate.guards[0].term, constants)
     if bound is None or bound.type is not SymbolType.Number:
         return False
-    compares = [compared(Number(n), aggregate.guards[0].comparison, bound) for n in (0, 1, 2**31 - 1)]
+    compares = [compared(Number(n), aggregate.guards[0].comparison, bound) for n in (0, 1, INT32_MAX)]
     expected = [not holds for holds in compares] if aggregate.negations == 1 else compares
     return expected == [True, False, False]
