@@ -122,7 +122,7 @@ class Translator:
             return None
         bound = {name for n in others for name in global_variables(clause.body[n])}
         of = f"({','.join([*sorted(bound), ''])})" if bound else "()"
-        when = [str(clause.ast.body[n]) for n in others]
+        when = [str(self._worlds.visit(clause.ast.body[n])) for n in others]
         self._numbers += 1
         program = [f"{self._head('asks', of, _WORLD_OF_NOTHING)} :- {'; '.join(when) or '#true'}."]
         rows: list[Sequence[Trait]] = []
@@ -205,7 +205,7 @@ class Translator:
         if executions is None or not self._is_plain(element.condition):
             return None
         unit, *count = executions
-        if str(unit) == "_":
+        if str(unit) == "_" or any(term.ast_type != ASTType.Variable for term in count):
             return None
         *product, last = (factor for term in element.terms for factor in factors(term))
         written = [str(factor) for factor in product]
@@ -213,7 +213,7 @@ class Translator:
         others = [one for n, one in enumerate(element.condition) if n != position]
         for factor in map(str, count):
             elsewhere = [name for one in others for name in variables(*_terms_of(one))]
-            if written.count(factor) != 1 or factor in elsewhere or factor == str(unit):
+            if written.count(factor) != 1 or factor in {*elsewhere, str(unit), "_"}:
                 return None
             written.remove(factor)
         if len(written) > 1 or str(last) != str(unit) or self._looks_of(others):
