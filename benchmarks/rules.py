@@ -38,7 +38,6 @@ from statistics import median
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Settings, Status, solve
-from foon_asp.asp.assembly import assemble
 from foon_asp.dataset.reading_store import read_stored
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import NONE
@@ -46,6 +45,7 @@ from foon_asp.network import Network, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, levels, reach
 from foon_asp.processes.python_process import _end_all
 from foon_asp.questions.answer import answered_under
+from foon_asp.rules.ready_made import ready_made
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles, find_data, read_data
 from foon_asp.text.node_lookup import listed_nodes
@@ -310,19 +310,19 @@ def _others(trees: list[Outcome]) -> Iterator[tuple[Asked, list[Outcome]]]:
 
 
 def _restricted(problem: Problem, asked: Asked) -> Problem:
-    rules = assemble(asked.settings, lambda _: None).understood
+    rules = ready_made(asked.settings.constraints, asked.settings.constants)
     assert rules is not None
-    found = rules.applied(problem)
+    found = rules.applied(problem, Deadline())
     assert isinstance(found, Restriction)
     return replace(problem, restriction=found)
 
 
 def _trees_left(asked: Asked, trees: list[Outcome]) -> tuple[int, int]:
     """Count of how many goals a tree is left, and then the units that are removed."""
-    rules = assemble(asked.settings, lambda _: None).understood
+    rules = ready_made(asked.settings.constraints, asked.settings.constants)
     assert rules is not None
     problem = trees[-1].problem
-    found = rules.applied(problem)
+    found = rules.applied(problem, Deadline())
     if not isinstance(found, Restriction):
         return 0, 0
     available = reach(replace(problem, restriction=found)).available

@@ -109,7 +109,7 @@ def assemble(
         if extra and not encodings and relaxed is None:
             from foon_asp.rules import rules as user_rules  # noqa: PLC0415
 
-            understood = user_rules.Rules(extra, constants[1::2])
+            understood = user_rules.Rules(extra, constants[1::2], endless=endless)
     _warn_of_names(problem, settings, extra, constants[1::2], warn)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
     if settings.clingo_options:  # checked now, since clingo may not run
@@ -144,7 +144,7 @@ def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]
 def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
     """Return the program of a question whose rules are all ready-made, without clingo; ``None`` for others.
 
-    The question has to be small, or to be about a store.
+    The question has to be small, or to be about a store, or units have to be required.
     """
     rules = _ready_made_rules(settings)
     if rules is None or problem.items is not None:
@@ -153,7 +153,8 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
     from foon_asp.rules.parameter_names import unknown_parameters  # noqa: PLC0415
 
     network = problem.network  # reading a part of a store takes longer than searching it
-    if (len(network) > SEARCH.units_without_clingo and not network.object_numbers) or not rules.fit(problem):
+    large = len(network) > SEARCH.units_without_clingo and not network.object_numbers
+    if (large and rules.shrinking) or not rules.fit(problem):
         return None
     for message in unknown_parameters(settings.constraints, settings.constants, FactValues(problem)):
         warn(message)

@@ -24,7 +24,7 @@ from foon_asp.hypergraph import (
     reduce,
     reduce_under_rules,
 )
-from foon_asp.problem import Objective, Problem, Restriction, first_tree, levels, reach, relevant
+from foon_asp.problem import Contradiction, Objective, Problem, first_tree, levels, reach, relevant
 
 if TYPE_CHECKING:  # often clingo need not run
     from foon_asp.encoding.run import Run
@@ -238,9 +238,15 @@ def _applied(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     """Apply the user rules that remove units or require sets of them."""
     if rules.unsettled and not rules.local:
         return prepared
-    restriction = rules.applied(prepared.problem)
-    prepared = replace(prepared, full_program=prepared.program)
-    if not isinstance(restriction, Restriction):
+    problem = prepared.problem
+    whole = replace(prepared, full_program=prepared.program)
+    if rules.leave_to_search(problem):
+        return replace(whole, kept=problem, unsettled=True, redundant=rules.redundant)
+    restriction = rules.applied(problem, prepared.deadline)
+    if restriction is None:
+        return prepared
+    prepared = whole
+    if isinstance(restriction, Contradiction):
         return replace(prepared, contradicted=True)
     kept = replace(prepared.problem, restriction=restriction)
     if not rules.unsettled:

@@ -225,14 +225,12 @@ class _Solver:
         program = self.prepared.full_program
         assert program is not None
         assert program.added is not None
-        for counts, bound in program.added.counted(self.problem):
-            if sum(map(counts, tree)) <= bound:
+        for row in program.added.counted(self.problem, self.deadline):
+            if row.total(tree) <= row.bound:
                 continue
             try:
                 with self.deadline.watched("cutting the network", late=True):
-                    result = limited(
-                        subproblem, self.levels, tree, counts, bound, lambda: self.deadline.passed
-                    )
+                    result = limited(subproblem, self.levels, tree, row, lambda: self.deadline.passed)
             except KeyboardInterrupt:
                 self.deadline.interrupt()
                 return self._outcome(Status.UNKNOWN, None, {})

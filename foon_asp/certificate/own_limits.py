@@ -50,7 +50,9 @@ class OwnLimits:
         self._local = all(rule.local for rule in rules.rules if rule.source in shrinking)
         self.found_limits: list[Limit] = []
         if self._any:
-            sums = (sum_limit for sum_limit in rules.limits(problem) if not sum_limit.at_least)
+            sums = (
+                sum_limit for sum_limit in rules.limits(problem, settings.begun) if not sum_limit.at_least
+            )
             limits = [
                 ({u: Fraction(n) for u, n in sum_limit.weights.items() if n}, sum_limit.bound)
                 for sum_limit in sums

@@ -110,6 +110,7 @@ def write_facts_read(
     """
     seen = problem.as_seen or problem
     name = problem.network.object_number
+    names = {predicate for predicate, _ in read}
     nodes = described(problem, units)
     kitchen = problem.kitchen_seen
     lines: list[str] = []
@@ -123,12 +124,12 @@ def write_facts_read(
 
     for unit in units:
         atoms = [("unit", f"{_check(problem.network.unit_number(unit))}")]
-        atoms += _unit_atoms(problem, unit, scales, prices)
-        if problem.rates is not None and not (scales and scales.rates):
+        atoms += _unit_atoms(problem, unit, scales, prices, names)
+        if "rate" in names and problem.rates is not None and not (scales and scales.rates):
             number = problem.network.unit_number(unit)
             atoms.append(("rate", f"{number},{millionths(seen.rate(unit))}"))
         add(atoms)
-    for o in nodes:
+    for o in nodes if of_objects or not names.isdisjoint(("object", "kitchen")) else ():
         atoms = [("object", f"{_check(name(o))}")]
         atoms += [
             (predicate, f"{name(o)},{arguments}")
@@ -193,25 +194,36 @@ def _unit_atom(problem: Problem, unit: int) -> str:
 
 
 def _unit_atoms(
-    problem: Problem, unit: int, scales: Scales | None, prices: Mapping[int, int] | None
+    problem: Problem,
+    unit: int,
+    scales: Scales | None,
+    prices: Mapping[int, int] | None,
+    read: Collection[str] = FACT_PREDICATES,
 ) -> list[_Atom]:
-    """Return the facts about a unit without ``unit/1``.
+    """Return the facts about a unit without ``unit/1``, by predicates in ``read`` and maybe a few others.
 
     With ``prices``, also facts that only user rules read.
     """
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
-    ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
     u = network.unit_number(unit)
-    atoms = [("motion", f"{u},{quote(network.motions[unit])}")]
-    atoms += [("input", f"{u},{name(o)}") for o in inputs]
-    atoms += [("needs", f"{u},{name(o)}") for o in problem.needs[unit]]
-    atoms += [("output", f"{u},{name(o)}") for o in network.outputs[unit]]
-    atoms += [("gives", f"{u},{name(o)}") for o in problem.gives[unit]]
+    atoms = [("motion", f"{u},{quote(network.motions[unit])}")] if "motion" in read else []
+    for predicate, nodes in (
+        ("input", inputs),
+        ("needs", problem.needs[unit]),
+        ("output", network.outputs[unit]),
+        ("gives", problem.gives[unit]),
+    ):
+        if predicate in read:
+            atoms += [(predicate, f"{u},{name(o)}") for o in nodes]
     if problem.items is not None:
         gone = problem.flows[unit].uses
         atoms += [("uses_up" if o in gone else "stays", f"{u},{name(o)}") for o in problem.needs[unit]]
-    atoms += [("inputs", f"{u},{len(inputs)}"), ("ingredients", f"{u},{_check(ingredients)}")]
+    if "inputs" in read:
+        atoms.append(("inputs", f"{u},{len(inputs)}"))
+    if "ingredients" in read:
+        ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
+        atoms.append(("ingredients", f"{u},{_check(ingredients)}"))
     if scales and scales.rates:
         weight = scales.rates.weights[problem.rate(unit)]
         seen = (problem.as_seen or problem).rate(unit)

@@ -10,7 +10,7 @@ from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem
 from foon_asp.hypergraph.reduction import Reduced, at_costs
-from foon_asp.problem import Objective
+from foon_asp.problem import LinearRow, Objective
 
 Units = frozenset[int]
 
@@ -30,36 +30,32 @@ def limited(
     subproblem: Subproblem,
     objectives: Sequence[Objective],
     tree: Units,
-    counts: Callable[[int], int],
-    max_count: int,
+    row: LinearRow,
     expired: Callable[[], bool],
 ) -> Limited | None:
-    """Search for the best tree whose units count at most ``max_count`` together; ``tree`` exceeds the limit.
+    """Search for the best tree that keeps to an upper limit on a sum, which ``tree`` exceeds.
 
     A first tree within the limit is found by :func:`any_within_limit`. Then the price is the Lagrange
     multiplier at which that tree and the one beyond the limit cost the same. With a price, a tree within the
-    limit costs at most ``max_count`` times the price more, so lower bounds carry over. Where that price
-    leaves many units, lower prices that rise up to it are tried. ``None`` where nothing is found out.
+    limit costs at most the bound of the ``row`` times the price more, so lower bounds carry over. Where that
+    price leaves many units, lower prices that rise up to it are tried. ``None`` where nothing is found out.
     """
-
-    def count_of(units: Units) -> int:
-        return sum(map(counts, units))
-
-    first = any_within_limit(subproblem, counts, max_count, expired)
+    first = any_within_limit(subproblem, row, expired)
     if first is None or first.tree is None:
         return first
     incumbent, over = first.tree, tree
     remaining: Units | None = None
     for _ in range(tuning.PRICES.prices):
         ratio = -(
-            -(subproblem.total(incumbent) - subproblem.total(over)) // (count_of(over) - count_of(incumbent))
+            -(subproblem.total(incumbent) - subproblem.total(over))
+            // (row.total(over) - row.total(incumbent))
         )
         if ratio <= 0:
             break
-        allowed = subproblem.total(incumbent) + ratio * max_count
+        allowed = subproblem.total(incumbent) + ratio * row.bound
         reduced = _reduced_at(
             subproblem,
-            subproblem.costs.priced(counts, ratio),
+            subproblem.costs.priced(row.weight, ratio),
             objectives,
             expired,
             incumbent,
@@ -68,15 +64,15 @@ def limited(
         )
         if reduced.tree is None:
             break
-        better = count_of(reduced.tree) <= max_count and subproblem.total(reduced.tree) < subproblem.total(
+        better = row.total(reduced.tree) <= row.bound and subproblem.total(reduced.tree) < subproblem.total(
             incumbent
         )
         incumbent = reduced.tree if better else incumbent
         if remaining is None or len(reduced.units) < len(remaining):
             remaining = frozenset(reduced.units)
         if len(remaining) > tuning.PRICES.rising_units:
-            return _by_rising_prices(subproblem, objectives, incumbent, over, counts, max_count, expired)
-        if count_of(reduced.tree) > max_count and subproblem.total(reduced.tree) > subproblem.total(over):
+            return _by_rising_prices(subproblem, objectives, incumbent, over, row, expired)
+        if row.total(reduced.tree) > row.bound and subproblem.total(reduced.tree) > subproblem.total(over):
             over = reduced.tree
         elif not better:
             break
@@ -90,8 +86,7 @@ def _by_rising_prices(
     objectives: Sequence[Objective],
     incumbent: Units,
     over: Units,
-    counts: Callable[[int], int],
-    max_count: int,
+    row: LinearRow,
     expired: Callable[[], bool],
 ) -> Limited:
     """Search for trees better than ``incumbent``, which is within the limit, from ``over`` beyond it.
@@ -100,48 +95,44 @@ def _by_rising_prices(
     unit, to the one at which ``incumbent`` and ``over`` cost the same; the optimal tree at a price replaces
     one of the two. The price of the greatest bound determines the units of trees better than ``incumbent``.
     """
-
-    def count_of(units: Units) -> int:
-        return sum(map(counts, units))
-
     next_price = tuning.LOWEST_PRICE * subproblem.total(over) / len(over)
     greatest: tuple[Fraction, Fraction] | None = None  # bound, and its price
     subproblem = _restricted_to_cost(subproblem, incumbent, expired)
     for _ in range(tuning.PRICES.rising_prices):
         tie = Fraction(
-            subproblem.total(incumbent) - subproblem.total(over), count_of(over) - count_of(incumbent)
+            subproblem.total(incumbent) - subproblem.total(over), row.total(over) - row.total(incumbent)
         )
         if tie <= 0:
             break
         price, next_price = min(tie, next_price), 2 * next_price
-        reduced = _reduced_at(subproblem, subproblem.costs.priced(counts, price), objectives, expired)
+        reduced = _reduced_at(subproblem, subproblem.costs.priced(row.weight, price), objectives, expired)
         if reduced.tree is None:
             break
-        bound = Fraction(reduced.bound, price.denominator) - price * max_count
+        bound = Fraction(reduced.bound, price.denominator) - price * row.bound
         greatest = max(greatest or (bound, price), (bound, price))
-        count, total = count_of(reduced.tree), subproblem.total(reduced.tree)
-        tied = price == tie and total + price * count >= subproblem.total(incumbent) + price * count_of(
+        count, total = row.total(reduced.tree), subproblem.total(reduced.tree)
+        tied = price == tie and total + price * count >= subproblem.total(incumbent) + price * row.total(
             incumbent
         )
-        if count > max_count:
+        if count > row.bound:
             over = reduced.tree
         elif total < subproblem.total(incumbent):
             incumbent = reduced.tree
             subproblem = _restricted_to_cost(subproblem, incumbent, expired)
         else:
             break
-        if tied or count == max_count:
+        if tied or count == row.bound:
             break
     if greatest is None:
         return Limited(incumbent)
     _, price = greatest
-    allowed = subproblem.total(incumbent) * price.denominator + price.numerator * max_count
+    allowed = subproblem.total(incumbent) * price.denominator + price.numerator * row.bound
     reduced = _reduced_at(
-        subproblem, subproblem.costs.priced(counts, price), objectives, expired, incumbent, allowed
+        subproblem, subproblem.costs.priced(row.weight, price), objectives, expired, incumbent, allowed
     )
     if reduced.tree is None:
         return Limited(incumbent)
-    if count_of(reduced.tree) <= max_count and subproblem.total(reduced.tree) < subproblem.total(incumbent):
+    if row.total(reduced.tree) <= row.bound and subproblem.total(reduced.tree) < subproblem.total(incumbent):
         incumbent = reduced.tree
     return Limited(incumbent, frozenset(reduced.units))
 
@@ -152,22 +143,20 @@ def _restricted_to_cost(subproblem: Subproblem, tree: Units, expired: Callable[[
     return replace(subproblem, remaining={*remaining, *subproblem.actions(tree)})
 
 
-def any_within_limit(
-    subproblem: Subproblem, counts: Callable[[int], int], max_count: int, expired: Callable[[], bool]
-) -> Limited | None:
-    """Search for any tree whose units count at most ``max_count`` together, by minimizing the count.
+def any_within_limit(subproblem: Subproblem, row: LinearRow, expired: Callable[[], bool]) -> Limited | None:
+    """Search for any tree that keeps to an upper limit on a sum, by minimizing the sum.
 
     Returns ``Limited(None)`` where a bound proves that no tree is within the limit, ``None`` where nothing is
     found out.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
-    limit = units_cost.beyond * (max_count + 1)
+    limit = units_cost.beyond * (row.bound + 1)
     reduced = _reduced_at(
-        subproblem, units_cost.priced(counts, units_cost.beyond, limit), (Objective.UNITS,), expired
+        subproblem, units_cost.priced(row.weight, units_cost.beyond, limit), (Objective.UNITS,), expired
     )
     if reduced.bound >= limit:
         return Limited(None)
-    if reduced.tree is None or sum(map(counts, reduced.tree)) > max_count:
+    if reduced.tree is None or row.total(reduced.tree) > row.bound:
         return None
     return Limited(reduced.tree)
 

@@ -20,9 +20,8 @@ from foon_asp.plans.execution_order import sequence
 from foon_asp.plans.flows import flows_of
 from foon_asp.plans.plan_question import Plan, PlanQuestion
 from foon_asp.plans.whole_program import Stopped
-from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.problem import LinearRow, Objective, Problem, multiplies
 from foon_asp.problem.costs import Costs
-from foon_asp.rules.limit import Limit
 
 _MAX_EXACT_COST = 10**12  # largest cost that is counted unrounded
 _COST_STEPS = 10**6  # steps of the greatest cost, where costs are rounded
@@ -54,7 +53,9 @@ class Counting:
                 for required_set in question.required
             ],
             [
-                Limit({a: limit.weights[u] for a, u in enumerate(units) if limit.weights.get(u)}, *limit[1:])
+                LinearRow(
+                    {a: limit.weights[u] for a, u in enumerate(units) if limit.weights.get(u)}, *limit[1:]
+                )
                 for limit in question.limits
             ],
             [a for a, unit in enumerate(units) if unit in question.tree],

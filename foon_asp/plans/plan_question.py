@@ -14,7 +14,9 @@ from foon_asp.asp.solver import solve as solve_lasting
 from foon_asp.errors import BugError
 from foon_asp.plans.built_for_plans import require_built_for_plans, require_rules_of_plans
 from foon_asp.problem import (
+    Contradiction,
     Costs,
+    LinearRow,
     Objective,
     Problem,
     Restriction,
@@ -26,7 +28,6 @@ from foon_asp.problem import (
 )
 from foon_asp.proof.counted_run import counted_run
 from foon_asp.rules.dependence import TIMES
-from foon_asp.rules.limit import Limit
 
 Plan = tuple[int, ...]
 """Units by id in the order of execution, with repeats."""
@@ -57,7 +58,7 @@ class PlanQuestion:
         require_rules_of_plans(self.program)
         self.removed: Callable[[int], bool] = lambda _: False
         self.required: tuple[frozenset[int], ...] = ()
-        self.limits: Sequence[Limit] = ()
+        self.limits: Sequence[LinearRow] = ()
         bounded = settings.bounded or Bounded()
         self.below = [(objective, cost) for costs in bounded.below for objective, cost in costs.items()]
         self.incomparable = bounded.incomparable
@@ -78,11 +79,11 @@ class PlanQuestion:
         rules = self.program.understood
         if rules is None:
             return True
-        self.limits = rules.limits(self.problem)
-        restriction = rules.varying({TIMES}).applied(self.problem)
+        self.limits = rules.limits(self.problem, self.deadline)
+        restriction = rules.varying({TIMES}).applied(self.problem, self.deadline)
         if isinstance(restriction, Restriction):
             self.removed, self.required = restriction.removed, restriction.required
-        return isinstance(restriction, Restriction)
+        return not isinstance(restriction, Contradiction)
 
     @property
     def keeps_redundant(self) -> bool:
@@ -134,12 +135,8 @@ class PlanQuestion:
     def allows(self, plan: Plan) -> bool:
         """Whether a plan keeps to limits and bounds, exactly, and includes none of the incomparable plans."""
         counts, costs = Counter(plan), self.problem.costs(plan)
-        for limit in self.limits:
-            total = sum(
-                weight * (counts[u] > 0 if limit.used else counts[u]) for u, weight in limit.weights.items()
-            )
-            if (total < limit.bound) if limit.at_least else (total > limit.bound):
-                return False
+        if not all(row.holds(plan) for row in self.limits):
+            return False
         better = all(costs.key([o]) < (-cost if multiplies(o) else cost,) for o, cost in self.below)
         return better and not any(counts >= Counter(other) for other in self.incomparable)
 

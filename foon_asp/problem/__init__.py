@@ -12,6 +12,7 @@ from foon_asp.problem.items import ITEMS as ITEMS
 from foon_asp.problem.items import Fate as Fate
 from foon_asp.problem.items import Flow as Flow
 from foon_asp.problem.items import UsedUp as UsedUp
+from foon_asp.problem.linear_row import LinearRow as LinearRow
 from foon_asp.problem.number import Number as Number
 from foon_asp.problem.number import exact as exact
 from foon_asp.problem.number import success_rate as success_rate

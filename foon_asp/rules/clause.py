@@ -57,12 +57,6 @@ class Literal(NamedTuple):
         """Whether the literal has no ``not``, so that it binds its variables."""
         return not self.negations
 
-    @property
-    def single(self) -> bool:
-        """Whether the literal is one atom once its variables have values; an interval is several atoms."""
-        nodes_inside = (node for argument in self.arguments for node in nodes(argument))
-        return all(node.ast_type != ASTType.Interval for node in nodes_inside)
-
 
 class Test(NamedTuple):
     """A comparison, ``#true`` or ``#false``; ``holds`` is its value, ``None`` if unknown."""
@@ -118,7 +112,8 @@ class Clause(NamedTuple):
     """A rule without pools, taken apart.
 
     ``head`` has the atom of a plain rule, is ``None`` where there is no head, and ``others`` has the atoms of
-    a head that leaves a choice, each with its condition: a choice, a disjunction or a negated head.
+    a head that leaves a choice, each with its condition: a choice, a disjunction or a negated head. ``ast``
+    is the rule without pools, with a node for each conjunct of ``body``.
     """
 
     head: Literal | None
@@ -127,6 +122,7 @@ class Clause(NamedTuple):
     body: tuple[Conjunct, ...]
     source: Source
     number: int
+    ast: AST
 
     @property
     def constraint(self) -> bool:
@@ -151,13 +147,13 @@ def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
         head = clause.head
         if head.ast_type == ASTType.Literal and head.sign == Sign.NoSign:
             if head.atom.ast_type == ASTType.BooleanConstant and not head.atom.value:
-                yield Clause(None, (), True, body, source, number)
+                yield Clause(None, (), True, body, source, number, clause)
                 continue
             atom = reader.literal(head)
             if isinstance(atom, Literal) and not atom.signature[0].startswith("-"):
-                yield Clause(atom, (), True, body, source, number)
+                yield Clause(atom, (), True, body, source, number, clause)
                 continue
-        yield Clause(None, tuple(reader.head_atoms(head)), False, body, source, number)
+        yield Clause(None, tuple(reader.head_atoms(head)), False, body, source, number, clause)
 
 
 def source_of(statement: AST) -> Source:

@@ -58,10 +58,6 @@ class Locality:
             )
         return lacking.nonlocality if lacking else None
 
-    def closed(self, signature: Signature) -> bool:
-        """Whether an auxiliary predicate has the same atoms, whatever the network has beyond the tree."""
-        return signature in self._about and signature not in self._nonlocal and not self._about[signature]
-
     def _find_leads(self) -> dict[Signature, dict[int, set[Subject]]]:
         """Return the arguments of auxiliary predicates that are always in the tree, by position."""
         leads = {

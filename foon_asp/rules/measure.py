@@ -18,6 +18,7 @@ from foon_asp.errors import UserError
 from foon_asp.network import Network, Source
 from foon_asp.problem import Problem
 from foon_asp.rules.passed_constraint import exists
+from foon_asp.rules.tuning import TUNING
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.plain_file import read_plain_text
 
@@ -28,7 +29,6 @@ if TYPE_CHECKING:  # clingo, which is not needed before there is a measure
 Cost = int | Fraction
 
 _DECIMAL = re.compile(r"[0-9]{1,1000}(\.[0-9]{1,1000})?", re.ASCII)
-_QUICKLY_GROUNDED = 1_500_000  # letters that clingo grounds in a fraction of a second
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,7 @@ class _Evaluation:
         text = "\n".join(lines)
         name, arity = f"_{COST[0]}", COST[1] + 1
         try:
-            if self._rules.plain and len(text) < _QUICKLY_GROUNDED:
+            if self._rules.plain and len(text) < TUNING.quick_letters:
                 return derived.derive(text, name, arity)
             from foon_asp.encoding.worker_process import derive  # noqa: PLC0415
 

@@ -35,6 +35,8 @@ from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.rules.number_limits import beyond
+from foon_asp.rules.tuning import TUNING
+from foon_asp.rules.worlds import Worlds, unused_variable
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 COST = ("cost", 3)
@@ -59,7 +61,6 @@ _REFUSED = {
 }
 _UNIT_OBJECT_FACTS = frozenset(("input", "output", "needs", "gives"))
 _UNIT, _OBJECT = "unit", "object"
-_MAX_PLAIN_ATOMS = 6  # atoms in a rule; only with more can its instances be many
 
 
 class Statement(NamedTuple):
@@ -132,9 +133,7 @@ class _Reader:
         self._check_loops()
         self._refuse_errors()
         dependent = self._dependent()
-        world = "W"
-        while world in self._stated.text:
-            world += "_"
+        world = unused_variable(self._stated.text, "W")
         written = [_World(dependent, world).written(rule, self._source(rule)) for rule in self._rules]
         written += self._beyond(names, dependent, world)
         constants = [
@@ -271,7 +270,7 @@ class _Reader:
         return (
             not (atoms.has_interval or atoms.divides)
             and len(tables) < 2
-            and len(atoms.used) <= _MAX_PLAIN_ATOMS
+            and len(atoms.used) <= TUNING.plain_atoms
         )
 
     def _source(self, at: AST) -> Source:
@@ -400,8 +399,8 @@ def _nameless(rules: Sequence[_Atoms]) -> bool:
     return (COST, 2) not in kinds
 
 
-class _World(Transformer):
-    """Rewriter that adds a world as first argument to predicates that depend on facts."""
+class _World:
+    """Writer of rules with a world as first argument of the predicates that depend on facts."""
 
     def __init__(self, dependent: frozenset[Signature], world: str) -> None:
         self._dependent, self._world = dependent, world
@@ -410,20 +409,9 @@ class _World(Transformer):
         heads = _Atoms(rule).heads
         text = str(rule)
         if any(_signature(atom) in self._dependent for atom in heads):
-            changed = self.visit(rule)
+            changed = Worlds(self._dependent, self._world).visit(rule)
             location = rule.location
             world = Function(location, WORLD, [Variable(location, self._world)], 0)
             body = [*changed.body, Literal(location, Sign.NoSign, SymbolicAtom(world))]
             text = str(changed.update(body=body))
         return Statement(text, source, any(_signature(atom) == COST for atom in heads))
-
-    def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        return atom.update(symbol=self._changed(atom.symbol))
-
-    def _changed(self, symbol: AST) -> AST:
-        if symbol.ast_type is ASTType.Pool:
-            return symbol.update(arguments=[self._changed(one) for one in symbol.arguments])
-        if _signature(symbol) not in self._dependent:
-            return symbol
-        arguments = [Variable(symbol.location, self._world), *symbol.arguments]
-        return symbol.update(name=f"_{symbol.name}", arguments=arguments)

@@ -5,16 +5,17 @@ question. The meaning of these constraints is the one that certificates are chec
 """
 
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
+from foon_asp.deadline import Deadline
 from foon_asp.encoding.exact import LARGEST
 from foon_asp.encoding.fact_writer import hundredths
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
-from foon_asp.problem import Contradiction, Problem, Restriction
+from foon_asp.problem import Contradiction, LinearRow, Problem, Restriction
 from foon_asp.proof.rule_meaning import LIBRARY, Meaning, Question, Rule, meaning
 from foon_asp.proof.ruled import Ruled
 from foon_asp.resources import encodings_folder
@@ -76,7 +77,11 @@ class ReadyMade:
             return False
         return True
 
-    def applied(self, problem: Problem) -> Restriction | Contradiction:
+    def leave_to_search(self, problem: Problem) -> bool:
+        """Whether the search enforces them; never."""
+        return False
+
+    def applied(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction:
         """Return the units removed from a problem and the sets required, or a contradiction."""
         meanings, _ = self._meanings(problem)
         # what is needed by a unit of the last set is made by one of the others, as the tree executes
@@ -90,12 +95,12 @@ class ReadyMade:
         removed: frozenset[int] = frozenset().union(*(meaning.removed for meaning in meanings))
         return Restriction(removed.__contains__, required)
 
-    def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
-        """Return linear bounds over units: the weights of units, and the greatest sum, of each bound."""
+    def counted(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
+        """Return the limits on sums over units."""
         for rule_meaning in self._meanings(problem)[0]:
             if rule_meaning.max_sum is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
                 amounts = {unit: int(amount) for units, amount in rule_meaning.things for unit in units}
-                yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(rule_meaning.max_sum)  # type: ignore[misc]
+                yield LinearRow(amounts, int(rule_meaning.max_sum))
 
     def keeps(self, problem: Problem, units: Collection[int]) -> bool:
         """Whether a tree keeps to all of them."""

@@ -7,7 +7,6 @@ of a set.
 """
 
 from collections.abc import Collection, Iterable, Sequence
-from contextlib import suppress
 from enum import StrEnum
 from functools import cache
 from typing import NamedTuple
@@ -32,8 +31,8 @@ from foon_asp.rules.clause import (
 )
 from foon_asp.rules.dependence import Dependence, Depends, Doubt
 from foon_asp.rules.fact_values import COLUMNS, misplaced
-from foon_asp.rules.flat_body import AtLeastOne, Disjunct, FlatBodies, LinearBound, NotFlatError
 from foon_asp.rules.locality import Locality
+from foon_asp.rules.understood import AtLeastOne, Removes, Row, Translator
 
 
 class Kind(StrEnum):
@@ -105,9 +104,8 @@ class Analysis:
 
     ``rules`` are in the order of the files, ``live`` the clauses that can have an effect: clauses with a
     condition that never holds are excluded. By the index of a rule in ``rules``, ``of_rule`` has its live
-    clauses, ``removals`` the disjuncts under which a unit breaks it, ``at_least_ones`` its at-least-one
-    constraints, and ``linear_bounds`` the bound that it states. A rule with removals or at-least-one
-    constraints states nothing else.
+    clauses, ``removals`` and ``at_least_ones`` what it states and nothing else, and ``rows`` the row that it
+    states. ``translator`` wrote the programs of these; ``constant_texts`` define constants for them.
     """
 
     def __init__(
@@ -120,6 +118,8 @@ class Analysis:
         statements = tuple(statements)
         self.definitions = [statement for statement in statements if statement.ast_type == ASTType.Definition]
         self.constants: Constants = constant_values(self.definitions, settings)
+        known = {name: symbol for name, symbol in self.constants.items() if symbol is not None}
+        self.constant_texts = [f"#const {name} = {symbol}." for name, symbol in known.items()]
         self.statements = [statement for statement in statements if statement.ast_type not in _WITHOUT_EFFECT]
         clauses_by_rule = [
             list(clauses(statement, number, self.constants)) if statement.ast_type == ASTType.Rule else []
@@ -132,10 +132,10 @@ class Analysis:
         self.live = [clause for rule_clauses in (*self.of_rule, _implied()) for clause in rule_clauses]
         self.dependence = Dependence(self.live, self.constants, varied)
         self._locality = Locality(self.live, self.dependence)
-        self.bodies = FlatBodies(self.live, self.constants, self.dependence, self._locality)
-        self.removals: dict[int, tuple[Disjunct, ...]] = {}
+        self.translator = Translator(self.live, self.constants, self.dependence)
+        self.removals: dict[int, Removes] = {}
         self.at_least_ones: dict[int, tuple[AtLeastOne, ...]] = {}
-        self.linear_bounds: dict[int, LinearBound] = {}
+        self.rows: dict[int, Row] = {}
         self.rules = tuple(
             self._understood(number, self._rule(statement, live))
             for number, (statement, live) in enumerate(zip(self.statements, self.of_rule, strict=True))
@@ -233,24 +233,24 @@ class Analysis:
         )
 
     def _understood(self, number: int, rule: Rule) -> Rule:
-        """Compile a rule to flat bodies where it is flat; return it with the kind that follows."""
+        """Find what a rule says of single units; return it with the kind that follows."""
         live = self.of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
             return rule
-        if rule.kind is not Kind.FACT and len(live) == 1:
-            with suppress(NotFlatError):
-                self.linear_bounds[number] = self.bodies.linear_bound(live[0])
-        with suppress(NotFlatError):
-            if rule.kind is Kind.REQUIRING:
-                self.at_least_ones[number] = tuple(
-                    at_least_one for clause in live for at_least_one in self.bodies.at_least_ones(clause)
-                )
-                return rule._replace(one_of=True)
-            self.removals[number] = tuple(
-                disjunct for clause in live for disjunct in self.bodies.disjuncts(clause)
-            )
-            return rule._replace(kind=Kind.FACT if rule.kind is Kind.FACT else Kind.DELETING)
-        return rule
+        if rule.kind is not Kind.FACT and len(live) == 1 and (row := self.translator.row(live[0])):
+            self.rows[number] = row
+        if rule.kind is Kind.REQUIRING:
+            found = [self.translator.at_least_one(clause) for clause in live]
+            at_least_ones = tuple(one for one in found if one is not None)
+            if len(at_least_ones) < len(found):
+                return rule
+            self.at_least_ones[number] = at_least_ones
+            return rule._replace(one_of=True)
+        removes = self.translator.removes(live)
+        if removes is None:
+            return rule
+        self.removals[number] = removes
+        return rule._replace(kind=Kind.FACT if rule.kind is Kind.FACT else Kind.DELETING)
 
 
 def _conjunction_kind(kinds: Iterable[Kind]) -> Kind:

@@ -1,33 +1,26 @@
 """The rules added to one question, from the user and the library, analysed without clingo where possible."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from enum import StrEnum
-from functools import cache, cached_property
+from functools import cached_property
 from typing import NamedTuple
 
 from clingo.ast import AST, ASTType
 
+from foon_asp.deadline import Deadline
 from foon_asp.encoding.encoding import Encoding, read_encoding
-from foon_asp.encoding.fact_writer import hundredths
 from foon_asp.encoding.stated import Stated
-from foon_asp.errors import UserError
 from foon_asp.network import Source
-from foon_asp.problem import Contradiction, Having, Problem, Restriction, Trait, Wanted, reach
+from foon_asp.problem import Contradiction, LinearRow, Problem, Restriction, Wanted, reach
 from foon_asp.rules.clause import Signature, literals, written
 from foon_asp.rules.dependence import TIMES
-from foon_asp.rules.flat_answers import FlatAnswers
-from foon_asp.rules.flat_body import AtLeastOne, Constant, Disjunct, Fact, Item, Never, Term
-from foon_asp.rules.limit import Limit
 from foon_asp.rules.rule_kind import Analysis, Kind, Rule
+from foon_asp.rules.tuning import TUNING
+from foon_asp.rules.understood import AtLeastOne, Understood
+from foon_asp.rules.unit_answers import UnitAnswers, ask_units, candidates
 
 _SHRINKING = {Kind.HELPER, Kind.FACT, Kind.DELETING, Kind.SHRINKING}
-_KITCHEN = ("kitchen", 1)
-_HAVING = {
-    "motion": Having.MOTION,
-    **dict.fromkeys(("input", "needs"), Having.INPUT),
-    **dict.fromkeys(("output", "gives"), Having.OUTPUT),
-}
 
 
 class ShownRule(NamedTuple):
@@ -72,16 +65,21 @@ class Rules:
         encodings: Sequence[Encoding],
         constants: Sequence[str],
         varied: Collection[Signature] = (),
+        endless: bool = True,
     ) -> None:
-        """Analyse encodings, under constants that are set as ``name=value`` for clingo."""
-        self._encodings, self._constants = tuple(encodings), tuple(constants)
+        """Analyse encodings, under constants that are set as ``name=value`` for clingo.
+
+        ``endless`` says that grounding them may not terminate.
+        """
+        self._encodings, self._constants, self._endless = tuple(encodings), tuple(constants), endless
+        self._last: tuple[Problem, Collection[int] | None, UnitAnswers | None] | None = None
         statements = [statement for encoding in encodings for statement in encoding.statements]
         self._analysis = Analysis(statements, self._constants, varied)
         self.rules: tuple[Rule, ...] = self._analysis.rules
 
     def varying(self, varied: Collection[Signature]) -> "Rules":
         """Return the same rules for a question in which some predicates of facts are derived or varied."""
-        return Rules(self._encodings, self._constants, varied)
+        return Rules(self._encodings, self._constants, varied, self._endless)
 
     @cached_property
     def shown(self) -> tuple["ShownRule", ...]:
@@ -158,26 +156,16 @@ class Rules:
         """
         if not self.local or self.unsettled:
             return None
-        return [
-            Wanted(
-                [tuple(_traits(disjunct)) for disjunct in at_least_one.helpers if disjunct.unit is not None],
-                _always(at_least_one),
-            )
-            for at_least_one in self._at_least_ones
-        ]
+        return [one.wanted for one in self._at_least_ones]
 
     @property
     def _at_least_ones(self) -> list[AtLeastOne]:
-        return [
-            at_least_one
-            for at_least_ones in self._analysis.at_least_ones.values()
-            for at_least_one in at_least_ones
-        ]
+        return [one for of_rule in self._analysis.at_least_ones.values() for one in of_rule]
 
     @property
     def only_limits(self) -> bool:
         """Whether no rule reads the number of executions except to bound it from above."""
-        at_most = {number for number, bound in self._analysis.linear_bounds.items() if not bound.at_least}
+        at_most = {number for number, bound in self._analysis.rows.items() if not bound.at_least}
         others = (
             clause
             for number, rule_clauses in enumerate(self._analysis.of_rule)
@@ -186,105 +174,77 @@ class Rules:
         )
         return all(literal.signature != TIMES for clause in others for literal in literals(clause.body))
 
-    def limits(self, problem: Problem) -> list[Limit]:
-        """Return the linear limits on executions that rules state.
+    def limits(self, problem: Problem, deadline: Deadline) -> list[LinearRow]:
+        """Return the linear limits on executions that rules state, over the units that can execute.
 
         Raises :class:`UserError` as :meth:`applied` does.
         """
-        if not self._analysis.linear_bounds:
-            return []
-        answers, units = self._answers(problem), sorted(reach(problem).units)
-        limits: list[Limit] = []
-        for bound in self._analysis.linear_bounds.values():
-            weight = answers.weight(bound)
-            weights = {unit: number for unit in units if (number := weight(unit))}
-            if bound.per_unit:
-                limits += [Limit({unit: 1}, bound.bound) for unit in weights]
+        answers = self._answers(problem, deadline) if self._analysis.rows else None
+        limits: list[LinearRow] = []
+        for row in self._analysis.rows.values() if answers else ():
+            assert answers is not None
+            weights = {u: n for u, n in sorted(answers.weights.get(row.number, {}).items()) if n}
+            if row.per_unit:
+                limits += [LinearRow({unit: 1}, row.bound) for unit in weights]
             else:
-                limits.append(Limit(weights, bound.bound, bound.at_least, bound.used))
+                limits.append(LinearRow(weights, row.bound, row.at_least, row.used))
         return limits
 
-    def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
-        """Return the upper linear bounds that rules state: for each the unit weights and the greatest sum."""
-        linear_bounds = [
-            bound for bound in self._analysis.linear_bounds.values() if not (bound.per_unit or bound.at_least)
-        ]
-        if linear_bounds:
-            answers = self._answers(problem)
-            yield from ((cache(answers.weight(bound)), bound.bound) for bound in linear_bounds)
+    def counted(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
+        """Return the upper limits on sums over units, where the network is not large."""
+        if not self.leave_to_search(problem):
+            yield from (row for row in self.limits(problem, deadline) if not row.at_least)
 
-    def applied(self, problem: Problem) -> Restriction | Contradiction:
+    def applied(
+        self, problem: Problem, deadline: Deadline, units: Collection[int] | None = None
+    ) -> Restriction | Contradiction | None:
         """Return the restriction of a problem by the rules that remove units or require one of a set.
 
-        A tree keeps to these if and only if it has no removed unit, and a unit of each required set. Whether
-        a unit is removed is evaluated lazily. Raises :class:`UserError` for prices that rules read and that
-        are no whole numbers of hundredths.
+        A tree keeps to these if and only if it has no removed unit, and a unit of each required set; of
+        ``units``, by default those that can execute. ``None`` where clingo refuses a rule. Raises
+        :class:`UserError` for prices that rules read and that are no whole numbers of hundredths.
         """
-        if problem.restriction is not None:
-            problem = replace(problem, restriction=None)
-        answers = self._answers(problem)
-        disjuncts = [disjunct for removals in self._analysis.removals.values() for disjunct in removals]
-        if answers.any_holds(disjunct for disjunct in disjuncts if disjunct.unit is None):
-            return Contradiction()
-        required = [
-            units
-            for at_least_one in self._at_least_ones
-            for units in answers.required_sets(at_least_one)
-            if units is not None
-        ]
-        if not all(required):
-            return Contradiction()
-        return Restriction(answers.removed(disjuncts), tuple(required))
+        answers = self._answers(problem, deadline, units)
+        return None if answers is None else answers.restriction
 
-    def _answers(self, problem: Problem) -> FlatAnswers:
-        prices = self._prices(problem) if self._analysis.reads(("price", 2)) else {}
-        bodies = self._analysis.bodies
-        return FlatAnswers(problem, bodies.tables, bodies.size, prices)
+    def leave_to_search(self, problem: Problem) -> bool:
+        """Whether the search enforces the rules of a large network: that is faster if none requires units."""
+        large = len(problem.network) > TUNING.evaluated_units
+        return large and not self._analysis.at_least_ones
 
-    def _prices(self, problem: Problem) -> dict[int, int]:
-        """Return the prices of units in hundredths; raises where units that can be made have none."""
-        read = [("price", 2)]
-        try:
-            return hundredths(problem, range(len(problem.network)), read)
-        except UserError:
-            return hundredths(problem, reach(problem).units, read)
+    def _answers(
+        self, problem: Problem, deadline: Deadline, units: Collection[int] | None = None
+    ) -> UnitAnswers | None:
+        analysis = self._analysis
+        if self._last is None or self._last[0] is not problem or self._last[1] is not units:
+            stated: list[Understood] = [*analysis.removals.values(), *self._at_least_ones]
+            stated += analysis.rows.values()
+            answers: UnitAnswers | None = UnitAnswers(Restriction(lambda _: False), {})
+            if stated:
+                numbers = analysis.removals.keys() | analysis.at_least_ones.keys() | analysis.rows.keys()
+                clauses = [clause for number in numbers for clause in analysis.of_rule[number]]
+                programs = [line for one in stated for line in one.program]
+                rules, read = analysis.translator.support(programs, clauses)
+                plain = problem if problem.restriction is None else replace(problem, restriction=None)
+                among = self._readable(plain) if units is None else units
+                answers = ask_units(
+                    plain,
+                    among,
+                    [*analysis.constant_texts, *rules],
+                    read,
+                    deadline if self._endless else None,
+                )
+            self._last = problem, units, answers
+        return self._last[2]
 
-
-def _facts(disjunct: Disjunct) -> list[Fact]:
-    return [item for item in disjunct.items if isinstance(item, Fact)]
-
-
-def _always(at_least_one: AtLeastOne) -> bool:
-    """Whether a unit is required whatever the facts are."""
-    return not at_least_one.when.items and all(disjunct.unit is not None for disjunct in at_least_one.helpers)
-
-
-def _traits(disjunct: Disjunct) -> Iterator[Trait]:
-    """Return the traits of the units of a disjunct, as far as texts of the rule name them."""
-    facts = _facts(disjunct)
-    for (name, _), terms in facts:
-        if terms[0] == disjunct.unit and name in _HAVING:
-            having, of_node = _HAVING[name], [fact for fact in facts if fact.terms[0] == terms[-1]]
-            if having is Having.INPUT and any(
-                _is_never(item, Fact(_KITCHEN, terms[-1:])) for item in disjunct.items
-            ):
-                having = Having.MADE
-            words = _text(terms[-1]) if name == "motion" else _named(of_node, {"label", "ingredient"})
-            yield from (Trait(having, word) for word in words)
-
-
-def _is_never(item: Item, fact: Fact) -> bool:
-    """Whether an item is false where a fact holds."""
-    return isinstance(item, Never) and any(disjunct.items == (fact,) for disjunct in item.disjuncts)
-
-
-def _text(term: Term) -> list[str]:
-    return [term.value] if isinstance(term, Constant) and isinstance(term.value, str) else []
-
-
-def _named(facts: Iterable[Fact], predicates: Collection[str]) -> list[str]:
-    """Return the constant texts of facts of some predicates."""
-    return [word for fact in facts if fact.signature[0] in predicates for word in _text(fact.terms[-1])]
+    def _readable(self, problem: Problem) -> Collection[int]:
+        """Return the units that rules can be about: those that can execute, or those that rules name."""
+        network = problem.network
+        if len(network) > TUNING.evaluated_units and not (self._analysis.removals or self._analysis.rows):
+            named = candidates(network, (one.wanted for one in self._at_least_ones))
+            if named is not None:
+                return named
+        return reach(problem).units
 
 
 def _rule_statements(statements: Iterable[AST]) -> list[AST]:

@@ -456,6 +456,14 @@ def test_rules_on_small_networks(seed: int) -> None:
     assert hold_under_a_rule(seed) is not Status.UNKNOWN
 
 
+@pytest.mark.parametrize("text", [":- #sum { 1,U : times(U,1) } > 0.", ":- #sum { 1,U : times(U,1) } > 1."])
+@pytest.mark.parametrize("seed", range(4))
+def test_units_executed_once_are_no_executions(seed: int, text: str) -> None:
+    most = int(text[-2])
+    found = hold(random_problem(seed), OBJECTIVES[0], [text], lambda _, n: [*n.values()].count(1) <= most)
+    assert found is not Status.UNKNOWN
+
+
 @pytest.mark.parametrize("seed", [1, 21, 102, 292])
 def test_what_units_and_items_are_worth(seed: int) -> None:
     problem = random_problem(seed)

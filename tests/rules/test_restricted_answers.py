@@ -12,8 +12,11 @@ import pytest
 from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.asp.breaking import Breaking
 from foon_asp.asp.ranking import Ranked
+from foon_asp.hypergraph import NONE
 from foon_asp.problem import Objective, Problem
+from foon_asp.rules import rules as rules_of_questions
 from foon_asp.rules.passed_constraint import given_constraint
+from foon_asp.rules.tuning import RuleTuning
 from tests.hypergraph.test_reductions import LISTS, Measured, posed
 from tests.rules.test_constraint_meanings import small
 
@@ -127,6 +130,53 @@ def test_trees_come_in_order_and_none_is_missing(mix: list[str], seeds: range, t
         assert set(given) == {tree.units for tree in minimal}, (seed, file.read_text())
         keys = [tree.key(names) for units in given for tree in minimal if tree.units == units]
         assert keys == sorted(keys)
+
+
+@pytest.mark.parametrize("mix", MIXES, ids="+".join)
+def test_rules_that_are_left_to_the_search_mean_the_same(
+    mix: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rules_of_questions, "TUNING", RuleTuning(evaluated_units=0))
+    for seed in range(6):
+        problem, found, file = asked(seed, mix, tmp_path)
+        expected = min((tree.key(["units"]) for tree in found), default=None)
+        outcome = solve(problem, settings=Settings((file,)))
+        keys = {tree.units: tree.key(["units"]) for tree in found}
+        best = None if outcome.units is None else keys[frozenset(outcome.units)]
+        assert best == expected, (seed, file.read_text())
+
+
+REQUIRING = (
+    ':- not use(U) : motion(U,"MOTION").',
+    ':- not use(U) : input(U,O), label(O,"LABEL"); not use(U) : motion(U,"MOTION").',
+    'got(O) :- use(U), gives(U,O), label(O,"LABEL"). :- not got(O) : label(O,"LABEL").',
+    'eaten :- use(U), needs(U,O), not kitchen(O), named(O). named(O) :- label(O,"LABEL"). :- not eaten.',
+    ':- #count { U : use(U), output(U,O), label(O,"LABEL") } < 1.',
+    ":- goal(O), not used(O). used(O) :- times(U,N), N > 0, gives(U,O).",
+)
+
+
+@pytest.mark.parametrize("text", REQUIRING)
+def test_units_that_rules_require_by_name_are_found_by_their_names(
+    text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a large network, only the units with a name of the rule are looked at."""
+    trees = 0
+    for seed in range(8):
+        problem, _, _ = posed(seed)
+        network, rng = problem.network, random.Random(seed)
+        label, motion = rng.choice(network.objects).label, rng.choice(network.motions)
+        rule = given_constraint(text.replace("LABEL", label).replace("MOTION", motion))
+        plain = solve(problem, settings=Settings((rule,), reductions=NONE))
+        with monkeypatch.context() as patched:
+            patched.setattr(rules_of_questions, "TUNING", RuleTuning(evaluated_units=0))
+            outcome = solve(problem, settings=Settings((rule,)))
+        sizes = [
+            None if found.costs is None else found.costs.key([Objective.UNITS]) for found in (outcome, plain)
+        ]
+        assert (outcome.status, sizes[0]) == (plain.status, sizes[1]), (seed, rule)
+        trees += outcome.units is not None
+    assert trees
 
 
 def test_a_rate_of_a_unit_that_only_serves_what_cannot_be_made() -> None:

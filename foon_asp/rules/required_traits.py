@@ -1,0 +1,86 @@
+"""Traits of the units that a rule requires: names that each of them has, as far as the rule states them."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import count, product
+
+from clingo.ast import AST, ASTType
+from clingo.symbol import Symbol, SymbolType
+
+from foon_asp.problem import Having, Trait
+from foon_asp.rules.clause import Clause, Conjunct, Constants, Literal, Signature, value
+from foon_asp.rules.dependence import AVAILABLE, TIMES, USE
+from foon_asp.rules.fact_subject import SUBJECTS
+
+_KITCHEN = ("kitchen", 1)
+_HAVING = {
+    "motion": Having.MOTION,
+    **dict.fromkeys(("input", "needs"), Having.INPUT),
+    **dict.fromkeys(("output", "gives"), Having.OUTPUT),
+}
+_Term = str | Symbol  # the name of a variable, or a constant
+_Atom = tuple[Signature, int, tuple[_Term, ...]]  # with its negations
+
+
+class TraitReader:
+    """Reader of traits in conjunctions about one unit of the tree, whose auxiliary predicates it unfolds."""
+
+    def __init__(self, clauses: Mapping[Signature, Sequence[Clause]], constants: Constants) -> None:
+        self._clauses, self._constants = clauses, constants
+        self._fresh = count()
+
+    def rows(self, conjuncts: Iterable[Conjunct]) -> list[list[Trait]]:
+        """Return for each disjunct traits that a unit has of which the disjunct holds."""
+        return [list(_traits(atoms)) for atoms in self._disjuncts(conjuncts, {}, ())]
+
+    def _disjuncts(
+        self, conjuncts: Iterable[Conjunct], names: dict[str, _Term], above: tuple[Signature, ...]
+    ) -> list[list[_Atom]]:
+        """Return the disjuncts of a conjunction whose variables stand for the terms in ``names``."""
+        alternatives = []
+        for conjunct in conjuncts:
+            if isinstance(conjunct, Literal):
+                terms = tuple(self._term(argument, names) for argument in conjunct.arguments)
+                alternatives.append(self._unfolded(conjunct, terms, above))
+        return [[atom for atoms in chosen for atom in atoms] for chosen in product(*alternatives)]
+
+    def _unfolded(
+        self, literal: Literal, terms: tuple[_Term, ...], above: tuple[Signature, ...]
+    ) -> list[list[_Atom]]:
+        signature = literal.signature
+        if literal.negations or signature in SUBJECTS or signature in {USE, TIMES} or signature in above:
+            return [[(signature, literal.negations, terms)]]
+        if signature == AVAILABLE:
+            unit = f"{next(self._fresh)} unit"
+            return [[(USE, 0, (unit,)), (("gives", 2), 0, (unit, *terms))]]
+        found = []
+        for clause in self._clauses.get(signature, ()):
+            assert clause.head is not None
+            pairs = zip(clause.head.arguments, terms, strict=True)
+            names = {str(one): term for one, term in pairs if one.ast_type == ASTType.Variable}
+            found += self._disjuncts(clause.body, names, (*above, signature))
+        return found
+
+    def _term(self, term: AST, names: dict[str, _Term]) -> _Term:
+        symbol = value(term, self._constants)
+        if symbol is not None:
+            return symbol
+        fresh = f"{next(self._fresh)} {term}"
+        return fresh if str(term) == "_" else names.setdefault(str(term), fresh)
+
+
+def _traits(atoms: Sequence[_Atom]) -> Iterator[Trait]:
+    """Return the traits of the unit of a conjunction of atoms."""
+    units = {terms[0] for signature, negations, terms in atoms if signature in {USE, TIMES} and not negations}
+    facts = [(signature[0], terms) for signature, negations, terms in atoms if not negations]
+    outside = {terms[0] for signature, negations, terms in atoms if signature == _KITCHEN and negations == 1}
+    for name, terms in facts:
+        if name not in _HAVING or terms[0] not in units:
+            continue
+        having, words = _HAVING[name], [terms[-1]]
+        if having is not Having.MOTION:
+            words = [of[-1] for other, of in facts if other in {"label", "ingredient"} and of[0] == terms[-1]]
+            if having is Having.INPUT and terms[-1] in outside:
+                having = Having.MADE
+        for word in words:
+            if isinstance(word, Symbol) and word.type is SymbolType.String:
+                yield Trait(having, word.string)

@@ -1,0 +1,22 @@
+"""Numbers that steer the stages of this room; none of them decides what is answered, only how fast."""
+
+from typing import NamedTuple
+
+
+class RuleTuning(NamedTuple):
+    """When rules are evaluated before the search, and measures without a process of their own.
+
+    ``evaluated_units``: units of a network; in a larger one, rules that only remove units are left to the
+    search, which looks at the units near the goals alone (benchmarks/rules.py at 100,000 units: 0.15 s
+    against 0.43 s).
+    ``plain_atoms``: atoms in a rule of a measure; only with more can its instances be many.
+    ``quick_letters``: letters of facts and rules of a measure; clingo grounds fewer in a fraction of a
+    second, so that no process of its own is started.
+    """
+
+    evaluated_units: int = 20_000
+    plain_atoms: int = 6
+    quick_letters: int = 1_500_000
+
+
+TUNING = RuleTuning()

@@ -1,0 +1,406 @@
+"""The kinds of rules: what a rule that is understood says of single units.
+
+A rule *removes* the units that break it by themselves, asks for *at least one* of the units that keep to it
+by themselves, or is a *row* over weights of units. Each kind is a program for clingo, which derives
+``_of_unit(NUMBER,WHAT,OF,W)`` in a world ``W`` for each unit, where no other unit is used, and in the world
+``NOTHING``, where none is. Any other rule is a *check*: it is asked of clingo on whole trees, never dropped.
+
+A rule is of one of these kinds if, by its syntax, each of its derivations looks at one unit of the tree, and
+if it calculates nothing: then no number can overflow, and grounding ends.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final, NamedTuple
+
+from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
+from clingo.symbol import Number, SymbolType
+
+from foon_asp.problem import Trait, Wanted
+from foon_asp.problem.number import INT32_MAX
+from foon_asp.rules.clause import (
+    Aggregate,
+    Clause,
+    Conditional,
+    Conjunct,
+    Constants,
+    Element,
+    Literal,
+    Signature,
+    Strange,
+    Test,
+    compared,
+    factors,
+    global_variables,
+    literals,
+    value,
+    variables,
+)
+from foon_asp.rules.dependence import AVAILABLE, TIMES, USE, Dependence, Depends
+from foon_asp.rules.fact_subject import SUBJECTS
+from foon_asp.rules.required_traits import TraitReader
+from foon_asp.rules.worlds import Worlds, unused_variable
+
+ANSWER: Final = ("_of_unit", 4)
+NOTHING: Final = "nothing"  # the world without units
+_WORLD_OF_NOTHING: Final = f'"{NOTHING}"'
+_ONE_EXECUTION = {USE, TIMES}
+
+
+class Removes(NamedTuple):
+    """No tree has a unit of a world in which ``breaks`` is derived; in ``NOTHING``, there is no tree."""
+
+    program: tuple[str, ...]
+
+
+class AtLeastOne(NamedTuple):
+    """Wherever ``asks`` is derived, a tree has a unit of a world in which ``meets`` is derived of the same.
+
+    ``wanted`` are traits of these units.
+    """
+
+    program: tuple[str, ...]
+    wanted: Wanted
+
+
+class Row(NamedTuple):
+    """The weights of units that ``weighs`` states sum up to at most ``bound``, or ``at_least``.
+
+    The weights have the ``number`` of the row. Different weights of a unit add up, and count for each
+    execution, with ``used`` once. With ``per_unit``, the bound holds for each unit by itself.
+    """
+
+    number: int
+    program: tuple[str, ...]
+    bound: int
+    at_least: bool = False
+    used: bool = False
+    per_unit: bool = False
+
+
+Understood = Removes | AtLeastOne | Row
+
+# By forbidden comparison: whether the bound that remains is a lower one, and its offset from the number.
+_ALLOWED = {
+    ComparisonOperator.GreaterThan: (False, 0),
+    ComparisonOperator.GreaterEqual: (False, -1),
+    ComparisonOperator.LessThan: (True, 0),
+    ComparisonOperator.LessEqual: (True, 1),
+}
+
+
+class Translator:
+    """Translator of rules to their kinds; each method returns ``None`` for rules that are not of its kind."""
+
+    def __init__(self, program: Sequence[Clause], constants: Constants, dependence: Dependence) -> None:
+        self._constants, self._dependence = constants, dependence
+        self._clauses: dict[Signature, list[Clause]] = {}
+        for clause in program:
+            if clause.head is not None:
+                self._clauses.setdefault(clause.head.signature, []).append(clause)
+        dependent = {
+            signature for signature in self._clauses if dependence.of(signature) is not Depends.NOT
+        } | {USE, AVAILABLE}
+        self._world = unused_variable("".join(str(clause.ast) for clause in program), "World")
+        self._worlds = Worlds(dependent, self._world, "__")
+        self._numbers = 0
+        self._looks: dict[Signature, int] = {}
+
+    def removes(self, clauses: Sequence[Clause]) -> Removes | None:
+        """Return the removal that a rule of ``clauses`` stands for."""
+        if not all(self._is_plain(clause.body) for clause in clauses):
+            return None
+        if any(self._looks_of(clause.body) > 1 for clause in clauses):
+            return None
+        return Removes(tuple(self._stated(self._answer("breaks", 0), clause) for clause in clauses))
+
+    def at_least_one(self, clause: Clause) -> AtLeastOne | None:
+        """Return the at-least-one constraint that a requiring rule stands for."""
+        deciding = [n for n, one in enumerate(clause.body) if self._looks_of([one])]
+        others = [n for n in range(len(clause.body)) if n not in deciding]
+        alternatives = [self._alternatives(clause, n) for n in deciding]
+        if None in alternatives or not self._is_plain(clause.body):
+            return None
+        bound = {name for n in others for name in global_variables(clause.body[n])}
+        of = f"({','.join([*sorted(bound), ''])})" if bound else "()"
+        when = [str(self._worlds.visit(clause.ast.body[n])) for n in others]
+        self._numbers += 1
+        program = [f"{self._head('asks', of, _WORLD_OF_NOTHING)} :- {'; '.join(when) or '#true'}."]
+        rows: list[Sequence[Trait]] = []
+        always = all(getattr(clause.body[n], "holds", None) for n in others)
+        for written, conjuncts in (one for found in alternatives for one in found or ()):
+            body = "; ".join([*when, *written, f"__world({self._world})"])
+            program.append(f"{self._head('meets', of, self._world)} :- {body}.")
+            rows += TraitReader(self._clauses, self._constants).rows(conjuncts)
+            always &= self._has_unit(conjuncts)
+        return AtLeastOne(tuple(program), Wanted(rows, always))
+
+    def row(self, clause: Clause) -> Row | None:
+        """Return the row that a rule such as ``:- #sum { N,U : times(U,N) } > 9`` stands for."""
+        body = clause.body
+        if len(body) == 1 and isinstance(body[0], Aggregate):
+            return self._sum(body[0], clause.ast.body[0].atom.elements)
+        for position, conjunct in enumerate(body):
+            others = [n for n in range(len(body)) if n != position]
+            if isinstance(conjunct, Test) and (guard := _comparison(conjunct)) is not None:
+                condition = tuple(body[n] for n in others)
+                count, operator, term = guard
+                allowed = self._allowed(operator, term)
+                if allowed is None or allowed[0] or not _counts(condition, count):
+                    continue
+                self._numbers += 1
+                element = Element((count, *(_executions(condition) or ())[:1]), condition)
+                weights = self._weights(element, [clause.ast.body[n] for n in others])
+                return (
+                    None if weights is None else Row(self._numbers, (weights[0],), allowed[1], per_unit=True)
+                )
+        return None
+
+    def support(self, programs: Sequence[str], read: Iterable[Clause]) -> tuple[list[str], set[Signature]]:
+        """Return the rules that programs need, and the predicates of facts that these and ``read`` read."""
+        facts: set[Signature] = {("unit", 1)}
+        rules: list[str] = []
+        done: set[Signature] = set()
+        stack = [literal.signature for clause in read for literal in literals(clause.body)]
+        while stack:
+            signature = stack.pop()
+            if signature in done:
+                continue
+            done.add(signature)
+            if signature in SUBJECTS:
+                facts.add(signature)
+            for clause in self._clauses.get(signature, ()):
+                rules.append(self._stated(str(self._worlds.visit(clause.ast.head)), clause))
+                stack += [literal.signature for literal in literals(clause.body)]
+        rules += ["__world(W) :- unit(W).", f"__world({_WORLD_OF_NOTHING}).", "__use(W,W) :- unit(W)."]
+        if AVAILABLE in done:
+            rules += [f"__available({_WORLD_OF_NOTHING},O) :- kitchen(O).", "__available(W,O) :- gives(W,O)."]
+            facts |= {("kitchen", 1), ("gives", 2)}
+        return [*rules, *programs], facts
+
+    def _sum(self, aggregate: Aggregate, elements: Sequence[AST]) -> Row | None:
+        is_sum = aggregate.function is AggregateFunction.Sum
+        sizes = {len(element.terms) for element in aggregate.elements}
+        if aggregate.negations or len(aggregate.guards) != 1 or sizes != {1 + is_sum}:
+            return None
+        if not is_sum and aggregate.function is not AggregateFunction.Count:
+            return None
+        allowed = self._allowed(aggregate.guards[0].comparison, aggregate.guards[0].term)
+        self._numbers += 1
+        found = [
+            self._weights(element, list(node.condition))
+            for element, node in zip(aggregate.elements, elements, strict=True)
+        ]
+        used = {signature for weights in found if weights for signature in weights[1:]}
+        if allowed is None or None in found or len(used) != 1:
+            return None
+        program = tuple(weights[0] for weights in found if weights)
+        return Row(self._numbers, program, allowed[1], allowed[0], used == {USE})
+
+    def _weights(self, element: Element, condition: Sequence[AST]) -> tuple[str, Signature] | None:
+        """Return the rule of the weights for one execution, and the predicate that stands for executions.
+
+        The weight of several executions is a multiple of it, since nothing else reads their number.
+        """
+        executions = _executions(element.condition)
+        if executions is None or not self._is_plain(element.condition):
+            return None
+        unit, *count = executions
+        if str(unit) == "_" or any(term.ast_type != ASTType.Variable for term in count):
+            return None
+        *product, last = (factor for term in element.terms for factor in factors(term))
+        written = [str(factor) for factor in product]
+        position = next(n for n, one in enumerate(element.condition) if _executes(one))
+        others = [one for n, one in enumerate(element.condition) if n != position]
+        for factor in map(str, count):
+            elsewhere = [name for one in others for name in variables(*_terms_of(one))]
+            if written.count(factor) != 1 or factor in {*elsewhere, str(unit), "_"}:
+                return None
+            written.remove(factor)
+        if len(written) > 1 or str(last) != str(unit) or self._looks_of(others):
+            return None
+        if written and not self._is_term(next(one for one in product if str(one) == written[0])):
+            return None
+        body = [f"unit({unit})", *(str(node) for n, node in enumerate(condition) if n != position)]
+        weight = written[0] if written else "1"
+        signature = element.condition[position]
+        assert isinstance(signature, Literal)
+        return f"{self._head('weighs', weight, unit)} :- {'; '.join(body)}.", signature.signature
+
+    def _allowed(self, comparison: int, term: AST) -> tuple[bool, int] | None:
+        """Return the bound that forbids a comparison: whether it is a lower one, and its number."""
+        number, allowed = value(term, self._constants), _ALLOWED.get(ComparisonOperator(comparison))
+        if number is None or number.type is not SymbolType.Number or allowed is None:
+            return None
+        return allowed[0], number.number + allowed[1]
+
+    def _alternatives(self, clause: Clause, position: int) -> "list[_Alternative] | None":
+        """Return the conditions under which a unit makes a conjunct of a requiring rule false."""
+        conjunct, node = clause.body[position], clause.ast.body[position]
+        if isinstance(conjunct, Aggregate):
+            if not _counts_none(conjunct, self._constants):
+                return None
+            pairs = (
+                [
+                    (element.condition, list(inner.condition))
+                    for element, inner in zip(conjunct.elements, node.atom.elements, strict=True)
+                ]
+                if node.atom.ast_type == ASTType.BodyAggregate
+                else []
+            )
+            if not pairs:
+                return None
+        else:
+            literal, condition, nodes = conjunct, tuple[Conjunct, ...](), list[AST]()
+            if isinstance(conjunct, Conditional):
+                literal, condition = conjunct.literal, conjunct.condition
+                node, nodes = node.literal, list(node.condition)
+            if not isinstance(literal, Literal) or literal.negations != 1:
+                return None
+            pairs = [((literal._replace(negations=0), *condition), [node.update(sign=0), *nodes])]
+        if any(self._looks_of(conjuncts) != 1 for conjuncts, _ in pairs):
+            return None
+        return [
+            ([str(self._worlds.visit(one)) for one in written], conjuncts) for conjuncts, written in pairs
+        ]
+
+    def _answer(self, what: str, of: object) -> str:
+        self._numbers += 1
+        return self._head(what, of, self._world)
+
+    def _head(self, what: str, of: object, world: object) -> str:
+        return f'{ANSWER[0]}({self._numbers},"{what}",{of},{world})'
+
+    def _stated(self, head: str, clause: Clause) -> str:
+        """Return a rule in each world where it depends on the tree, else in the world without units."""
+        body = [str(self._worlds.visit(node)) for node in clause.ast.body]
+        if self._world in head:
+            where = (
+                f"__world({self._world})"
+                if self._looks_of(clause.body)
+                else f"{self._world} = {_WORLD_OF_NOTHING}"
+            )
+            body.append(where)
+        return f"{head} :- {'; '.join(body) or '#true'}."
+
+    def _looks_of(self, body: Iterable[Conjunct]) -> int:
+        """Return at how many units of the tree a conjunction looks; 2 stands for more than one."""
+        looks = 0
+        for conjunct in body:
+            if isinstance(conjunct, Literal):
+                looks += self._looks_of_atom(conjunct.signature) << (conjunct.negations > 0)
+            else:
+                looks += 2 * any(self._looks_of_atom(one.signature) for one in literals([conjunct]))
+        return min(looks, 2)
+
+    def _looks_of_atom(self, signature: Signature) -> int:
+        if signature in {USE, AVAILABLE}:
+            return 1
+        if signature not in self._looks:
+            self._looks[signature] = (
+                2 if self._dependence.of(signature) is not Depends.NOT else 0
+            )  # recursion
+            if self._looks[signature]:
+                clauses = self._clauses.get(signature, ())
+                self._looks[signature] = max((self._looks_of(clause.body) for clause in clauses), default=0)
+        return self._looks[signature]
+
+    def _has_unit(self, body: Iterable[Conjunct]) -> bool:
+        """Whether a conjunction about one unit never holds without it."""
+        return any(
+            isinstance(one, Literal)
+            and (
+                one.signature == USE
+                or (
+                    one.signature != AVAILABLE
+                    and self._looks_of_atom(one.signature) == 1
+                    and all(self._has_unit(clause.body) for clause in self._clauses.get(one.signature, ()))
+                )
+            )
+            for one in body
+        )
+
+    def _is_plain(self, body: Iterable[Conjunct], above: frozenset[Signature] = frozenset()) -> bool:
+        """Whether a body, and the rules that derive what it reads, calculate nothing."""
+        conjuncts = tuple(body)
+        terms = [term for one in conjuncts for term in _terms_of(one)]
+        inner = [literal for one in conjuncts for literal in literals([one])]
+        if any(map(_is_strange, conjuncts)) or not all(map(self._is_term, terms)):
+            return False
+        read = {literal.signature for literal in inner} - above
+        above |= read
+        return all(not name.startswith("-") for name, _ in read) and all(
+            all(map(self._is_term, clause.ast.head.atom.symbol.arguments))
+            and self._is_plain(clause.body, above)
+            for signature in read
+            for clause in self._clauses.get(signature, ())
+        )
+
+    def _is_term(self, term: AST) -> bool:
+        return term.ast_type == ASTType.Variable or value(term, self._constants) is not None
+
+
+_Alternative = tuple[list[str], Sequence[Conjunct]]
+
+
+def _terms_of(conjunct: Conjunct) -> Iterator[AST]:
+    """Return all terms in a conjunct whose truth is not known."""
+    if isinstance(conjunct, Literal):
+        yield from conjunct.arguments
+    elif isinstance(conjunct, Test):
+        if conjunct.holds is None and conjunct.ast.atom.ast_type == ASTType.Comparison:
+            yield conjunct.ast.atom.term
+            yield from (guard.term for guard in conjunct.ast.atom.guards)
+    elif isinstance(conjunct, Conditional):
+        for one in (conjunct.literal, *conjunct.condition):
+            yield from _terms_of(one)
+    elif isinstance(conjunct, Aggregate):
+        yield from (guard.term for guard in conjunct.guards)
+        for element in conjunct.elements:
+            yield from element.terms
+            for one in element.condition:
+                yield from _terms_of(one)
+
+
+def _is_strange(conjunct: Conjunct) -> bool:
+    """Whether a conjunct has a part that is not known, or calculates other than by counting."""
+    if isinstance(conjunct, Conditional):
+        return any(map(_is_strange, (conjunct.literal, *conjunct.condition)))
+    if isinstance(conjunct, Aggregate):
+        counts = conjunct.function is AggregateFunction.Count
+        return not counts or any(_is_strange(one) for e in conjunct.elements for one in e.condition)
+    return isinstance(conjunct, Strange)
+
+
+def _comparison(test: Test) -> tuple[AST, int, AST] | None:
+    """Return the two terms of a comparison, with its operator between them; ``None`` for longer ones."""
+    atom = test.ast.atom
+    if test.ast.sign or atom.ast_type != ASTType.Comparison or len(atom.guards) != 1:
+        return None
+    return atom.term, atom.guards[0].comparison, atom.guards[0].term
+
+
+def _executes(conjunct: Conjunct) -> bool:
+    return isinstance(conjunct, Literal) and conjunct.positive and conjunct.signature in _ONE_EXECUTION
+
+
+def _executions(condition: Iterable[Conjunct]) -> tuple[AST, ...] | None:
+    """Return the arguments of the one literal of a condition that states executions, else ``None``."""
+    found = [one for one in condition if _executes(one)]
+    return found[0].arguments if len(found) == 1 and isinstance(found[0], Literal) else None
+
+
+def _counts(condition: Iterable[Conjunct], count: AST) -> bool:
+    executions = _executions(condition)
+    return executions is not None and len(executions) == 2 and str(executions[1]) == str(count)
+
+
+def _counts_none(aggregate: Aggregate, constants: Constants) -> bool:
+    """Whether a ``#count`` holds exactly where its count is 0."""
+    if aggregate.function is not AggregateFunction.Count or len(aggregate.guards) != 1:
+        return False
+    bound = value(aggregate.guards[0].term, constants)
+    if bound is None or bound.type is not SymbolType.Number:
+        return False
+    compares = [compared(Number(n), aggregate.guards[0].comparison, bound) for n in (0, 1, INT32_MAX)]
+    expected = [not holds for holds in compares] if aggregate.negations == 1 else compares
+    return expected == [True, False, False]

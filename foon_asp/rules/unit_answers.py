@@ -1,0 +1,96 @@
+"""What single units do to the rules of one question, as clingo derives it."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+from foon_asp.deadline import Deadline
+from foon_asp.encoding.derived import Value, derive
+from foon_asp.encoding.fact_writer import write_facts_read
+from foon_asp.encoding.run import ProgramError
+from foon_asp.errors import UserError
+from foon_asp.network import Network
+from foon_asp.problem import Contradiction, Having, Problem, Restriction, Wanted, reach
+from foon_asp.rules.clause import Signature
+from foon_asp.rules.understood import ANSWER, NOTHING
+
+
+class UnitAnswers(NamedTuple):
+    """The ``restriction`` by rules that remove units and require sets, and weights by row and unit."""
+
+    restriction: Restriction | Contradiction
+    weights: Mapping[int, Mapping[int, int]]
+
+
+def ask_units(
+    problem: Problem,
+    units: Collection[int],
+    program: Sequence[str],
+    read: Collection[Signature],
+    deadline: Deadline | None,
+) -> UnitAnswers | None:
+    """Evaluate the programs of rules over units; in another process, up to a deadline, where there is one.
+
+    ``read`` are the predicates of facts that they read. ``None`` where clingo refuses a rule: then it says so
+    where it searches. Raises :class:`UserError` for prices that rules read and that are no whole numbers of
+    hundredths.
+    """
+    try:
+        facts = write_facts_read(problem, sorted(units), read)
+    except UserError:  # of units that cannot execute
+        facts = write_facts_read(problem, sorted(reach(problem).units), read)
+    text = "\n".join([*program, facts])
+    try:
+        if deadline is None:
+            rows = derive(text, *ANSWER)
+        else:
+            from foon_asp.encoding import worker_process  # noqa: PLC0415 (of use with rules of the user only)
+
+            rows = worker_process.derive(text, *ANSWER, deadline)
+    except ProgramError:
+        return None
+    return _read(problem, rows)
+
+
+def candidates(network: Network, wanted: Iterable[Wanted]) -> set[int] | None:
+    """Return a superset of the units that rules require, by their names; ``None`` without names."""
+    units: set[int] = set()
+    for row in (row for one in wanted for row in one.rows):
+        if not row:
+            return None
+        having, word = row[0]
+        if having is Having.MOTION:
+            units |= {unit for unit, motion in enumerate(network.motions) if motion == word}
+        else:
+            nodes = {*network.by_label.get(word, ()), *network.by_ingredient.get(word, ())}
+            sides = network.producers if having is Having.OUTPUT else network.consumers
+            units.update(unit for o in nodes for unit in sides[o])
+    return units
+
+
+def _read(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAnswers:
+    removed: set[int] = set()
+    required: dict[tuple[Value, Value], set[int] | None] = {}  # None where a set is not needed
+    weights: dict[int, dict[int, int]] = {}
+    possible = True
+    for number, what, of, world in rows:
+        assert isinstance(number, int)
+        unit = problem.network.unit_of_number(world) if isinstance(world, int) else None
+        if world == NOTHING:
+            possible &= what != "breaks"
+            if what == "meets":
+                required[number, of] = None
+            else:
+                required.setdefault((number, of), set())
+        elif unit is None:
+            continue
+        elif what == "breaks":
+            removed.add(unit)
+        elif what == "weighs":
+            of_row = weights.setdefault(number, {})
+            of_row[unit] = of_row.get(unit, 0) + (of if isinstance(of, int) else 0)
+        elif (units := required.setdefault((number, of), set())) is not None:
+            units.add(unit)
+    sets = tuple(frozenset(units) for units in required.values() if units is not None)
+    if not possible or not all(sets):
+        return UnitAnswers(Contradiction(), weights)
+    return UnitAnswers(Restriction(removed.__contains__, sets), weights)

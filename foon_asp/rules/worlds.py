@@ -1,0 +1,38 @@
+"""Worlds: rules about one unit at a time, rewritten so that clingo derives them for all units at once."""
+
+from collections.abc import Collection
+
+from clingo.ast import AST, ASTType, Transformer, Variable
+
+from foon_asp.rules.clause import Signature
+
+
+class Worlds(Transformer):
+    """Rewriter that adds a world as first argument to predicates that differ from world to world.
+
+    Their names get a ``prefix``; ``world`` is a variable that no rule has.
+    """
+
+    def __init__(self, dependent: Collection[Signature], world: str, prefix: str = "_") -> None:
+        self._dependent, self._world, self._prefix = dependent, world, prefix
+
+    def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
+        """Return an atom with a world."""
+        return atom.update(symbol=self._changed(atom.symbol))
+
+    def _changed(self, symbol: AST) -> AST:
+        if symbol.ast_type is ASTType.Pool:
+            return symbol.update(arguments=[self._changed(one) for one in symbol.arguments])
+        if symbol.ast_type is ASTType.UnaryOperation:
+            return symbol
+        if (symbol.name, len(symbol.arguments)) not in self._dependent:
+            return symbol
+        arguments = [Variable(symbol.location, self._world), *symbol.arguments]
+        return symbol.update(name=f"{self._prefix}{symbol.name}", arguments=arguments)
+
+
+def unused_variable(text: str, name: str) -> str:
+    """Return a name of a variable that does not occur in a text of rules."""
+    while name in text:
+        name += "_"
+    return name
