@@ -102,10 +102,6 @@ class _Question:
         self._lasting = replace(problem, kitchen=initial, restriction=restriction)
         self._reached = reached = reach(self._lasting)
         self._units = sorted(reached.units if required else relevant_to_plans(problem, reached))
-        self._achievers: dict[int, list[int]] = {}
-        for unit, flow in enumerate(problem.flows):
-            for o in flow.adds:
-                self._achievers.setdefault(o, []).append(unit)
         self._limits: list[tuple[int, SumLimit, int]] = []  # place of the rule, the sum and its scale
         for rule_number, limit in ruled.limits.items():
             scale = math.lcm(
@@ -237,7 +233,7 @@ class _Question:
         touched = {o for cut in self._cuts for o in cut} | self._balanced
         own = self._ruled.makers
         touched -= self._problem.endless  # of which only taking them crosses a cut
-        makers = (own[o] if o in own else self._achievers.get(o, ()) for o in sorted(touched))
+        makers = (own[o] if o in own else self._achievers(o) for o in sorted(touched))
         waiting = [u for units_of in makers for u in units_of if u not in units and u not in removed]
         unreached: set[int] = set()
         while waiting:
@@ -245,8 +241,12 @@ class _Question:
             if unreached.isdisjoint(asks):
                 lacking = next(o for o in asks if not self._reached.available[o])
                 unreached.add(lacking)
-                waiting += (unit for unit in self._achievers.get(lacking, ()) if unit not in removed)
+                waiting += (unit for unit in self._achievers(lacking) if unit not in removed)
         return sorted(unreached)
+
+    def _achievers(self, o: int) -> list[int]:
+        """Return all units that add a node."""
+        return [unit for unit in self._problem.makers[o] if o in self._problem.flows[unit].adds]
 
     def _amounts(self) -> list[list[Any]]:
         """Return the amounts of all units of the data."""

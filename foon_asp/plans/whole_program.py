@@ -1,7 +1,7 @@
 """A linear program over whole numbers: solved in floats by HiGHS, bounded in whole numbers."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -127,6 +127,22 @@ class WholeProgram:
             return Solved(None, math.inf)
         return Solved(self._nearly(), -math.inf)
 
+    def inverse_rows(self, x: Sequence[float]) -> Iterator[dict[int, float]]:
+        """Yield the rows of the inverse basis of basic columns that are fractional, the most so first.
+
+        Each has weights of rows, in floats. ``x`` is the solution that was returned last.
+        """
+        if self._highs is None:
+            return
+        basic = [(place, int(column)) for place, column in enumerate(self._highs.getBasicVariables()[1])]
+        basic = [(place, column) for place, column in basic if column >= 0]
+        basic.sort(key=lambda entry: abs(x[entry[1]] - math.floor(x[entry[1]]) - 0.5))
+        for place, column in basic:
+            if abs(x[column] - round(x[column])) < INTEGRALITY:
+                return
+            weights = self._highs.getBasisInverseRow(place)[1]
+            yield {row: float(weights[row]) for row in self._np.flatnonzero(weights).tolist()}
+
     def _nearly(self) -> list[float] | None:
         """Return a solution that may violate rows a little, where floats find none and prove nothing.
 
@@ -160,8 +176,20 @@ class WholeProgram:
         """Return a row: its coefficients, and the least sum."""
         return self._rows[row]
 
-    def whole_optimum(self, objective: Mapping[int, int]) -> list[float] | None:
-        """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or when time is up."""
+    def without(self, rows: Container[int]) -> "WholeProgram":
+        """Return a program with the same columns, and without some rows."""
+        other = WholeProgram(0, self._expired)
+        other.lower, other.upper = list(self.lower), list(self.upper)
+        other._rows = [row for number, row in enumerate(self._rows) if number not in rows]
+        return other
+
+    def whole_optimum(
+        self, objective: Mapping[int, int], sufficient_cost: float = -math.inf
+    ) -> list[float] | None:
+        """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or when time is up.
+
+        One that costs up to ``sufficient_cost`` is taken at once.
+        """
         highs = self._send(objective)
         count = self.columns
         whole = self._library.HighsVarType.kInteger
@@ -169,8 +197,11 @@ class WholeProgram:
             count, self._np.arange(count, dtype="int32"), self._np.array([whole] * count)
         )
         highs.setOptionValue("presolve", "on")
+        highs.setOptionValue("mip_rel_gap", 0.0)
+        highs.setOptionValue("objective_target", sufficient_cost)
         ended = not self._expired() and run(highs, self._expired, whole=True)
-        optimal = ended and highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
+        status = self._library.HighsModelStatus
+        optimal = ended and highs.getModelStatus() in {status.kOptimal, status.kObjectiveTarget}
         values = list(highs.getSolution().col_value) if optimal else None
         self._highs = None
         return values

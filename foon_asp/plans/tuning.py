@@ -1,0 +1,36 @@
+"""Numbers that steer the stages of this room; none of them decides what is proved, only how fast.
+
+Stages read the object at the end of this module when they are called.
+"""
+
+from typing import NamedTuple
+
+
+class PlanTuning(NamedTuple):
+    """When the searches for counts, orders and proofs end, and what they begin with.
+
+    ``rounded_rows``: rows that are added for one solution of the state equation, at most.
+    ``rounding_denominator``: greatest denominator of the weights that rounded rows are made of.
+    ``probes``: actions of which it is asked at the root whether they can be executed twice.
+    ``nodes``: nodes of branch and bound over counts, after which a proof is given up.
+    ``first_executions``: executions of an action, for each copy wanted, that counts are first looked for with.
+    ``leaves``: leaves of a proof by branching, in a certificate.
+    ``order_steps``: runs that a search for an order tries; most orders take as many as there are actions.
+    ``single_executions``: executions up to which every order is tried, one execution at a time.
+    ``unordered_counts``: counts without an order, after which clingo searches all counts at once.
+    ``clingo_executions``: executions in one such search.
+    """
+
+    rounded_rows: int = 20
+    rounding_denominator: int = 5_000
+    probes: int = 60
+    nodes: int = 20_000
+    first_executions: int = 8
+    leaves: int = 1_000
+    order_steps: int = 20_000
+    single_executions: int = 300
+    unordered_counts: int = 10
+    clingo_executions: int = 500
+
+
+PLANS = PlanTuning()
