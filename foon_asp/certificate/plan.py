@@ -13,7 +13,17 @@ from foon_asp.certificate.certificate import Certificate, Claimed, subject_of, w
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus_log
 from foon_asp.network import ObjectNode
-from foon_asp.plans.conditions import Balance, Condition, Landmark, Level, Measure, Sum, SumLimit, Supply
+from foon_asp.plans.conditions import (
+    Balance,
+    Condition,
+    Landmark,
+    Level,
+    Measure,
+    Rounded,
+    Sum,
+    SumLimit,
+    Supply,
+)
 from foon_asp.plans.count_proof import Claim, CountProof, PlanProver, Split
 from foon_asp.plans.flows import Flows, flows_of
 from foon_asp.problem import (
@@ -96,6 +106,8 @@ class _Question:
         self.proofs: list[Any] = []
         self._cuts: dict[tuple[int, ...], int] = {}
         self._balanced: set[int] = set()
+        self._rounded: list[Rounded] = []
+        self._rounded_stated: list[Any] = []
         required = tuple(frozenset(ruled.makers[goal]) for goal in ruled.goals)
         initial = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
         restriction = Restriction(ruled.removed.__contains__, required)
@@ -215,6 +227,35 @@ class _Question:
         self._balanced.add(o)
         return o
 
+    def rounded(self, condition: Rounded) -> int:
+        """Return the number of a rounded condition, which is added to the certificate after its parts."""
+        number = next((i for i, known in enumerate(self._rounded) if known is condition), None)
+        if number is not None:
+            return number
+        by_kind: dict[str, dict[int, Fraction]] = {}
+        for part, weight in condition.weights:
+            kind, at, scale = self.of_counts(part)
+            weights = by_kind.setdefault(kind, {})
+            weights[at] = weights.get(at, Fraction(0)) + weight * scale
+        self._rounded.append(condition)
+        self._rounded_stated.append(
+            {
+                kind: [[at, written(weight)] for at, weight in sorted(weights.items())]
+                for kind, weights in sorted(by_kind.items())
+            }
+        )
+        return len(self._rounded) - 1
+
+    def of_counts(self, condition: Condition) -> tuple[str, int, Fraction]:
+        """Return the kind and number of a condition on counts alone, and the factor of its weight."""
+        if isinstance(condition, Balance):
+            return "balance", self.balance(condition.object), Fraction(1)
+        if isinstance(condition, Sum):
+            number, scale = self.limit(condition.limit)
+            return "limits", number, Fraction(scale)
+        assert isinstance(condition, Rounded)
+        return "rounded", self.rounded(condition), condition.scale
+
     def unit(self, action: int) -> int:
         """Return the unit of an action."""
         return self._units[action]
@@ -297,6 +338,7 @@ class _Question:
                 "wanted": [[o, n] for o in sorted(problem.goals) if (n := problem.wanted(o)) > 1],
                 "amounts": self._amounts(),
             },
+            rounded=self._rounded_stated,
             unreached=self._unreached(),
         )
 
@@ -333,7 +375,7 @@ class _Stated:
             for kind, weights in by_kind.items()
         }
 
-    def _key(self, condition: Condition) -> tuple[str, tuple[int, ...], int]:
+    def _key(self, condition: Condition) -> tuple[str, tuple[int, ...], int | Fraction]:
         """Return the kind and key of a condition in a certificate, and the factor of its weight there."""
         question = self._question
         if isinstance(condition, Landmark):
@@ -341,14 +383,12 @@ class _Stated:
             if condition.action is None:
                 return "weights", (cut,), 1
             return "before", (cut, question.unit(condition.action)), 1
-        if isinstance(condition, Balance):
-            return "balance", (question.balance(condition.object),), 1
         if isinstance(condition, Supply):
             key = question.balance(condition.object), question.unit(condition.action)
             return "supply", key, 1
-        if isinstance(condition, Sum):
-            index, scale = question.limit(condition.limit)
-            return "limits", (index,), scale
+        if isinstance(condition, (Balance, Sum, Rounded)):
+            kind, number, factor = question.of_counts(condition)
+            return kind, (number,), factor
         index = next(index for index, (level, _) in enumerate(self._levels) if level is condition)
         return "levels", (index,), self._levels[index][1]
 

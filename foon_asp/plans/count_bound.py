@@ -21,9 +21,7 @@ from foon_asp.plans.count_model import CountModel
 from foon_asp.plans.flows import Flows
 from foon_asp.plans.state_equation import StateEquation
 from foon_asp.plans.tuning import PLANS
-from foon_asp.plans.whole_program import INTEGRALITY, Solved, Stopped, WholeProgram
-
-_Bounds = tuple[list[int], list[int | None]]
+from foon_asp.plans.whole_program import INTEGRALITY, Bounds, Solved, Stopped, WholeProgram, most_fractional
 
 _SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
 _PROBES = 60  # actions probed at the root: can they be executed twice?
@@ -83,7 +81,7 @@ class CountBound:
             return None
         assumed_cost: int | None = None
         while True:
-            equation = self._state_equation(assumed_caps=self._assumed_caps(measures[0], assumed_cost))
+            equation = self._state_equation(caps=self._assumed_caps(measures[0], assumed_cost))
             x: list[float] = []
             for number, measure in enumerate(measures):
                 solution = equation.optimum(measure.costs)
@@ -107,15 +105,12 @@ class CountBound:
         return [assumed_cost // cost if cost else free for cost in measure.costs]
 
     def _state_equation(
-        self, levels: Sequence[Level] = (), assumed_caps: Sequence[int | None] = ()
+        self, levels: Sequence[Level] = (), caps: Sequence[int | None] = ()
     ) -> StateEquation:
         """Return the state equation with all that is known of it, and the rows of levels."""
-        equation = StateEquation(self._flows, self._limits, self._expired)
-        for action, cap in enumerate(assumed_caps):
-            if cap is not None:
-                equation.program.cap(action, cap)
-        for rounded in self._rounded_rows:
-            equation.add(*rounded)
+        equation = StateEquation(self._flows, self._limits, caps, self._expired)
+        for condition, row, least in self._rounded_rows:
+            equation.add((condition,), row, least)
         for level in (*self._levels, *levels):
             equation.keep(level)
         for landmark in self._landmarks:
@@ -275,7 +270,7 @@ class CountBound:
         cutoff = math.inf if max_cost is None else max_cost
         lower, upper = list(model.program.lower), list(model.program.upper)
         number = 0
-        waiting: list[tuple[float | Fraction, int, int, _Bounds]] = [(0, sum(lower), number, (lower, upper))]
+        waiting: list[tuple[float | Fraction, int, int, Bounds]] = [(0, sum(lower), number, (lower, upper))]
         while waiting:
             bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
             if not before:
@@ -293,19 +288,36 @@ class CountBound:
     def _equation_exceeds(self, measure: Measure, max_cost: int, before: Sequence[Level]) -> bool:
         """Whether the state equation proves that plans that are as good by earlier levels cost more.
 
-        Landmarks are added to it while some are violated.
+        It branches over counts, and adds landmarks while some are violated.
         """
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         caps = [max(max_cost, 0) // cost if cost else None for cost in measure.costs]
         equation = self._state_equation(before, caps)
+        program = equation.program
+        waiting = [(list(program.lower), list(program.upper))]
+        for number in range(PLANS.equation_nodes):
+            if not waiting:
+                return True
+            program.restrict(waiting.pop())
+            solved = self._strengthened(equation, costs, max_cost)
+            if not before and not number:
+                self._rounded_rows = list(equation.rounded)
+                self.proved = max(self.proved, min(solved.bound, max_cost + 1))
+            if solved.bound > max_cost:
+                continue
+            column = None if solved.x is None else most_fractional(solved.x[: self._size])
+            if column is None or solved.x is None:
+                return False
+            waiting += program.halves(column, solved.x[column])
+        return False
+
+    def _strengthened(self, equation: StateEquation, costs: Mapping[int, int], max_cost: int) -> Solved:
+        """Return the solution of a node of the state equation, rounded rows and violated landmarks added."""
         while True:
             self._check()
             solved = equation.strengthen(costs, max_cost)
-            if not before:
-                self._rounded_rows = list(equation.rounded)
-                self.proved = max(self.proved, min(solved.bound, max_cost + 1))
             if solved.bound > max_cost or solved.x is None or not self._add_unreached(solved.x, equation):
-                return solved.bound > max_cost
+                return solved
 
     def _solved(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
         """Return the relaxed solution of a node, all violated landmarks added; no ``x`` without a plan."""
@@ -372,16 +384,12 @@ class CountBound:
         x: Sequence[float],
         levels: Sequence[Level],
         is_better: Callable[[Counts], bool | None],
-    ) -> Iterator[_Bounds]:
+    ) -> Iterator[Bounds]:
         """Yield the bounds of the child nodes; whole counts of the node are checked first."""
         program = model.program
-        halves = [(abs(value - math.floor(value) - 0.5), column) for column, value in enumerate(x)]
-        half = min((h for h in halves if h[0] < 0.5 - INTEGRALITY), default=None)
-        if half is not None:
-            column = half[1]
-            below = math.floor(x[column])
-            yield program.with_bounds(column, None, below)
-            yield program.with_bounds(column, below + 1, None)
+        column = most_fractional(x)
+        if column is not None:
+            yield from program.halves(column, x[column])
             return
         counts = {a: round(x[a]) for a in range(self._size) if round(x[a])}
         idle = next((a for a in counts if not round(x[self._size + a])), None)
@@ -518,7 +526,7 @@ def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
     return level.measure.exact(counts)
 
 
-def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[_Bounds]:
+def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[Bounds]:
     """Yield the bounds of child nodes which together exclude only the current whole values of the columns."""
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):

@@ -17,6 +17,7 @@ from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, time
 from foon_asp.plans.conditions import Condition, Landmark, Level, Measure
 from foon_asp.plans.count_bound import CountBound
 from foon_asp.plans.count_model import CountModel
+from foon_asp.plans.state_equation import StateEquation
 from foon_asp.plans.whole_program import INTEGRALITY, PARTS, Relaxation
 
 _ROUNDS = 20  # of separation at a node
@@ -71,6 +72,11 @@ class PlanProver(CountBound):
         is the objective of the claim, which counts items or not.
         """
         self._claim, self._least, self._leaves = claim, claim.least, 0
+        floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
+        self._objective = {action: cost for action, cost in enumerate(floats) if cost}
+        equation = StateEquation(self._flows, self._limits, claim.caps, self._expired)
+        equation.strengthen(self._objective)
+        self._rounded_rows = list(equation.rounded)
         model = self._model([measure, *(level.measure for level in kept)])
         for level in kept:
             model.limit(level)
@@ -78,8 +84,6 @@ class PlanProver(CountBound):
             if cap is not None:
                 model.program.cap(action, cap)
         self._columns = {column: o for o, column in {**model.items, **model.stock}.items()}
-        floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
-        self._objective = {action: cost for action, cost in enumerate(floats) if cost}
         self._objective |= dict.fromkeys(self._columns, claim.order.approximate(claim.item)[0])
         self._failed = False
         proof = self._prove_part(model, 0)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from foon_asp.plans.conditions import Remainder, Supply
+from foon_asp.plans.tuning import PLANS
 from foon_asp.problem import Problem
 
 
@@ -78,6 +79,27 @@ class Flows:
             return {a: adds[a][o] for a in self.achievers.get(o, ()) if a != condition.action}
         changes = {a: adds[a].get(o, 0) - uses.get(o, 0) for a, uses in enumerate(self.uses)}
         return {a: n for a, n in changes.items() if n}
+
+    @cached_property
+    def roles(self) -> Mapping[int, int]:
+        """A number for the role of each object (colour refinement, Weisfeiler & Leman 1968).
+
+        Objects have one role if actions of one kind consume and add them in the same amounts, and actions are
+        of one kind if they do so with objects of the same roles, looked at ``role_depth`` times.
+        """
+        touched: dict[int, list[tuple[int, int]]] = {o: [] for o in self.targets}
+        sides = [[*((o, -n) for o, n in uses.items()), *adds.items()] for uses, adds in zip(self.uses, self.adds, strict=True)]
+        for action, effects in enumerate(sides):
+            for o, n in effects:
+                touched.setdefault(o, []).append((action, n))
+        roles = {o: int(o in self.targets) for o in touched}
+        for _ in range(PLANS.role_depth):
+            kinds = [hash(tuple(sorted((roles[o], n) for o, n in effects))) for effects in sides]
+            roles = {
+                o: hash((roles[o], *sorted({(kinds[action], n) for action, n in by_action})))
+                for o, by_action in touched.items()
+            }
+        return roles
 
     @cached_property
     def achievers(self) -> dict[int, list[int]]:

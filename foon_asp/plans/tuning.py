@@ -10,7 +10,10 @@ class PlanTuning(NamedTuple):
     """When the searches for counts, orders and proofs end, and what they begin with.
 
     ``rounded_rows``: rows that are added for one solution of the state equation, at most.
+    ``stalled_rounds``: rounds of such rows that may leave the bound as it is.
+    ``role_depth``: how far objects are told apart, of which rounded rows count some as alternatives.
     ``rounding_denominator``: greatest denominator of the weights that rounded rows are made of.
+    ``equation_nodes``: nodes of branch and bound over the state equation, before actions get indicators.
     ``probes``: actions of which it is asked at the root whether they can be executed twice.
     ``nodes``: nodes of branch and bound over counts, after which a proof is given up.
     ``first_executions``: executions of an action, for each copy wanted, that counts are first looked for with.
@@ -22,7 +25,10 @@ class PlanTuning(NamedTuple):
     """
 
     rounded_rows: int = 20
-    rounding_denominator: int = 5_000
+    stalled_rounds: int = 10
+    role_depth: int = 2
+    rounding_denominator: int = 50_000
+    equation_nodes: int = 200
     probes: int = 60
     nodes: int = 20_000
     first_executions: int = 8

@@ -16,6 +16,10 @@ INTEGRALITY = 1e-6
 _GAP = 1e-6  # relative violation of rows allowed where floats find neither a solution nor a proof
 
 
+Bounds = tuple[list[int], list[int | None]]
+"""The lower and upper bounds of all columns, ``None`` without one."""
+
+
 class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
     """Time is up, or floats led nowhere."""
 
@@ -42,6 +46,13 @@ class Relaxation(NamedTuple):
     weights: list[float]
     columns: list[int]
     rows: list[int]
+
+
+def most_fractional(x: Sequence[float]) -> int | None:
+    """Return the column whose value is the furthest from a whole number; ``None`` if all are whole."""
+    halves = [(abs(value - math.floor(value) - 0.5), column) for column, value in enumerate(x)]
+    half = min((h for h in halves if h[0] < 0.5 - INTEGRALITY), default=None)
+    return None if half is None else half[1]
 
 
 class WholeProgram:
@@ -100,9 +111,7 @@ class WholeProgram:
         current = self.upper[column]
         self.upper[column] = upper if current is None else min(current, upper)
 
-    def with_bounds(
-        self, column: int, lower: int | None, upper: int | None
-    ) -> tuple[list[int], list[int | None]]:
+    def with_bounds(self, column: int, lower: int | None, upper: int | None) -> Bounds:
         """Return the bounds of all columns with one changed."""
         lowers, uppers = list(self.lower), list(self.upper)
         if lower is not None:
@@ -110,6 +119,16 @@ class WholeProgram:
         if upper is not None:
             uppers[column] = upper
         return lowers, uppers
+
+    def restrict(self, bounds: Bounds) -> None:
+        """Set the bounds of columns; columns that were added since keep theirs."""
+        lower, upper = bounds
+        self.lower[: len(lower)], self.upper[: len(upper)] = lower, upper
+
+    def halves(self, column: int, value: float) -> tuple[Bounds, Bounds]:
+        """Return the bounds of two nodes in which a column is at most, or at least, the next whole number."""
+        below = math.floor(value)
+        return self.with_bounds(column, None, below), self.with_bounds(column, below + 1, None)
 
     def solve(self, objective: Mapping[int, int], cutoff: float = math.inf) -> Solved:
         """Return the solution and bound of the relaxation; a bound above ``cutoff`` is enough."""

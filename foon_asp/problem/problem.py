@@ -363,6 +363,8 @@ class Problem:
             plan: The ids of the units, in the order of execution.
         """
         required = dict.fromkeys(self.kitchen - self.endless, 0)
+        if not required:
+            return {}
         net_effects = dict.fromkeys(required, 0)
         for unit, run in groupby(plan):
             times = sum(1 for _ in run)
