@@ -23,14 +23,6 @@ from foon_asp.plans.state_equation import StateEquation
 from foon_asp.plans.tuning import PLANS
 from foon_asp.plans.whole_program import INTEGRALITY, Bounds, Solved, Stopped, WholeProgram, most_fractional
 
-_SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
-_PROBES = 60  # actions probed at the root: can they be executed twice?
-_MOST_PARTS = 20_000  # nodes after which a proof is given up
-_MOST_UNCAPPED = 1_000  # the same where the number of executions is unbounded
-_ORDERS = 3  # orders in which landmarks are looked for before the search for them ends
-_FAR = 1000  # assumed greatest count of an unbounded action when looking for counts
-_FEWER = 8  # the same at first, which is much faster
-
 
 class BetterError(Exception):
     """The counts of a plan better than the incumbent were found."""
@@ -104,9 +96,7 @@ class CountBound:
         free = PLANS.first_executions * max(self._flows.targets.values(), default=1)
         return [assumed_cost // cost if cost else free for cost in measure.costs]
 
-    def _state_equation(
-        self, levels: Sequence[Level] = (), caps: Sequence[int | None] = ()
-    ) -> StateEquation:
+    def _state_equation(self, levels: Sequence[Level] = (), caps: Sequence[int | None] = ()) -> StateEquation:
         """Return the state equation with all that is known of it, and the rows of levels."""
         equation = StateEquation(self._flows, self._limits, caps, self._expired)
         for condition, row, least in self._rounded_rows:
@@ -142,7 +132,7 @@ class CountBound:
         """
         counts = None
         wanted = max(self._flows.targets.values(), default=1)
-        for assumed_cap in (_FEWER * wanted, _FAR * wanted):
+        for assumed_cap in (PLANS.first_executions * wanted, PLANS.last_executions * wanted):
             counts = self._counts(measures, rounds, assumed_cap)
             if counts is not None and max(counts.values(), default=0) < assumed_cap:
                 break
@@ -222,7 +212,7 @@ class CountBound:
         for i, level in enumerate(levels):
             before, rounded = levels[:i], level.measure.exact is not None
             step = math.gcd(*level.measure.costs, level.measure.item) or 1
-            max_cost = level.max_cost if rounded else math.ceil(level.cost) - step
+            max_cost = level.max_cost if rounded else (math.ceil(level.cost) - 1) // step * step
             self._prove(level.measure, max_cost, is_better, before, [*before, level._replace(strict=True)])
 
     def every(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
@@ -282,7 +272,7 @@ class CountBound:
                 number += 1
                 executions = sum(lower[: self._size])
                 heappush(waiting, (max(bound, solved.bound), executions, -number, (lower, upper)))
-            if number > (_MOST_UNCAPPED if max_cost is None else _MOST_PARTS):
+            if number > (PLANS.uncapped_nodes if max_cost is None else PLANS.nodes):
                 raise Stopped
 
     def _equation_exceeds(self, measure: Measure, max_cost: int, before: Sequence[Level]) -> bool:
@@ -354,7 +344,7 @@ class CountBound:
     def _tighten_root(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
         """Probe which actions cannot be executed twice, which tightens the rows of their indicators."""
         program, probed = model.program, set[int]()
-        while len(probed) < _PROBES:
+        while len(probed) < PLANS.probes:
             self._check()
             solved = program.solve(objective, cutoff)
             if solved.x is None or solved.bound > cutoff:
@@ -368,7 +358,7 @@ class CountBound:
             ]
             if not loose:
                 return
-            for action in loose[: _PROBES - len(probed)]:
+            for action in loose[: PLANS.probes - len(probed)]:
                 probed.add(action)
                 self._check()
                 lower = program.lower[action]
@@ -488,11 +478,11 @@ class CountBound:
             return False
         cuts: dict[tuple[int, ...], tuple[int, ...]] = {}
         keeps = [[a for a in derivation if a != gone] for gone in derivation]
-        for number in range(_ORDERS):
+        for number in range(PLANS.landmark_orders):
             order = sorted(cutter.actions, key=lambda a: (-x[size + a], self._random.random()))
             for keep in ((), *(keeps if at_root and number == 0 else ())):
                 cut = cutter.cut(keep, order)
-                if cut is not None and sum(x[size + a] for a in cut.members) < _SATISFIED:
+                if cut is not None and sum(x[size + a] for a in cut.members) < 1 - INTEGRALITY:
                     cuts.setdefault(cut.members, cut.objects)
             if cuts:
                 break
@@ -502,7 +492,12 @@ class CountBound:
         return bool(cuts)
 
     def _landmark(
-        self, o: int, asks: Sequence[Sequence[int]], reached: set[int], used: set[int], stock: Mapping[int, int]
+        self,
+        o: int,
+        asks: Sequence[Sequence[int]],
+        reached: set[int],
+        used: set[int],
+        stock: Mapping[int, int],
     ) -> Landmark:
         """Return a landmark by a small cut grown backwards from an object that is not reached."""
         zone, stack, edge = {o}, [o], dict[int, None]()

@@ -18,11 +18,8 @@ from foon_asp.plans.conditions import Condition, Landmark, Level, Measure
 from foon_asp.plans.count_bound import CountBound
 from foon_asp.plans.count_model import CountModel
 from foon_asp.plans.state_equation import StateEquation
+from foon_asp.plans.tuning import PLANS
 from foon_asp.plans.whole_program import INTEGRALITY, PARTS, Relaxation
-
-_ROUNDS = 20  # of separation at a node
-_MOST_DEPTH = 150
-_MOST_LEAVES = 1_000
 
 
 class Weighted(NamedTuple):
@@ -105,7 +102,6 @@ class PlanProver(CountBound):
         if program.is_empty:
             return Weighted(())
         best: tuple[Vector, dict[int, Vector]] | None = None
-        rounds = 0
         while True:
             relaxed = program.relaxation(self._objective)
             for weights in self._weights(model, relaxed):
@@ -116,14 +112,10 @@ class PlanProver(CountBound):
                     return self._leaf(model, best[1])
             if relaxed.x is None or self._expired():
                 break
-            if self._add_landmark(relaxed.x, model):
-                continue
-            if rounds < _ROUNDS and self._separate(relaxed.x, model, at_root=depth == 0):
-                rounds += 1
-                continue
-            break
+            if not (self._add_landmark(relaxed.x, model) or self._separate(relaxed.x, model, depth == 0)):
+                break
         column = None if relaxed.x is None or self._expired() else self._choice(model, relaxed.x)
-        if column is None or depth > _MOST_DEPTH or self._leaves > _MOST_LEAVES:
+        if column is None or depth > PLANS.depth or self._leaves > PLANS.leaves:
             self._give_up(best)
             return self._leaf(model, best[1] if best else {})
         return self._split(model, *column, depth)

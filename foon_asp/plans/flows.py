@@ -88,7 +88,10 @@ class Flows:
         of one kind if they do so with objects of the same roles, looked at ``role_depth`` times.
         """
         touched: dict[int, list[tuple[int, int]]] = {o: [] for o in self.targets}
-        sides = [[*((o, -n) for o, n in uses.items()), *adds.items()] for uses, adds in zip(self.uses, self.adds, strict=True)]
+        sides = [
+            [*((o, -n) for o, n in uses.items()), *adds.items()]
+            for uses, adds in zip(self.uses, self.adds, strict=True)
+        ]
         for action, effects in enumerate(sides):
             for o, n in effects:
                 touched.setdefault(o, []).append((action, n))

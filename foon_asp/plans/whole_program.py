@@ -11,9 +11,7 @@ PARTS = (720720, 2**40)
 """Denominators of rounded weights; the first that suffices is used, as most weights are simple fractions."""
 
 INTEGRALITY = 1e-6
-"""Integrality tolerance, for choosing where to branch."""
-
-_GAP = 1e-6  # relative violation of rows allowed where floats find neither a solution nor a proof
+"""Integrality tolerance, for choosing where to branch, and relative tolerance of rows that floats violate."""
 
 
 Bounds = tuple[list[int], list[int | None]]
@@ -151,14 +149,15 @@ class WholeProgram:
 
         Each has weights of rows, in floats. ``x`` is the solution that was returned last.
         """
-        if self._highs is None:
+        halves = {column: abs(value - math.floor(value) - 0.5) for column, value in enumerate(x)}
+        fractional = {column: half for column, half in halves.items() if half < 0.5 - INTEGRALITY}
+        if (
+            self._highs is None or not fractional
+        ):  # HiGHS does not survive the question where it used no basis
             return
         basic = [(place, int(column)) for place, column in enumerate(self._highs.getBasicVariables()[1])]
-        basic = [(place, column) for place, column in basic if column >= 0]
-        basic.sort(key=lambda entry: abs(x[entry[1]] - math.floor(x[entry[1]]) - 0.5))
-        for place, column in basic:
-            if abs(x[column] - round(x[column])) < INTEGRALITY:
-                return
+        basic = [(place, column) for place, column in basic if column in fractional]
+        for place, _ in sorted(basic, key=lambda entry: fractional[entry[1]]):
             weights = self._highs.getBasisInverseRow(place)[1]
             yield {row: float(weights[row]) for row in self._np.flatnonzero(weights).tolist()}
 
@@ -170,7 +169,7 @@ class WholeProgram:
         highs, count = self._highs, len(self._rows)
         rows, infinite = self._np.arange(count, dtype="int32"), self._np.full(count, self._library.kHighsInf)
         least = self._np.array([float(least) for _, least in self._rows])
-        highs.changeRowsBounds(count, rows, least - _GAP * self._np.maximum(1.0, abs(least)), infinite)
+        highs.changeRowsBounds(count, rows, least - INTEGRALITY * self._np.maximum(1.0, abs(least)), infinite)
         self._run_to_the_end(highs)
         optimal = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
         x = list(highs.getSolution().col_value) if optimal else None

@@ -114,7 +114,9 @@ def relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
         for unit in makers[o]:
             if unit in allowed and unit not in achievers and o in flows[unit].adds:
                 achievers.add(unit)
-                lacking = [needed for needed in needs[unit] if needed not in objects and needed not in endless]
+                lacking = [
+                    needed for needed in needs[unit] if needed not in objects and needed not in endless
+                ]
                 objects.update(lacking)
                 stack += lacking
     return achievers

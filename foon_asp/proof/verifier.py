@@ -878,6 +878,13 @@ class Check:
 
         The first ``numbers`` entries of each list name what is weighted.
         """
+        for name, value in self.read_named(key, stated, numbers):
+            weight = read(value)
+            require(self.sign(weight) > 0, f"{key}: a weight is not above zero")
+            yield name, weight
+
+    def read_named(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
+        """Read what is stated under a key: of what is named by its first numbers, in order, a value."""
         rows = [read_list(row) for row in read_list(stated)]
         names = [row[:numbers] for row in rows]
         require(
@@ -887,10 +894,7 @@ class Check:
         )
         in_order = names == sorted(map(list, {*map(tuple, names)}))
         require(in_order, f"{key}: expected weights in order, each once")
-        for name, row in zip(names, rows, strict=True):
-            weight = read(row[numbers])
-            require(self.sign(weight) > 0, f"{key}: a weight is not above zero")
-            yield name, weight
+        yield from ((name, row[numbers]) for name, row in zip(names, rows, strict=True))
 
     def limit_at(self, number: int) -> Limit:
         """Return the limit that a weight is for, by the limit's number."""

@@ -15,7 +15,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, cached_property, partial
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import ObjectNode
 from foon_asp.proof.rule_meaning import LIBRARY, Rule
@@ -60,6 +60,10 @@ class Flow(NamedTuple):
     asks: Mapping[int, int]
     uses: Mapping[int, int]
     adds: Mapping[int, int]
+
+
+Row: TypeAlias = tuple[Mapping[int, int | Fraction], int | Fraction]
+"""A condition on counts: the coefficient of each unit, and the least of the sum."""
 
 
 class Node(NamedTuple):
@@ -113,6 +117,7 @@ class PlanCheck(Check):
         self.lacks = cache(self._lacks)
         super().__init__(certificate, rules, subject)
         require(set(self.goals).issuperset(self.wanted_stated), "an amount is wanted of what is no goal")
+        self.rounded = self._read_rounded()
 
     # --- what units do
 
@@ -226,54 +231,31 @@ class PlanCheck(Check):
                 changes[unit] = change
         return changes, self.wanted(o) if o in self.goals else 0
 
-    @cached_property
-    def rounded(self) -> list[tuple[Mapping[int, Fraction], Fraction]]:
-        """The rounded conditions: the coefficients of units, and the least of their sum.
-
-        Each rounds a sum of conditions with weights from 0: balances, limits of rules and earlier ones.
-        """
-        rows: list[tuple[Mapping[int, Fraction], Fraction]] = []
+    def _read_rounded(self) -> list[Row]:
+        """Read the rounded sums, each of balances, limits of rules and earlier ones with weights from 0."""
+        rows: list[Row] = []
         for stated in read_list(self.certificate["rounded"]):
-            require(set(read_object(stated)) <= {"balance", "limits", "rounded"}, "expected weights to round")
-            rows.append(self._round(stated, rows))
+            require(
+                set(read_object(stated)) <= {"balance", "limits", "rounded"}, "expected sums of conditions"
+            )
+            coefficients, least = dict[int, Fraction](), Fraction(0)
+            for key, weights in stated.items():
+                for (number,), text in self.read_named(key, weights):
+                    weight = read_rational(text)
+                    require(weight > 0, "what is rounded has a weight that is not above zero")
+                    row, wanted = self._of_counts(key, number, rows)
+                    least += weight * wanted
+                    for unit, n in row.items():
+                        coefficients[unit] = coefficients.get(unit, Fraction(0)) + weight * n
+                        self._spend_on(bit_length(coefficients[unit]))
+            rows.append(_round(coefficients, least))
         return rows
 
-    def _round(
-        self, stated: Mapping[str, Any], earlier: Sequence[tuple[Mapping[int, Fraction], Fraction]]
-    ) -> tuple[Mapping[int, Fraction], Fraction]:
-        """Return a rounded condition. Counts of units are whole, and not below 0."""
-        coefficients: dict[int, Fraction] = {}
-        least = Fraction(0)
-        for key, pairs in sorted(stated.items()):
-            numbers = []
-            for pair in read_list(pairs):
-                number, text = read_pair(pair, "what is rounded, and its weight")
-                weight = read_rational(text)
-                require(weight > 0, f"{key}: a weight is not above zero")
-                numbers.append(number)
-                row, wanted = self._of_counts(key, number, earlier)
-                least += weight * wanted
-                for unit, n in row.items():
-                    coefficients[unit] = coefficients.get(unit, Fraction(0)) + weight * n
-                    self._spend_on(bit_length(coefficients[unit]))
-            require(numbers == sorted(set(numbers)), f"{key}: expected weights in order, each once")
-        part = least - math.floor(least)
-        require(part > 0, "a sum is rounded that is whole")
-
-        def rounded(coefficient: Fraction) -> Fraction:
-            below = math.floor(coefficient)
-            return below + min(Fraction(1), (coefficient - below) / part)
-
-        return {unit: rounded(n) for unit, n in coefficients.items()}, Fraction(math.ceil(least))
-
-    def _of_counts(
-        self, key: str, number: Any, earlier: Sequence[tuple[Mapping[int, Fraction], Fraction]]
-    ) -> tuple[Mapping[int, int | Fraction], int | Fraction]:
-        """Return a condition on counts: the coefficients of units, and the least of their sum."""
+    def _of_counts(self, key: str, number: int, earlier: Sequence[Row]) -> Row:
+        """Return a condition on counts alone: the coefficients of units, and the least of their sum."""
         if key == "rounded":
             return earlier[read_number(number, range(len(earlier)), "the number of an earlier rounded sum")]
         if key == "limits":
-            require(type(number) is int, "expected the number of a rule")
             limit = self.limit_at(number)
             return {unit: -amount for unit, amount in limit.amounts.items()}, -limit.max_sum
         changes, wanted = self.balance(number)
@@ -590,6 +572,18 @@ class _Conditions:
 
     def _added(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
         return self.check.sum([amount, self.check.times(weight, Fraction(factor))])
+
+
+def _round(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
+    """Return a sum that is rounded: counts are whole numbers from 0."""
+    part = least - math.floor(least)
+    require(part > 0, "a sum is rounded that is whole")
+
+    def rounded(coefficient: Fraction) -> Fraction:
+        below = math.floor(coefficient)
+        return below + min(Fraction(1), (coefficient - below) / part)
+
+    return {unit: rounded(n) for unit, n in coefficients.items()}, math.ceil(least)
 
 
 def _copies(value: Any, what: str) -> dict[int, int]:
