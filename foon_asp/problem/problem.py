@@ -331,9 +331,9 @@ class Problem:
         """Whether some unit takes or makes several copies of a node, or a goal is wanted several times."""
         if self.items is None:
             return False
-        effects = (side for flow in self.flows for side in flow)
+        stated = (side for sides in self.amounts.values() for side in sides)
         return any(self.wanted(goal) > 1 for goal in self.goals) or any(
-            n > 1 for side in effects for n in side.values()
+            n > 1 for side in stated for n in side.values()
         )
 
     def stock_of(self, o: int) -> int | None:
