@@ -64,10 +64,11 @@ class CountBound:
         self._copies: list[Supply | Remainder] = []
 
     def plain_counts(self, measures: Sequence[Measure]) -> Counts | None:
-        """Return counts of least cost in floats, the first measure most important; ``None`` if none are found.
+        """Return counts of least cost in floats, the first measure most important.
 
         They belong to a plan of the delete relaxation, as those of :meth:`counts`, and are found much faster,
-        as few actions have an indicator. Where items have costs, or counts are excluded, none are looked for.
+        as few actions have an indicator. ``None`` if none are found: where items have costs, or counts are
+        excluded, none are looked for.
         """
         if self._excluded_counts or any(measure.item for measure in measures):
             return None
@@ -110,7 +111,7 @@ class CountBound:
         return equation
 
     def _add_unreached(self, x: Sequence[float], equation: StateEquation) -> bool:
-        """Add a landmark, a supply or a remainder that a solution violates; return whether a new one is found."""
+        """Add a violated landmark, supply or remainder that is new; return whether there is one."""
         used = {a for a in range(self._size) if x[a] > INTEGRALITY}
         landmark = self._unreached_landmark(used, set(), {})
         if landmark is not None and landmark not in self._landmarks:

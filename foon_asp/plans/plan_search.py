@@ -64,7 +64,7 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     began = time.perf_counter()
     measures = [counting.measure(objective) for objective in question.levels]
     with question.deadline.watched("counting executions"):
-        plan = _plain_plan(question, counting, measures) if question.problem.counts_amounts else None
+        plan = _plain_plan(question, counting, measures)
         counts = counting.bound.counts(measures) if plan is None else None
     question.spent("bound", began)
     if plan is None and counts is None and counting.bound.none():
@@ -103,7 +103,7 @@ def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[M
     """Return an order of the best counts under the state equation alone, if they have one."""
     counts = counting.bound.plain_counts(measures)
     try:
-        plan = None if counts is None else counting.order(counts)
+        plan = None if counts is None else counting.bulk_plan(counts)
     except Stopped:
         return None
     return plan if plan is not None and question.allows(plan) else None

@@ -3,8 +3,8 @@
 The rows are about counts only, without indicators. Rows of the inverse basis of its relaxation are weights of
 rows which add up to one that a fractional solution violates once it is rounded (Gomory 1960; Nemhauser &
 Wolsey 1990): where ``sum a[j] x[j] >= b`` holds of counts from 0, and ``f`` is the fractional part of ``b``,
-so does ``sum (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)``. Weights may be any numbers from 0, so
-floats only suggest them.
+so does ``sum (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)``. Weights may be any numbers
+from 0, so floats only suggest them.
 """
 
 import math
@@ -87,7 +87,7 @@ class RoundedProgram:
         return bool(violated)
 
     def _rounded(self, weights: Mapping[int, Fraction]) -> tuple[Rounded, _Row] | None:
-        """Return the rounded sum of weighted rows, scaled to whole numbers; ``None`` where it says nothing."""
+        """Return the rounded sum of weighted rows, in whole numbers; ``None`` where it says nothing."""
         parts = math.lcm(*(weight.denominator for weight in weights.values()))
         coefficients: dict[int, int] = {}
         least = 0
@@ -164,7 +164,7 @@ class StateEquation(RoundedProgram):
         return True
 
     def add_copies(self, condition: Supply | Remainder) -> bool:
-        """Add the row of copies that an executed action asks for or leaves; return whether it can be stated."""
+        """Add the row of copies that an action asks for or leaves; return whether it can be stated."""
         indicator = self._indicator(condition.action)
         if indicator is None:
             return False

@@ -18,8 +18,8 @@ class PlanTuning(NamedTuple):
     ``nodes``: nodes of branch and bound over counts, after which a proof is given up.
     ``uncapped_nodes``: the same where nothing bounds the number of executions.
     ``landmark_orders``: orders in which landmarks are grown before a search for violated ones ends.
-    ``first_executions``: executions of an action, for each copy wanted, that counts are first looked for with.
-    ``last_executions``: the same where counts are as great as that.
+    ``first_executions``: executions of an action for each copy wanted, at most, where counts are looked for.
+    ``last_executions``: the same after counts as great as that.
     ``leaves``: leaves of a proof by branching, in a certificate.
     ``depth``: of the branching in such a proof, which is checked with as many calls.
     ``order_steps``: runs that a search for an order tries; most orders take as many as there are actions.
@@ -27,7 +27,8 @@ class PlanTuning(NamedTuple):
     ``stocks``: numbers of copies of the stock that an order is looked for with.
     ``unordered_counts``: counts without an order, after which clingo searches all counts at once.
     ``clingo_executions``: executions in one such search.
-    ``exact_cost``: largest cost that is counted unrounded. ``cost_steps``: steps of the greatest cost otherwise.
+    ``exact_cost``: largest cost that is counted unrounded.
+    ``cost_steps``: steps of the greatest cost where costs are rounded.
     ``extra_executions``: executions of a unit beyond its count, in the search of clingo for a first plan.
     """
 

@@ -28,10 +28,13 @@ def reach(problem: Problem) -> Reached:
     removed = restriction.removed if restriction else None
     available = bytearray(len(network.objects))
     missing = [len(needed) for needed in needs]
-    consumers: list[list[int]] = [[] for _ in network.objects]
-    for unit, needed in enumerate(needs):
-        for o in needed:
-            consumers[o].append(unit)
+    consumers: Sequence[Sequence[int]] = network.consumers
+    if needs is not network.inputs:  # inputs that are skipped are not waited for
+        unskipped: list[list[int]] = [[] for _ in network.objects]
+        for unit, needed in enumerate(needs):
+            for o in needed:
+                unskipped[o].append(unit)
+        consumers = unskipped
     order: list[int] = []
     makers: dict[int, int] = {}
     queue = deque(sorted(problem.kitchen))

@@ -3,8 +3,9 @@
 docs/dev/certificates.md describes these certificates and proves that what passes here is true. In short: how
 often a plan executes each unit satisfies conditions that can be read from the network. Of every node no more
 copies are used up than come (its *balance*), and each cut before a goal, or before a unit that is executed,
-is crossed. As counts are whole, sums of balances can be rounded. A Farkas combination of these conditions, with weights from 0, bounds the cost of every plan: the
-right-hand sides, plus for each unit the least of its reduced cost over all the counts that it may have.
+is crossed. As counts are whole, sums of balances can be rounded. A Farkas combination of these conditions,
+with weights from 0, bounds the cost of every plan: the right-hand sides, plus for each unit the least of its
+reduced cost over all the counts that it may have.
 
 What becomes of the inputs of a unit, and whether a plan runs, is worked out here anew from the plain network.
 """
