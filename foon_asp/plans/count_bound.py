@@ -106,8 +106,8 @@ class CountBound:
             equation.keep(level)
         for landmark in self._landmarks:
             equation.add_landmark(landmark)
-        for condition in self._copies:
-            equation.add_copies(condition)
+        for copies in self._copies:
+            equation.add_copies(copies)
         return equation
 
     def _add_unreached(self, x: Sequence[float], equation: StateEquation) -> bool:
@@ -117,7 +117,8 @@ class CountBound:
         if landmark is not None and landmark not in self._landmarks:
             self._landmarks.append(landmark)
             return equation.add_landmark(landmark)
-        for condition in (*self._flows.supplies, *self._flows.remainders):
+        conditions: list[Supply | Remainder] = [*self._flows.supplies, *self._flows.remainders]
+        for condition in conditions:
             if condition.action in used and condition not in self._copies:
                 copies = sum(n * x[a] for a, n in self._flows.change(condition).items())
                 if copies + self._flows.start.get(condition.object, 0) < condition.copies - INTEGRALITY:

@@ -72,7 +72,8 @@ class PlanProver(CountBound):
         floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
         self._objective = {action: cost for action, cost in enumerate(floats) if cost}
         equation = StateEquation(self._flows, self._limits, claim.caps, self._expired)
-        equation.strengthen(self._objective)
+        # in whole numbers, which only tell where to round
+        equation.strengthen({action: round(cost / INTEGRALITY) for action, cost in self._objective.items()})
         self._rounded_rows = list(equation.rounded)
         model = self._model([measure, *(level.measure for level in kept)])
         for level in kept:

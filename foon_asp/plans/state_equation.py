@@ -1,7 +1,7 @@
 """The state equation alone, strengthened by mixed-integer rounding: bounds, and counts of least cost.
 
 The rows are about counts only, without indicators. Rows of the inverse basis of its relaxation are weights of
-rows which add up to one that a fractional solution violates once it is rounded (Gomory 1960; Nemhauser &
+rows which add up to one that a fractional solution violates once it is rounded (Gomory 1958; Nemhauser &
 Wolsey 1990): where ``sum a[j] x[j] >= b`` holds of counts from 0, and ``f`` is the fractional part of ``b``,
 so does ``sum (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)``. Weights may be any numbers
 from 0, so floats only suggest them.

@@ -79,24 +79,24 @@ def require_shows(
         if caps:
             first[action] = min(caps)
 
-    def meaning(condition: Any) -> tuple[int, Mapping[int, Any], Counter[int]]:
+    def meaning(condition: Any) -> tuple[int | Fraction, Mapping[int, Any], Counter[int]]:
         """Return what a sum is at least: of counts times the first, and of what is executed, the second."""
         each, once = Counter[int](), Counter[int]()
         if isinstance(condition, Rounded):
-            least, sums = Fraction(0), defaultdict[int, Fraction](Fraction)
+            total, sums = Fraction(0), defaultdict[int, Fraction](Fraction)
             for part, weight in condition.weights:
                 assert weight > 0
                 wanted, counts, _ = meaning(part)
                 if isinstance(part, Balance) and part.object in taken:  # all copies that there are
                     wanted -= made.start.get(part.object, 0)
                     counts = {a: n for a, n in counts.items() if a < size}
-                least += weight * wanted
+                total += weight * wanted
                 for a, n in counts.items():
                     sums[a] += weight * n
-            part_of = least - math.floor(least)
+            part_of = total - math.floor(total)
             floors = {a: math.floor(n) for a, n in sums.items()}
             row = {a: floors[a] + min(Fraction(1), (n - floors[a]) / part_of) for a, n in sums.items()}
-            return math.ceil(least) * condition.scale, {a: n * condition.scale for a, n in row.items()}, once
+            return math.ceil(total) * condition.scale, {a: n * condition.scale for a, n in row.items()}, once
         if isinstance(condition, Balance):
             o = condition.object
             for action in range(size):
