@@ -116,14 +116,16 @@ class CountBound:
         landmark = self._unreached_landmark(used, set(), {})
         if landmark is not None and landmark not in self._landmarks:
             self._landmarks.append(landmark)
-            return equation.add_landmark(landmark)
+            equation.add_landmark(landmark)
+            return True
         conditions: list[Supply | Remainder] = [*self._flows.supplies, *self._flows.remainders]
         for condition in conditions:
             if condition.action in used and condition not in self._copies:
                 copies = sum(n * x[a] for a, n in self._flows.change(condition).items())
                 if copies + self._flows.start.get(condition.object, 0) < condition.copies - INTEGRALITY:
                     self._copies.append(condition)
-                    return equation.add_copies(condition)
+                    equation.add_copies(condition)
+                    return True
         return False
 
     def counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:

@@ -150,27 +150,21 @@ class StateEquation(RoundedProgram):
         costs = level.measure.costs
         self.add((level,), {a: -cost for a, cost in enumerate(costs) if cost}, -level.max_cost)
 
-    def add_landmark(self, landmark: Landmark) -> bool:
-        """Add the row of a landmark, of executions of its members; return whether it can be stated."""
-        if landmark.stock:
-            return False
+    def add_landmark(self, landmark: Landmark) -> None:
+        """Add the row of a landmark, of executions of its members, if it can be stated."""
         row, least = dict.fromkeys(landmark.members, 1), 1
-        if landmark.action is not None:
-            indicator = self._indicator(landmark.action)
-            if indicator is None:
-                return False
+        indicator = None if landmark.action is None else self._indicator(landmark.action)
+        if indicator is not None:
             row[indicator], least = -1, 0
-        self.add((), row, least)
-        return True
+        if not landmark.stock and (landmark.action is None) == (indicator is None):
+            self.add((), row, least)
 
-    def add_copies(self, condition: Supply | Remainder) -> bool:
-        """Add the row of copies that an action asks for or leaves; return whether it can be stated."""
+    def add_copies(self, condition: Supply | Remainder) -> None:
+        """Add the row of copies that an action asks for or leaves, if it can be stated."""
         indicator = self._indicator(condition.action)
-        if indicator is None:
-            return False
-        row = {**self._flows.change(condition), indicator: -condition.copies}
-        self.add((), row, -self._flows.start.get(condition.object, 0))
-        return True
+        if indicator is not None:
+            row = {**self._flows.change(condition), indicator: -condition.copies}
+            self.add((), row, -self._flows.start.get(condition.object, 0))
 
     def _indicator(self, action: int) -> int | None:
         """Return the column that is 1 if an action is executed; ``None`` if it has no bound on its count."""
