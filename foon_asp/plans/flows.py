@@ -62,12 +62,12 @@ class Flows:
     @property
     def remainders(self) -> Iterator[Remainder]:
         """The remainders of objects that every action that asks for them leaves some of."""
-        left: dict[int, dict[int, int]] = {}
+        kept_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):
             for o, n in preconditions.items():
                 kept = n - self.uses[action].get(o, 0) + self.adds[action].get(o, 0)
-                left.setdefault(o, {})[action] = kept
-        for o, by_action in left.items():
+                kept_by_object.setdefault(o, {})[action] = kept
+        for o, by_action in kept_by_object.items():
             copies = min(by_action.values())
             if copies > self.targets.get(o, 0):
                 yield from (Remainder(o, action, copies) for action in by_action)

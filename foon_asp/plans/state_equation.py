@@ -97,18 +97,24 @@ class RoundedProgram:
             least += times * wanted
             for column, coefficient in row.items():
                 coefficients[column] = coefficients.get(column, 0) + times * coefficient
-        part = least % parts
-        if not part:
+        fraction = least % parts
+        if not fraction:
             return None
-        sums = {column: n // parts * part + min(part, n % parts) for column, n in coefficients.items()}
-        least = -(-least // parts) * part
+        sums = {
+            column: n // parts * fraction + min(fraction, n % parts) for column, n in coefficients.items()
+        }
+        least = -(-least // parts) * fraction
         common = math.gcd(least, *sums.values())
-        scale = Fraction(part, common)
+        scale = Fraction(fraction, common)
         if scale > PLANS.rounding_denominator:
             return None
-        conditions = ((part, weight) for row, weight in weights.items() for part in self._conditions[row])
-        condition = Rounded(tuple(conditions), scale)
-        return condition, ({column: n // common for column, n in sums.items() if n}, least // common)
+        conditions = (
+            (condition, weight) for row, weight in weights.items() for condition in self._conditions[row]
+        )
+        return Rounded(tuple(conditions), scale), (
+            {column: n // common for column, n in sums.items() if n},
+            least // common,
+        )
 
 
 def _share(weight: float) -> Fraction:
@@ -211,11 +217,11 @@ class StateEquation(RoundedProgram):
         for parts, total, least in sums.values():
             row = {column: total.get(actions[0], 0) for column, actions in enumerate(members)}
             merged.add(parts, {column: n for column, n in row.items() if n}, least)
-        known = len(list(merged.rounded))
+        earlier = len(list(merged.rounded))
         merged.strengthen({column: alike[0] for column, alike in enumerate(columns) if alike[0]})
-        for condition, row, least in list(merged.rounded)[known:]:
+        for condition, row, least in list(merged.rounded)[earlier:]:
             self.add((condition,), {a: n for column, n in row.items() for a in members[column]}, least)
-        return len(list(merged.rounded)) > known
+        return len(list(merged.rounded)) > earlier
 
     def optimum(self, costs: Sequence[int]) -> list[float] | None:
         """Return whole values of least cost in floats; ``None`` if HiGHS finds none, or when time is up."""

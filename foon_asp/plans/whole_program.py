@@ -155,10 +155,10 @@ class WholeProgram:
             self._highs is None or not fractional
         ):  # HiGHS does not survive the question where it used no basis
             return
-        basic = [(place, int(column)) for place, column in enumerate(self._highs.getBasicVariables()[1])]
-        basic = [(place, column) for place, column in basic if column in fractional]
-        for place, _ in sorted(basic, key=lambda entry: fractional[entry[1]]):
-            weights = self._highs.getBasisInverseRow(place)[1]
+        basic = [(index, int(column)) for index, column in enumerate(self._highs.getBasicVariables()[1])]
+        basic = [(index, column) for index, column in basic if column in fractional]
+        for index, _ in sorted(basic, key=lambda entry: fractional[entry[1]]):
+            weights = self._highs.getBasisInverseRow(index)[1]
             yield {row: float(weights[row]) for row in self._np.flatnonzero(weights).tolist()}
 
     def _nearly(self) -> list[float] | None:

@@ -577,12 +577,12 @@ class _Conditions:
 
 def _round(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
     """Return a sum that is rounded: counts are whole numbers from 0."""
-    part = least - math.floor(least)
-    require(part > 0, "a sum is rounded that is whole")
+    fraction = least - math.floor(least)
+    require(fraction > 0, "a sum is rounded that is whole")
 
     def rounded(coefficient: Fraction) -> Fraction:
         below = math.floor(coefficient)
-        return below + min(Fraction(1), (coefficient - below) / part)
+        return below + min(Fraction(1), (coefficient - below) / fraction)
 
     return {unit: rounded(n) for unit, n in coefficients.items()}, math.ceil(least)
 

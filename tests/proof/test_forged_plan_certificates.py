@@ -366,7 +366,7 @@ PARTS = {
         rounded("4", "1"),
     ),
     "a coefficient is rounded by its part": Part(
-        "below + min(Fraction(1), (coefficient - below) / part)", "Fraction(below)", rounded("4", "2")
+        "below + min(Fraction(1), (coefficient - below) / fraction)", "Fraction(below)", rounded("4", "2")
     ),
     "copies in stock need not be made": Part(
         "wanted - self._initial(o, weight)",
