@@ -229,12 +229,12 @@ class _Question:
 
     def rounded(self, condition: Rounded) -> int:
         """Return the number of a rounded condition, which is added to the certificate after its parts."""
-        number = next((i for i, known in enumerate(self._rounded) if known is condition), None)
+        number = next((i for i, other in enumerate(self._rounded) if other is condition), None)
         if number is not None:
             return number
         by_kind: dict[str, dict[int, Fraction]] = {}
-        for part, weight in condition.weights:
-            kind, at, scale = self.of_counts(part)
+        for of_sum, weight in condition.weights:
+            kind, at, scale = self.of_counts(of_sum)
             weights = by_kind.setdefault(kind, {})
             weights[at] = weights.get(at, Fraction(0)) + weight * scale
         self._rounded.append(condition)

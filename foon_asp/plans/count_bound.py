@@ -425,17 +425,17 @@ class CountBound:
         return landmark is not None
 
     def _unreached_landmark(
-        self, used: set[int], taken: set[int], stock: Mapping[int, int]
+        self, used: set[int], initial: set[int], stock: Mapping[int, int]
     ) -> Landmark | None:
         """Return a landmark that executed actions violate; ``None`` where all of them are reached.
 
         The initial objects are closed under the executed actions in the delete relaxation. For a target or an
         executed action that is not reached, the landmark are the achievers on the border. Where initial
-        copies have a price, they are columns of the ``stock``, of which some are ``taken``.
+        copies have a price, they are columns of the ``stock``, of which some are taken, the ``initial`` ones.
         """
         flows = self._flows
         asks, targets = flows.lacking(bool(stock))
-        reached, waiting = set(taken), set(used)
+        reached, waiting = set(initial), set(used)
         grown = True
         while grown:
             ready = [a for a in waiting if reached.issuperset(asks[a])]

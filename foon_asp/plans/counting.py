@@ -225,7 +225,7 @@ class Counting:
     def order(self, counts: Counts) -> Plan | None:
         """Return an executable order of counts; ``None`` if no order runs."""
         if self._problem.counts_amounts:
-            return self.bulk_plan(counts)
+            return self._bulk_plan(counts)
         return self._plan({a: (n, n) for a, n in counts.items()})
 
     def any_order(self, counts: Counts) -> Plan | None:
@@ -243,7 +243,7 @@ class Counting:
             extra *= 2
         return None
 
-    def bulk_plan(self, counts: Counts) -> Plan | None:
+    def _bulk_plan(self, counts: Counts) -> Plan | None:
         """Return an order of counts in runs, with as few copies of the stock as an objective asks for."""
         flows, question = self._flows, self._question
         if not self._keeps_to_rules(counts):

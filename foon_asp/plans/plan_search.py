@@ -103,7 +103,7 @@ def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[M
     """Return an order of the best counts under the state equation alone, if they have one."""
     counts = counting.bound.plain_counts(measures)
     try:
-        plan = None if counts is None else counting.bulk_plan(counts)
+        plan = None if counts is None else counting.order(counts)
     except Stopped:
         return None
     return plan if plan is not None and question.allows(plan) else None
