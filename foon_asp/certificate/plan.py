@@ -13,7 +13,17 @@ from foon_asp.certificate.certificate import Certificate, Claimed, subject_of, w
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus_log
 from foon_asp.network import ObjectNode
-from foon_asp.plans.conditions import Balance, Condition, Landmark, Level, Measure, Sum, SumLimit, Supply
+from foon_asp.plans.conditions import (
+    Balance,
+    Condition,
+    Landmark,
+    Level,
+    Measure,
+    Rounded,
+    Sum,
+    SumLimit,
+    Supply,
+)
 from foon_asp.plans.count_proof import Claim, CountProof, PlanProver, Split
 from foon_asp.plans.flows import Flows, flows_of
 from foon_asp.problem import (
@@ -96,16 +106,14 @@ class _Question:
         self.proofs: list[Any] = []
         self._cuts: dict[tuple[int, ...], int] = {}
         self._balanced: set[int] = set()
+        self._rounded: list[Rounded] = []
+        self._rounded_stated: list[Any] = []
         required = tuple(frozenset(ruled.makers[goal]) for goal in ruled.goals)
         initial = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
         restriction = Restriction(ruled.removed.__contains__, required)
         self._lasting = replace(problem, kitchen=initial, restriction=restriction)
         self._reached = reached = reach(self._lasting)
         self._units = sorted(reached.units if required else relevant_to_plans(problem, reached))
-        self._achievers: dict[int, list[int]] = {}
-        for unit, flow in enumerate(problem.flows):
-            for o in flow.adds:
-                self._achievers.setdefault(o, []).append(unit)
         self._limits: list[tuple[int, SumLimit, int]] = []  # place of the rule, the sum and its scale
         for rule_number, limit in ruled.limits.items():
             scale = math.lcm(
@@ -219,6 +227,35 @@ class _Question:
         self._balanced.add(o)
         return o
 
+    def rounded(self, condition: Rounded) -> int:
+        """Return the number of a rounded condition, which is added to the certificate after its parts."""
+        number = next((i for i, other in enumerate(self._rounded) if other is condition), None)
+        if number is not None:
+            return number
+        by_kind: dict[str, dict[int, Fraction]] = {}
+        for of_sum, weight in condition.weights:
+            kind, at, scale = self.of_counts(of_sum)
+            weights = by_kind.setdefault(kind, {})
+            weights[at] = weights.get(at, Fraction(0)) + weight * scale
+        self._rounded.append(condition)
+        self._rounded_stated.append(
+            {
+                kind: [[at, written(weight)] for at, weight in sorted(weights.items())]
+                for kind, weights in sorted(by_kind.items())
+            }
+        )
+        return len(self._rounded) - 1
+
+    def of_counts(self, condition: Condition) -> tuple[str, int, Fraction]:
+        """Return the kind and number of a condition on counts alone, and the factor of its weight."""
+        if isinstance(condition, Balance):
+            return "balance", self.balance(condition.object), Fraction(1)
+        if isinstance(condition, Sum):
+            number, scale = self.limit(condition.limit)
+            return "limits", number, Fraction(scale)
+        assert isinstance(condition, Rounded)
+        return "rounded", self.rounded(condition), condition.scale
+
     def unit(self, action: int) -> int:
         """Return the unit of an action."""
         return self._units[action]
@@ -237,7 +274,7 @@ class _Question:
         touched = {o for cut in self._cuts for o in cut} | self._balanced
         own = self._ruled.makers
         touched -= self._problem.endless  # of which only taking them crosses a cut
-        makers = (own[o] if o in own else self._achievers.get(o, ()) for o in sorted(touched))
+        makers = (own[o] if o in own else self._achievers(o) for o in sorted(touched))
         waiting = [u for units_of in makers for u in units_of if u not in units and u not in removed]
         unreached: set[int] = set()
         while waiting:
@@ -245,8 +282,12 @@ class _Question:
             if unreached.isdisjoint(asks):
                 lacking = next(o for o in asks if not self._reached.available[o])
                 unreached.add(lacking)
-                waiting += (unit for unit in self._achievers.get(lacking, ()) if unit not in removed)
+                waiting += (unit for unit in self._achievers(lacking) if unit not in removed)
         return sorted(unreached)
+
+    def _achievers(self, o: int) -> list[int]:
+        """Return all units that add a node."""
+        return [unit for unit in self._problem.makers[o] if o in self._problem.flows[unit].adds]
 
     def _amounts(self) -> list[list[Any]]:
         """Return the amounts of all units of the data."""
@@ -297,6 +338,7 @@ class _Question:
                 "wanted": [[o, n] for o in sorted(problem.goals) if (n := problem.wanted(o)) > 1],
                 "amounts": self._amounts(),
             },
+            rounded=self._rounded_stated,
             unreached=self._unreached(),
         )
 
@@ -333,7 +375,7 @@ class _Stated:
             for kind, weights in by_kind.items()
         }
 
-    def _key(self, condition: Condition) -> tuple[str, tuple[int, ...], int]:
+    def _key(self, condition: Condition) -> tuple[str, tuple[int, ...], int | Fraction]:
         """Return the kind and key of a condition in a certificate, and the factor of its weight there."""
         question = self._question
         if isinstance(condition, Landmark):
@@ -341,14 +383,12 @@ class _Stated:
             if condition.action is None:
                 return "weights", (cut,), 1
             return "before", (cut, question.unit(condition.action)), 1
-        if isinstance(condition, Balance):
-            return "balance", (question.balance(condition.object),), 1
         if isinstance(condition, Supply):
             key = question.balance(condition.object), question.unit(condition.action)
             return "supply", key, 1
-        if isinstance(condition, Sum):
-            index, scale = question.limit(condition.limit)
-            return "limits", (index,), scale
+        if isinstance(condition, (Balance, Sum, Rounded)):
+            kind, number, factor = question.of_counts(condition)
+            return kind, (number,), factor
         index = next(index for index, (level, _) in enumerate(self._levels) if level is condition)
         return "levels", (index,), self._levels[index][1]
 

@@ -49,7 +49,7 @@ def comparisons_question(
     subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     data: list[object] = [subject.digests()]
     if problem.items is not None:
-        data += [problem.flows, sorted(map(problem.stock_of, problem.kitchen), key=repr)]
+        data += [list(problem.flows), sorted(map(problem.stock_of, problem.kitchen), key=repr)]
     return {
         "data": hashlib.sha256(json_line(data).encode()).hexdigest()[:16],
         "containers": str(problem.containers),

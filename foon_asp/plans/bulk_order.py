@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from foon_asp.plans.conditions import Counts
 from foon_asp.plans.flows import Flows
+from foon_asp.plans.tuning import PLANS
 from foon_asp.plans.whole_program import Stopped
 
 Run = tuple[int, int]
@@ -26,7 +27,7 @@ def bulk_order(
     if not _is_founded(flows, counts, start):
         return None
     runs = _Search(flows, counts, start, expired, single=False).runs()
-    if runs is None and sum(counts.values()) <= 300:  # every order is tried, one execution at a time
+    if runs is None and sum(counts.values()) <= PLANS.single_executions:
         search = _Search(flows, counts, start, expired, single=True)
         runs = search.runs()
         if runs is None and search.is_exhausted:
@@ -83,7 +84,7 @@ class _Search:
     ) -> None:
         self._flows, self._expired, self._single = flows, expired, single
         self._copies, self._waiting = Counter(start), dict(counts)
-        self._steps_left = 20_000  # runs that are tried; most orders take as many as there are actions
+        self._steps_left = PLANS.order_steps
         # what all executions that wait consume, and the most that one of them has to find beyond that
         self._consumed = Counter[int]()
         for action, times in counts.items():

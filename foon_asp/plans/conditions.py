@@ -49,12 +49,35 @@ class Supply(NamedTuple):
 
     object: int
     action: int
+    copies: int
+
+
+class Remainder(NamedTuple):
+    """The condition that copies of an object remain where an action that asks for it is executed.
+
+    Of all actions that ask for the object, the one that is executed last leaves ``copies`` at least, and
+    nothing consumes any after it.
+    """
+
+    object: int
+    action: int
+    copies: int
 
 
 class Sum(NamedTuple):
     """The condition that a sum keeps to a limit, by the index of the limit."""
 
     limit: int
+
+
+class Rounded(NamedTuple):
+    """The condition that a weighted sum of conditions on counts implies, as counts are whole numbers.
+
+    Its row is that of mixed-integer rounding, times ``scale``, which makes its coefficients whole.
+    """
+
+    weights: "tuple[tuple[Condition, Fraction], ...]"
+    scale: Fraction
 
 
 SumLimit = tuple[Mapping[int, int], int, bool, bool]
@@ -74,5 +97,5 @@ class Level(NamedTuple):
     strict: bool = False
 
 
-Condition = Landmark | Balance | Supply | Sum | Level
+Condition = Landmark | Balance | Supply | Remainder | Sum | Level | Rounded
 """The condition on the counts of every plan that a row of the program states."""

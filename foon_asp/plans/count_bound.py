@@ -16,20 +16,12 @@ from heapq import heappop, heappush
 
 from foon_asp.hypergraph.cut import Cutter
 from foon_asp.hypergraph.hypergraph import Hypergraph
-from foon_asp.plans.conditions import Counts, Landmark, Level, Measure, SumLimit
+from foon_asp.plans.conditions import Counts, Landmark, Level, Measure, Remainder, Rounded, SumLimit, Supply
 from foon_asp.plans.count_model import CountModel
 from foon_asp.plans.flows import Flows
-from foon_asp.plans.whole_program import INTEGRALITY, Solved, Stopped, WholeProgram
-
-_Bounds = tuple[list[int], list[int | None]]
-
-_SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
-_PROBES = 60  # actions probed at the root: can they be executed twice?
-_MOST_PARTS = 20_000  # nodes after which a proof is given up
-_MOST_UNCAPPED = 1_000  # the same where the number of executions is unbounded
-_ORDERS = 3  # orders in which landmarks are looked for before the search for them ends
-_FAR = 1000  # assumed greatest count of an unbounded action when looking for counts
-_FEWER = 8  # the same at first, which is much faster
+from foon_asp.plans.state_equation import StateEquation
+from foon_asp.plans.tuning import PLANS
+from foon_asp.plans.whole_program import INTEGRALITY, Bounds, Solved, Stopped, WholeProgram, most_fractional
 
 
 class BetterError(Exception):
@@ -68,28 +60,73 @@ class CountBound:
         self.proved: float | Fraction = 0  # lower bound on every plan by the first level
         self._landmarks = [Landmark(tuple(units)) for units in required]
         self._achievers = flows.achievers
+        self._rounded_rows: list[tuple[Rounded, dict[int, int], int]] = []
+        self._copies: list[Supply | Remainder] = []
 
     def plain_counts(self, measures: Sequence[Measure]) -> Counts | None:
-        """Return counts of least cost in floats under the state equation alone; ``None`` if none are found.
+        """Return counts of least cost in floats, the first measure most important.
 
-        They are found much faster than those of :meth:`counts`, as no action has an indicator, and more often
-        have no order. With other conditions, or costs that are no sums over actions, none are looked for.
+        They belong to a plan of the delete relaxation, as those of :meth:`counts`, and are found much faster,
+        as few actions have an indicator. ``None`` if none are found: where items have costs, or counts are
+        excluded, none are looked for.
         """
-        others = self._limits or self._landmarks or self._levels or self._excluded_counts
-        if others or any(measure.item or measure.exact is not None for measure in measures):
+        if self._excluded_counts or any(measure.item for measure in measures):
             return None
-        program = WholeProgram(self._size, self._expired)
-        for o, row, least in self._flows.balances():
-            program.row(row, least - self._flows.start.get(o, 0))
-        x: list[float] | None = None
-        for measure in measures:
-            costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
-            x = program.whole_optimum(costs)
-            if x is None:
-                return None
-            total = sum(cost * round(x[a]) for a, cost in costs.items())
-            program.row({a: -cost for a, cost in costs.items()}, -total)
-        return None if x is None else {a: round(n) for a, n in enumerate(x) if round(n)}
+        assumed_cost: int | None = None
+        while True:
+            equation = self._state_equation(caps=self._assumed_caps(measures[0], assumed_cost))
+            x: list[float] = []
+            for number, measure in enumerate(measures):
+                solution = equation.optimum(measure.costs)
+                if solution is None:
+                    return None
+                x = solution
+                total = sum(cost * round(x[a]) for a, cost in enumerate(measure.costs))
+                if not number:
+                    self._rounded_rows = list(equation.rounded)
+                    assumed_cost = 2 * total
+                equation.keep(Level(measure, Fraction(total), total))
+            if not self._add_unreached(x, equation):
+                return {a: round(n) for a, n in enumerate(x[: self._size]) if round(n)}
+            self._check()
+
+    def _assumed_caps(self, measure: Measure, assumed_cost: int | None) -> Sequence[int | None]:
+        """Return bounds on counts, if plans cost as much as assumed, by which indicators are tied to them."""
+        if assumed_cost is None:
+            return ()
+        free = PLANS.first_executions * max(self._flows.targets.values(), default=1)
+        return [assumed_cost // cost if cost else free for cost in measure.costs]
+
+    def _state_equation(self, levels: Sequence[Level] = (), caps: Sequence[int | None] = ()) -> StateEquation:
+        """Return the state equation with all that is known of it, and the rows of levels."""
+        equation = StateEquation(self._flows, self._limits, caps, self._expired)
+        for condition, row, least in self._rounded_rows:
+            equation.add((condition,), row, least)
+        for level in (*self._levels, *levels):
+            equation.keep(level)
+        for landmark in self._landmarks:
+            equation.add_landmark(landmark)
+        for copies in self._copies:
+            equation.add_copies(copies)
+        return equation
+
+    def _add_unreached(self, x: Sequence[float], equation: StateEquation) -> bool:
+        """Add a violated landmark, supply or remainder that is new; return whether there is one."""
+        used = {a for a in range(self._size) if x[a] > INTEGRALITY}
+        landmark = self._unreached_landmark(used, set(), {})
+        if landmark is not None and landmark not in self._landmarks:
+            self._landmarks.append(landmark)
+            equation.add_landmark(landmark)
+            return True
+        conditions: list[Supply | Remainder] = [*self._flows.supplies, *self._flows.remainders]
+        for condition in conditions:
+            if condition.action in used and condition not in self._copies:
+                copies = sum(n * x[a] for a, n in self._flows.change(condition).items())
+                if copies + self._flows.start.get(condition.object, 0) < condition.copies - INTEGRALITY:
+                    self._copies.append(condition)
+                    equation.add_copies(condition)
+                    return True
+        return False
 
     def counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important; ``None`` if infeasible.
@@ -99,7 +136,7 @@ class CountBound:
         """
         counts = None
         wanted = max(self._flows.targets.values(), default=1)
-        for assumed_cap in (_FEWER * wanted, _FAR * wanted):
+        for assumed_cap in (PLANS.first_executions * wanted, PLANS.last_executions * wanted):
             counts = self._counts(measures, rounds, assumed_cap)
             if counts is not None and max(counts.values(), default=0) < assumed_cap:
                 break
@@ -178,7 +215,8 @@ class CountBound:
         """
         for i, level in enumerate(levels):
             before, rounded = levels[:i], level.measure.exact is not None
-            max_cost = level.max_cost if rounded else math.ceil(level.cost) - 1
+            step = math.gcd(*level.measure.costs, level.measure.item) or 1
+            max_cost = level.max_cost if rounded else (math.ceil(level.cost) - 1) // step * step
             self._prove(level.measure, max_cost, is_better, before, [*before, level._replace(strict=True)])
 
     def every(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
@@ -214,6 +252,8 @@ class CountBound:
         The counts are as good by each level ``before``, by their rounded costs, and by the exact costs of
         ``levels``.
         """
+        if max_cost is not None and not measure.item and self._equation_exceeds(measure, max_cost, before):
+            return
         model = self._model([measure, *(level.measure for level in before)])
         for level in before:
             model.limit(level)
@@ -224,7 +264,7 @@ class CountBound:
         cutoff = math.inf if max_cost is None else max_cost
         lower, upper = list(model.program.lower), list(model.program.upper)
         number = 0
-        waiting: list[tuple[float | Fraction, int, int, _Bounds]] = [(0, sum(lower), number, (lower, upper))]
+        waiting: list[tuple[float | Fraction, int, int, Bounds]] = [(0, sum(lower), number, (lower, upper))]
         while waiting:
             bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
             if not before:
@@ -236,8 +276,42 @@ class CountBound:
                 number += 1
                 executions = sum(lower[: self._size])
                 heappush(waiting, (max(bound, solved.bound), executions, -number, (lower, upper)))
-            if number > (_MOST_UNCAPPED if max_cost is None else _MOST_PARTS):
+            if number > (PLANS.uncapped_nodes if max_cost is None else PLANS.nodes):
                 raise Stopped
+
+    def _equation_exceeds(self, measure: Measure, max_cost: int, before: Sequence[Level]) -> bool:
+        """Whether the state equation proves that plans that are as good by earlier levels cost more.
+
+        It branches over counts, and adds landmarks while some are violated.
+        """
+        costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
+        caps = [max(max_cost, 0) // cost if cost else None for cost in measure.costs]
+        equation = self._state_equation(before, caps)
+        program = equation.program
+        waiting = [(list(program.lower), list(program.upper))]
+        for number in range(PLANS.equation_nodes):
+            if not waiting:
+                return True
+            program.restrict(waiting.pop())
+            solved = self._strengthened(equation, costs, max_cost)
+            if not before and not number:
+                self._rounded_rows = list(equation.rounded)
+                self.proved = max(self.proved, min(solved.bound, max_cost + 1))
+            if solved.bound > max_cost:
+                continue
+            column = None if solved.x is None else most_fractional(solved.x[: self._size])
+            if column is None or solved.x is None:
+                return False
+            waiting += program.halves(column, solved.x[column])
+        return False
+
+    def _strengthened(self, equation: StateEquation, costs: Mapping[int, int], max_cost: int) -> Solved:
+        """Return the solution of a node of the state equation, rounded rows and violated landmarks added."""
+        while True:
+            self._check()
+            solved = equation.strengthen(costs, max_cost)
+            if solved.bound > max_cost or solved.x is None or not self._add_unreached(solved.x, equation):
+                return solved
 
     def _solved(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
         """Return the relaxed solution of a node, all violated landmarks added; no ``x`` without a plan."""
@@ -267,12 +341,14 @@ class CountBound:
         )
         for level in self._levels:
             model.limit(level)
+        for condition, row, least in self._rounded_rows:
+            model.conditions[model.program.row(row, least)] = condition
         return model
 
     def _tighten_root(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
         """Probe which actions cannot be executed twice, which tightens the rows of their indicators."""
         program, probed = model.program, set[int]()
-        while len(probed) < _PROBES:
+        while len(probed) < PLANS.probes:
             self._check()
             solved = program.solve(objective, cutoff)
             if solved.x is None or solved.bound > cutoff:
@@ -286,7 +362,7 @@ class CountBound:
             ]
             if not loose:
                 return
-            for action in loose[: _PROBES - len(probed)]:
+            for action in loose[: PLANS.probes - len(probed)]:
                 probed.add(action)
                 self._check()
                 lower = program.lower[action]
@@ -302,16 +378,12 @@ class CountBound:
         x: Sequence[float],
         levels: Sequence[Level],
         is_better: Callable[[Counts], bool | None],
-    ) -> Iterator[_Bounds]:
+    ) -> Iterator[Bounds]:
         """Yield the bounds of the child nodes; whole counts of the node are checked first."""
         program = model.program
-        halves = [(abs(value - math.floor(value) - 0.5), column) for column, value in enumerate(x)]
-        half = min((h for h in halves if h[0] < 0.5 - INTEGRALITY), default=None)
-        if half is not None:
-            column = half[1]
-            below = math.floor(x[column])
-            yield program.with_bounds(column, None, below)
-            yield program.with_bounds(column, below + 1, None)
+        column = most_fractional(x)
+        if column is not None:
+            yield from program.halves(column, x[column])
             return
         counts = {a: round(x[a]) for a in range(self._size) if round(x[a])}
         idle = next((a for a in counts if not round(x[self._size + a])), None)
@@ -343,16 +415,27 @@ class CountBound:
         yield from _around(program, x, range(self._size))
 
     def _add_landmark(self, x: Sequence[float], model: CountModel) -> bool:
-        """Add a landmark that a solution violates; return whether there is one.
-
-        The initial objects are closed under the executed actions in the delete relaxation. For a target or an
-        executed action that is not reached, the landmark are the achievers on the border.
-        """
-        flows = self._flows
-        asks, targets = flows.lacking(bool(model.stock))
+        """Add a landmark that a solution violates; return whether there is one."""
         used = {a for a in range(self._size) if x[self._size + a] > INTEGRALITY}
         reached = {o for o, column in model.stock.items() if x[column] > INTEGRALITY}
-        waiting = set(used)
+        landmark = self._unreached_landmark(used, reached, model.stock)
+        if landmark is not None:
+            self._landmarks.append(landmark)
+            model.add_landmark(landmark)
+        return landmark is not None
+
+    def _unreached_landmark(
+        self, used: set[int], initial: set[int], stock: Mapping[int, int]
+    ) -> Landmark | None:
+        """Return a landmark that executed actions violate; ``None`` where all of them are reached.
+
+        The initial objects are closed under the executed actions in the delete relaxation. For a target or an
+        executed action that is not reached, the landmark are the achievers on the border. Where initial
+        copies have a price, they are columns of the ``stock``, of which some are taken, the ``initial`` ones.
+        """
+        flows = self._flows
+        asks, targets = flows.lacking(bool(stock))
+        reached, waiting = set(initial), set(used)
         grown = True
         while grown:
             ready = [a for a in waiting if reached.issuperset(asks[a])]
@@ -363,10 +446,8 @@ class CountBound:
         missed = [(target, None) for target in targets if target not in reached]
         missed += [(next(o for o in asks[a] if o not in reached), a) for a in sorted(waiting)]
         for o, action in missed[:1]:
-            landmark = self._landmark(o, asks, reached, used, model)._replace(action=action)
-            self._landmarks.append(landmark)
-            model.add_landmark(landmark)
-        return bool(missed)
+            return self._landmark(o, asks, reached, used, stock)._replace(action=action)
+        return None
 
     @cached_property
     def _cutter(self) -> Cutter:
@@ -401,11 +482,11 @@ class CountBound:
             return False
         cuts: dict[tuple[int, ...], tuple[int, ...]] = {}
         keeps = [[a for a in derivation if a != gone] for gone in derivation]
-        for number in range(_ORDERS):
+        for number in range(PLANS.landmark_orders):
             order = sorted(cutter.actions, key=lambda a: (-x[size + a], self._random.random()))
             for keep in ((), *(keeps if at_root and number == 0 else ())):
                 cut = cutter.cut(keep, order)
-                if cut is not None and sum(x[size + a] for a in cut.members) < _SATISFIED:
+                if cut is not None and sum(x[size + a] for a in cut.members) < 1 - INTEGRALITY:
                     cuts.setdefault(cut.members, cut.objects)
             if cuts:
                 break
@@ -415,7 +496,12 @@ class CountBound:
         return bool(cuts)
 
     def _landmark(
-        self, o: int, asks: Sequence[Sequence[int]], reached: set[int], used: set[int], model: CountModel
+        self,
+        o: int,
+        asks: Sequence[Sequence[int]],
+        reached: set[int],
+        used: set[int],
+        stock: Mapping[int, int],
     ) -> Landmark:
         """Return a landmark by a small cut grown backwards from an object that is not reached."""
         zone, stack, edge = {o}, [o], dict[int, None]()
@@ -427,7 +513,7 @@ class CountBound:
                     zone.add(lacking)
                     stack.append(lacking)
         members = tuple(achiever for achiever in edge if zone.isdisjoint(asks[achiever]))
-        return Landmark(members, tuple(sorted(zone & model.stock.keys())), objects=tuple(sorted(zone)))
+        return Landmark(members, tuple(sorted(zone & stock.keys())), objects=tuple(sorted(zone)))
 
     def _check(self) -> None:
         if self._expired():
@@ -439,7 +525,7 @@ def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
     return level.measure.exact(counts)
 
 
-def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[_Bounds]:
+def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[Bounds]:
     """Yield the bounds of child nodes which together exclude only the current whole values of the columns."""
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):

@@ -11,7 +11,6 @@ from foon_asp.plans.conditions import (
     Measure,
     Sum,
     SumLimit,
-    Supply,
 )
 from foon_asp.plans.flows import Flows
 from foon_asp.plans.whole_program import WholeProgram
@@ -51,12 +50,9 @@ class CountModel:
             self.stock = {o: program.column(0, count) for o, count in flows.start.items() if count}
         for o, change, least in flows.balances():
             self.conditions[program.row(*self._with_stock(o, change, least))] = Balance(o)
-        for action, preconditions in enumerate(flows.asks):
-            for o in (o for o, n in preconditions.items() if n > 1):
-                others = (a for a in achievers_of.get(o, ()) if a != action)
-                row = {achiever: flows.adds[achiever][o] for achiever in others}
-                supply = program.row(*self._with_stock(o, {**row, size + action: -preconditions[o]}, 0))
-                self.conditions[supply] = Supply(o, action)
+        for supply in flows.supplies:
+            row = {**flows.change(supply), size + supply.action: -supply.copies}
+            self.conditions[program.row(*self._with_stock(supply.object, row, 0))] = supply
         items = self.items = dict[int, int]()
         for action in range(size):
             y = size + action

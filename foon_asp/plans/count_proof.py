@@ -17,11 +17,9 @@ from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, time
 from foon_asp.plans.conditions import Condition, Landmark, Level, Measure
 from foon_asp.plans.count_bound import CountBound
 from foon_asp.plans.count_model import CountModel
+from foon_asp.plans.state_equation import StateEquation
+from foon_asp.plans.tuning import PLANS
 from foon_asp.plans.whole_program import INTEGRALITY, PARTS, Relaxation
-
-_ROUNDS = 20  # of separation at a node
-_MOST_DEPTH = 150
-_MOST_LEAVES = 1_000
 
 
 class Weighted(NamedTuple):
@@ -71,6 +69,12 @@ class PlanProver(CountBound):
         is the objective of the claim, which counts items or not.
         """
         self._claim, self._least, self._leaves = claim, claim.least, 0
+        floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
+        self._objective = {action: cost for action, cost in enumerate(floats) if cost}
+        equation = StateEquation(self._flows, self._limits, claim.caps, self._expired)
+        # in whole numbers, which only tell where to round
+        equation.strengthen({action: round(cost / INTEGRALITY) for action, cost in self._objective.items()})
+        self._rounded_rows = list(equation.rounded)
         model = self._model([measure, *(level.measure for level in kept)])
         for level in kept:
             model.limit(level)
@@ -78,8 +82,6 @@ class PlanProver(CountBound):
             if cap is not None:
                 model.program.cap(action, cap)
         self._columns = {column: o for o, column in {**model.items, **model.stock}.items()}
-        floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
-        self._objective = {action: cost for action, cost in enumerate(floats) if cost}
         self._objective |= dict.fromkeys(self._columns, claim.order.approximate(claim.item)[0])
         self._failed = False
         proof = self._prove_part(model, 0)
@@ -101,7 +103,6 @@ class PlanProver(CountBound):
         if program.is_empty:
             return Weighted(())
         best: tuple[Vector, dict[int, Vector]] | None = None
-        rounds = 0
         while True:
             relaxed = program.relaxation(self._objective)
             for weights in self._weights(model, relaxed):
@@ -112,14 +113,10 @@ class PlanProver(CountBound):
                     return self._leaf(model, best[1])
             if relaxed.x is None or self._expired():
                 break
-            if self._add_landmark(relaxed.x, model):
-                continue
-            if rounds < _ROUNDS and self._separate(relaxed.x, model, at_root=depth == 0):
-                rounds += 1
-                continue
-            break
+            if not (self._add_landmark(relaxed.x, model) or self._separate(relaxed.x, model, depth == 0)):
+                break
         column = None if relaxed.x is None or self._expired() else self._choice(model, relaxed.x)
-        if column is None or depth > _MOST_DEPTH or self._leaves > _MOST_LEAVES:
+        if column is None or depth > PLANS.depth or self._leaves > PLANS.leaves:
             self._give_up(best)
             return self._leaf(model, best[1] if best else {})
         return self._split(model, *column, depth)

@@ -19,16 +19,10 @@ from foon_asp.plans.count_bound import BetterError, CountBound
 from foon_asp.plans.execution_order import sequence
 from foon_asp.plans.flows import flows_of
 from foon_asp.plans.plan_question import Plan, PlanQuestion
+from foon_asp.plans.tuning import PLANS
 from foon_asp.plans.whole_program import Stopped
 from foon_asp.problem import LinearRow, Objective, Problem, multiplies
 from foon_asp.problem.costs import Costs
-
-_MAX_EXACT_COST = 10**12  # largest cost that is counted unrounded
-_COST_STEPS = 10**6  # steps of the greatest cost, where costs are rounded
-_MAX_UNORDERED = 10  # counts without an order, after which clingo searches all remaining ones at once
-_MAX_EXECUTIONS = 500  # executions in one such search
-_MAX_STOCKS = 200  # numbers of copies of the stock that an order is looked for with
-_MAX_EXTRA_COPIES = 4  # executions of a unit beyond its count in the search for a first plan
 
 
 class _ManyError(Exception):
@@ -112,7 +106,7 @@ class Counting:
         figures = self._figures(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
         greatest = max(figures, default=Fraction(0))
-        return Fraction(common) if common * greatest <= _MAX_EXACT_COST else _COST_STEPS / greatest
+        return Fraction(common) if common * greatest <= PLANS.exact_cost else PLANS.cost_steps / greatest
 
     def level(self, objective: Objective, costs: Costs) -> Level:
         """Return the level of an objective with the cost of a plan."""
@@ -169,16 +163,16 @@ class Counting:
         figures = self._figures(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
         costs = [int(common * figure) for figure in figures]
-        step = math.gcd(*(cost for cost in costs if cost > _MAX_EXACT_COST))
+        step = math.gcd(*(cost for cost in costs if cost > PLANS.exact_cost))
         counts = Counter(plan)
         executed = [counts[unit] for unit in self.units]
         levels = []
         for large in (True, False):
             of_level = [
-                (cost // step if large else cost) * ((cost > _MAX_EXACT_COST) is large) for cost in costs
+                (cost // step if large else cost) * ((cost > PLANS.exact_cost) is large) for cost in costs
             ]
             total = sum(cost * n for cost, n in zip(of_level, executed, strict=True))
-            if max(of_level) > _MAX_EXACT_COST or (not large and total >= step):
+            if max(of_level) > PLANS.exact_cost or (not large and total >= step):
                 return None
             levels.append(Level(Measure(of_level), Fraction(total), total))
         return Fraction(step, common), levels
@@ -211,7 +205,7 @@ class Counting:
         Returns whether it is proved. Raises :class:`BetterError` if a plan is better.
         """
         caps = [cap for cap in self.bound.caps(level) if cap is not None]
-        if len(caps) < len(self.units) or sum(caps) > _MAX_EXECUTIONS:
+        if len(caps) < len(self.units) or sum(caps) > PLANS.clingo_executions:
             return False
         if not all(objective.row.whole for objective in self._question.levels):
             return False
@@ -223,7 +217,7 @@ class Counting:
     def _is_better(self, counts: Counts) -> bool:
         """Return whether some order of the counts is a plan; it becomes the incumbent then."""
         self._orders_sought += 1
-        if self._orders_sought > _MAX_UNORDERED and not self._problem.counts_amounts:
+        if self._orders_sought > PLANS.unordered_counts and not self._problem.counts_amounts:
             raise _ManyError
         plan = self.order(counts)
         return plan is not None and self._question.take(plan)
@@ -242,7 +236,7 @@ class Counting:
         if self._problem.counts_amounts:
             return None
         extra = 1
-        while extra <= _MAX_EXTRA_COPIES:
+        while extra <= PLANS.extra_executions:
             plan = self._plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self.units))}, True)
             if plan is not None:
                 return plan
@@ -259,7 +253,7 @@ class Counting:
             return None if runs is None else plan_of(self.units, runs)
         first = tuple(sorted(least_copies(flows, counts).items()))
         waiting, seen = [(sum(n for _, n in first), first)], {first}
-        for _ in range(_MAX_STOCKS):
+        for _ in range(PLANS.stocks):
             if not waiting:
                 return None
             total, stock = heappop(waiting)

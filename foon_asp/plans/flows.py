@@ -1,12 +1,16 @@
 """Preconditions, consumption and add effects of the units of a question, on plain numbers."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
+from foon_asp.plans.conditions import Remainder, Supply
+from foon_asp.plans.tuning import PLANS
 from foon_asp.problem import Problem
 
 
-class Flows(NamedTuple):
+@dataclass(frozen=True)
+class Flows:
     """Actions with preconditions and effects on copies of objects, all by number.
 
     Each action maps objects to numbers of copies. It can be executed while there are those that it ``asks``
@@ -48,6 +52,59 @@ class Flows(NamedTuple):
                 yield o, change, self.targets.get(o, 0)
 
     @property
+    def supplies(self) -> Iterator[Supply]:
+        """The supplies of actions that ask for several copies of an object."""
+        for action, preconditions in enumerate(self.asks):
+            for o, n in preconditions.items():
+                if n > 1:
+                    yield Supply(o, action, n)
+
+    @property
+    def remainders(self) -> Iterator[Remainder]:
+        """The remainders of objects that every action that asks for them leaves some of."""
+        kept_by_object: dict[int, dict[int, int]] = {}
+        for action, preconditions in enumerate(self.asks):
+            for o, n in preconditions.items():
+                kept = n - self.uses[action].get(o, 0) + self.adds[action].get(o, 0)
+                kept_by_object.setdefault(o, {})[action] = kept
+        for o, by_action in kept_by_object.items():
+            copies = min(by_action.values())
+            if copies > self.targets.get(o, 0):
+                yield from (Remainder(o, action, copies) for action in by_action)
+
+    def change(self, condition: Supply | Remainder) -> dict[int, int]:
+        """Return by how much each action changes the copies that a condition is about."""
+        o, adds = condition.object, self.adds
+        if isinstance(condition, Supply):
+            return {a: adds[a][o] for a in self.achievers.get(o, ()) if a != condition.action}
+        changes = {a: adds[a].get(o, 0) - uses.get(o, 0) for a, uses in enumerate(self.uses)}
+        return {a: n for a, n in changes.items() if n}
+
+    @cached_property
+    def roles(self) -> Mapping[int, int]:
+        """A number for the role of each object (colour refinement, Weisfeiler & Leman 1968).
+
+        Objects have one role if actions of one kind consume and add them in the same amounts, and actions are
+        of one kind if they do so with objects of the same roles, looked at ``role_depth`` times.
+        """
+        touched: dict[int, list[tuple[int, int]]] = {o: [] for o in self.targets}
+        sides = [
+            [*((o, -n) for o, n in uses.items()), *adds.items()]
+            for uses, adds in zip(self.uses, self.adds, strict=True)
+        ]
+        for action, effects in enumerate(sides):
+            for o, n in effects:
+                touched.setdefault(o, []).append((action, n))
+        roles = {o: int(o in self.targets) for o in touched}
+        for _ in range(PLANS.role_depth):
+            kinds = [hash(tuple(sorted((roles[o], n) for o, n in effects))) for effects in sides]
+            roles = {
+                o: hash((roles[o], *sorted({(kinds[action], n) for action, n in by_action})))
+                for o, by_action in touched.items()
+            }
+        return roles
+
+    @cached_property
     def achievers(self) -> dict[int, list[int]]:
         """The actions that add each object."""
         achievers: dict[int, list[int]] = {}

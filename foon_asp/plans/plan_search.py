@@ -64,7 +64,7 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     began = time.perf_counter()
     measures = [counting.measure(objective) for objective in question.levels]
     with question.deadline.watched("counting executions"):
-        plan = _plain_plan(question, counting, measures) if question.problem.counts_amounts else None
+        plan = _plain_plan(question, counting, measures)
         counts = counting.bound.counts(measures) if plan is None else None
     question.spent("bound", began)
     if plan is None and counts is None and counting.bound.none():
@@ -74,7 +74,7 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
         if plan is None or not question.allows(plan):
             plan = counting.any_order(counts)
     if plan is not None and question.take(plan):
-        counting.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
+        counting.bound.derivation = _positions(units, plan)
         counting = _below_cutoff(question, counting, plan)
     elif question.has_no_lasting_tree():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
@@ -91,6 +91,12 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
         finally:
             question.bounds = counting.proved()
             question.spent("bound", began)
+
+
+def _positions(units: Sequence[int], plan: Plan) -> list[int]:
+    """Return the indices of the units that a plan executes."""
+    executed = set(plan)
+    return [a for a, unit in enumerate(units) if unit in executed]
 
 
 def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
@@ -113,5 +119,5 @@ def _below_cutoff(question: PlanQuestion, counting: Counting, plan: Plan) -> Cou
     if not units or len(units) == len(counting.units):
         return counting
     fewer = Counting(question, units)
-    fewer.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
+    fewer.bound.derivation = _positions(units, plan)
     return fewer

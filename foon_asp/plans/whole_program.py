@@ -1,7 +1,7 @@
 """A linear program over whole numbers: solved in floats by HiGHS, bounded in whole numbers."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -11,9 +11,11 @@ PARTS = (720720, 2**40)
 """Denominators of rounded weights; the first that suffices is used, as most weights are simple fractions."""
 
 INTEGRALITY = 1e-6
-"""Integrality tolerance, for choosing where to branch."""
+"""Integrality tolerance, for choosing where to branch, and relative tolerance of rows that floats violate."""
 
-_GAP = 1e-6  # relative violation of rows allowed where floats find neither a solution nor a proof
+
+Bounds = tuple[list[int], list[int | None]]
+"""The lower and upper bounds of all columns, ``None`` without one."""
 
 
 class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
@@ -42,6 +44,13 @@ class Relaxation(NamedTuple):
     weights: list[float]
     columns: list[int]
     rows: list[int]
+
+
+def most_fractional(x: Sequence[float]) -> int | None:
+    """Return the column whose value is the furthest from a whole number; ``None`` if all are whole."""
+    halves = [(abs(value - math.floor(value) - 0.5), column) for column, value in enumerate(x)]
+    half = min((h for h in halves if h[0] < 0.5 - INTEGRALITY), default=None)
+    return None if half is None else half[1]
 
 
 class WholeProgram:
@@ -100,9 +109,7 @@ class WholeProgram:
         current = self.upper[column]
         self.upper[column] = upper if current is None else min(current, upper)
 
-    def with_bounds(
-        self, column: int, lower: int | None, upper: int | None
-    ) -> tuple[list[int], list[int | None]]:
+    def with_bounds(self, column: int, lower: int | None, upper: int | None) -> Bounds:
         """Return the bounds of all columns with one changed."""
         lowers, uppers = list(self.lower), list(self.upper)
         if lower is not None:
@@ -110,6 +117,16 @@ class WholeProgram:
         if upper is not None:
             uppers[column] = upper
         return lowers, uppers
+
+    def restrict(self, bounds: Bounds) -> None:
+        """Set the bounds of columns; columns that were added since keep theirs."""
+        lower, upper = bounds
+        self.lower[: len(lower)], self.upper[: len(upper)] = lower, upper
+
+    def halves(self, column: int, value: float) -> tuple[Bounds, Bounds]:
+        """Return the bounds of two nodes in which a column is at most, or at least, the next whole number."""
+        below = math.floor(value)
+        return self.with_bounds(column, None, below), self.with_bounds(column, below + 1, None)
 
     def solve(self, objective: Mapping[int, int], cutoff: float = math.inf) -> Solved:
         """Return the solution and bound of the relaxation; a bound above ``cutoff`` is enough."""
@@ -127,6 +144,23 @@ class WholeProgram:
             return Solved(None, math.inf)
         return Solved(self._nearly(), -math.inf)
 
+    def inverse_rows(self, x: Sequence[float]) -> Iterator[dict[int, float]]:
+        """Yield the rows of the inverse basis of basic columns that are fractional, the most so first.
+
+        Each has weights of rows, in floats. ``x`` is the solution that was returned last.
+        """
+        halves = {column: abs(value - math.floor(value) - 0.5) for column, value in enumerate(x)}
+        fractional = {column: half for column, half in halves.items() if half < 0.5 - INTEGRALITY}
+        if (
+            self._highs is None or not fractional
+        ):  # HiGHS does not survive the question where it used no basis
+            return
+        basic = [(index, int(column)) for index, column in enumerate(self._highs.getBasicVariables()[1])]
+        basic = [(index, column) for index, column in basic if column in fractional]
+        for index, _ in sorted(basic, key=lambda entry: fractional[entry[1]]):
+            weights = self._highs.getBasisInverseRow(index)[1]
+            yield {row: float(weights[row]) for row in self._np.flatnonzero(weights).tolist()}
+
     def _nearly(self) -> list[float] | None:
         """Return a solution that may violate rows a little, where floats find none and prove nothing.
 
@@ -135,7 +169,7 @@ class WholeProgram:
         highs, count = self._highs, len(self._rows)
         rows, infinite = self._np.arange(count, dtype="int32"), self._np.full(count, self._library.kHighsInf)
         least = self._np.array([float(least) for _, least in self._rows])
-        highs.changeRowsBounds(count, rows, least - _GAP * self._np.maximum(1.0, abs(least)), infinite)
+        highs.changeRowsBounds(count, rows, least - INTEGRALITY * self._np.maximum(1.0, abs(least)), infinite)
         self._run_to_the_end(highs)
         optimal = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
         x = list(highs.getSolution().col_value) if optimal else None
@@ -160,8 +194,20 @@ class WholeProgram:
         """Return a row: its coefficients, and the least sum."""
         return self._rows[row]
 
-    def whole_optimum(self, objective: Mapping[int, int]) -> list[float] | None:
-        """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or when time is up."""
+    def without(self, rows: Container[int]) -> "WholeProgram":
+        """Return a program with the same columns, and without some rows."""
+        other = WholeProgram(0, self._expired)
+        other.lower, other.upper = list(self.lower), list(self.upper)
+        other._rows = [row for number, row in enumerate(self._rows) if number not in rows]
+        return other
+
+    def whole_optimum(
+        self, objective: Mapping[int, int], sufficient_cost: float = -math.inf
+    ) -> list[float] | None:
+        """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or when time is up.
+
+        One that costs up to ``sufficient_cost`` is taken at once.
+        """
         highs = self._send(objective)
         count = self.columns
         whole = self._library.HighsVarType.kInteger
@@ -169,8 +215,11 @@ class WholeProgram:
             count, self._np.arange(count, dtype="int32"), self._np.array([whole] * count)
         )
         highs.setOptionValue("presolve", "on")
+        highs.setOptionValue("mip_rel_gap", 0.0)
+        highs.setOptionValue("objective_target", sufficient_cost)
         ended = not self._expired() and run(highs, self._expired, whole=True)
-        optimal = ended and highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
+        status = self._library.HighsModelStatus
+        optimal = ended and highs.getModelStatus() in {status.kOptimal, status.kObjectiveTarget}
         values = list(highs.getSolution().col_value) if optimal else None
         self._highs = None
         return values

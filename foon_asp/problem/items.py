@@ -1,10 +1,10 @@
 """Consumption of items: which inputs of a unit stay after it, and which are used up (docs/plans.md)."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import NamedTuple, overload
 
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitAmounts
 
@@ -81,6 +81,35 @@ class Flow(NamedTuple):
     asks: Mapping[int, int]
     uses: Mapping[int, int]
     adds: Mapping[int, int]
+
+
+class UnitFlows(Sequence[Flow]):
+    """The flows of all units of a network, each computed once, when it is first looked at.
+
+    A question about a few units of a large network looks at few of them.
+    """
+
+    def __init__(self, units: int, flow: Callable[[int], Flow]) -> None:
+        self._flow = flow
+        self._flows: list[Flow | None] = [None] * units
+
+    def __len__(self) -> int:
+        """Return the number of units."""
+        return len(self._flows)
+
+    @overload
+    def __getitem__(self, unit: int) -> Flow: ...
+    @overload
+    def __getitem__(self, unit: slice) -> Sequence[Flow]: ...
+
+    def __getitem__(self, unit: int | slice) -> Flow | Sequence[Flow]:
+        """Return the flow of a unit, or of some."""
+        if isinstance(unit, slice):
+            return [self[u] for u in range(len(self))[unit]]
+        flow = self._flows[unit]
+        if flow is None:
+            flow = self._flows[unit] = self._flow(unit)
+        return flow
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ from foon_asp.problem.container_rule import (
     network_sides,
 )
 from foon_asp.problem.costs import Costs, tree_costs
-from foon_asp.problem.items import Flow, UsedUp
+from foon_asp.problem.items import Flow, UnitFlows, UsedUp
 from foon_asp.problem.number import Number
 from foon_asp.problem.objective import Known, Measured, Objective
 from foon_asp.problem.restriction import Restriction
@@ -297,8 +297,11 @@ class Problem:
         return makers if self.restriction is None else self.restriction.makers(makers)
 
     @cached_property
-    def flows(self) -> tuple[Flow, ...]:
-        """The effects of each unit on copies of items; where items last, no unit uses up any."""
+    def flows(self) -> Sequence[Flow]:
+        """The effects of each unit on copies of items, worked out when they are first looked at.
+
+        Where items last, no unit uses up any.
+        """
         items, network = self.items, self.network
         if items is None:
             return tuple(
@@ -307,17 +310,13 @@ class Problem:
             )
         counted = {unit.motion for unit in self.amounts}
         none = UnitAmounts()
-        return tuple(
-            items.flow(
-                network,
-                unit,
-                self.needs[unit],
-                self.gives[unit],
-                self.utensils,
-                self.amounts.get(network.unit(unit), none) if network.motions[unit] in counted else none,
-            )
-            for unit in range(len(network))
-        )
+
+        def flow(unit: int) -> Flow:
+            has_amounts = network.motions[unit] in counted
+            amounts = self.amounts.get(network.unit(unit), none) if has_amounts else none
+            return items.flow(network, unit, self.needs[unit], self.gives[unit], self.utensils, amounts)
+
+        return UnitFlows(len(network), flow)
 
     def wanted(self, goal: int) -> int:
         """Return how many copies of a goal have to be there in the end.
@@ -332,9 +331,9 @@ class Problem:
         """Whether some unit takes or makes several copies of a node, or a goal is wanted several times."""
         if self.items is None:
             return False
-        effects = (side for flow in self.flows for side in flow)
+        stated = (side for sides in self.amounts.values() for side in sides)
         return any(self.wanted(goal) > 1 for goal in self.goals) or any(
-            n > 1 for side in effects for n in side.values()
+            n > 1 for side in stated for n in side.values()
         )
 
     def stock_of(self, o: int) -> int | None:
@@ -364,6 +363,8 @@ class Problem:
             plan: The ids of the units, in the order of execution.
         """
         required = dict.fromkeys(self.kitchen - self.endless, 0)
+        if not required:
+            return {}
         net_effects = dict.fromkeys(required, 0)
         for unit, run in groupby(plan):
             times = sum(1 for _ in run)

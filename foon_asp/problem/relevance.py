@@ -28,10 +28,13 @@ def reach(problem: Problem) -> Reached:
     removed = restriction.removed if restriction else None
     available = bytearray(len(network.objects))
     missing = [len(needed) for needed in needs]
-    consumers: list[list[int]] = [[] for _ in network.objects]
-    for unit, needed in enumerate(needs):
-        for o in needed:
-            consumers[o].append(unit)
+    consumers: Sequence[Sequence[int]] = network.consumers
+    if needs is not network.inputs:  # inputs that are skipped are not waited for
+        unskipped: list[list[int]] = [[] for _ in network.objects]
+        for unit, needed in enumerate(needs):
+            for o in needed:
+                unskipped[o].append(unit)
+        consumers = unskipped
     order: list[int] = []
     makers: dict[int, int] = {}
     queue = deque(sorted(problem.kitchen))
@@ -105,12 +108,21 @@ def relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
 
     They are found backward from the goals through achievers, down to items that are not consumable.
     """
-    achievers: list[list[int]] = [[] for _ in problem.network.objects]
-    for unit in reached.units:
-        for o in problem.flows[unit].adds:
-            achievers[o].append(unit)
-    units, _ = backwards(problem.goals, achievers, [flow.asks for flow in problem.flows], problem.endless)
-    return units
+    flows, endless, allowed = problem.flows, problem.endless, frozenset(reached.units)
+    makers, needs = problem.makers, problem.needs
+    objects = {o for o in problem.goals if o not in endless}
+    stack, achievers = list(objects), set[int]()
+    while stack:
+        o = stack.pop()
+        for unit in makers[o]:
+            if unit in allowed and unit not in achievers and o in flows[unit].adds:
+                achievers.add(unit)
+                lacking = [
+                    needed for needed in needs[unit] if needed not in objects and needed not in endless
+                ]
+                objects.update(lacking)
+                stack += lacking
+    return achievers
 
 
 def kitchen_needed(problem: Problem) -> list[int]:

@@ -388,7 +388,7 @@ class Check:
         require(measure["sha256"] == digest, "the digest of a measure is not that of its rules")
         costs: dict[int, Fraction] = {}
         for text, units in read_object(measure["costs"]).items():
-            cost = _rational(text)
+            cost = read_rational(text)
             require(cost >= 0, "a unit costs less than 0 by a measure")
             for unit in read_numbers(units, len(self.network)):
                 require(unit not in costs, "a unit has two costs by a measure")
@@ -642,7 +642,7 @@ class Check:
             for key, value in weight.items():
                 if not value:
                     continue
-                self._spend_on(_bits(value) + scales[key].bit_length(), len(crossing))
+                self._spend_on(bit_length(value) + scales[key].bit_length(), len(crossing))
                 scaled, load = value.numerator * (scales[key] // value.denominator), loads[key]
                 for member in crossing:
                     load[member] += scaled
@@ -686,7 +686,7 @@ class Check:
         It is rounded at the first objective with a stated multiple that the bound is not a multiple of. A
         tree that costs as much as the bound by the objectives before it costs at least 0 by those after it.
         """
-        multiples = {name: _rational(multiple) for name, multiple in read_object(stated).items()}
+        multiples = {name: read_rational(multiple) for name, multiple in read_object(stated).items()}
         require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
         for level, objective in enumerate(self.objectives):
             if objective in multiples:
@@ -708,7 +708,7 @@ class Check:
         costs = (self._cost_by(level, member) or Fraction(0) for member in members)
         for ratio in dict.fromkeys(cost.as_integer_ratio() for cost in costs):
             cost = Fraction(*ratio)
-            self._spend_on(_bits(cost) + _bits(multiple))
+            self._spend_on(bit_length(cost) + bit_length(multiple))
             if cost % multiple:
                 return False
         return True
@@ -878,6 +878,13 @@ class Check:
 
         The first ``numbers`` entries of each list name what is weighted.
         """
+        for name, value in self.read_named(key, stated, numbers):
+            weight = read(value)
+            require(self.sign(weight) > 0, f"{key}: a weight is not above zero")
+            yield name, weight
+
+    def read_named(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
+        """Read what is stated under a key: of what is named by its first numbers, in order, a value."""
         rows = [read_list(row) for row in read_list(stated)]
         names = [row[:numbers] for row in rows]
         require(
@@ -887,10 +894,7 @@ class Check:
         )
         in_order = names == sorted(map(list, {*map(tuple, names)}))
         require(in_order, f"{key}: expected weights in order, each once")
-        for name, row in zip(names, rows, strict=True):
-            weight = read(row[numbers])
-            require(self.sign(weight) > 0, f"{key}: a weight is not above zero")
-            yield name, weight
+        yield from ((name, row[numbers]) for name, row in zip(names, rows, strict=True))
 
     def limit_at(self, number: int) -> Limit:
         """Return the limit that a weight is for, by the limit's number."""
@@ -906,11 +910,11 @@ class Check:
         for level, objective in enumerate(objectives):
             if objective == "success":
                 for name, exponent in read_object(parts[level]).items():
-                    rate = _rational(name)
+                    rate = read_rational(name)
                     require(rate in self.costly, "expected rates of motions in a weight, and none of 0 or 1")
-                    amount[level, rate] = _rational(exponent)
+                    amount[level, rate] = read_rational(exponent)
             else:
-                amount[level, None] = _rational(parts[level])
+                amount[level, None] = read_rational(parts[level])
         return amount
 
     def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> Fraction | int:
@@ -923,7 +927,7 @@ class Check:
         if never := exponents.get(Fraction(0)):
             return never
         exponents = {rate: e for rate, e in exponents.items() if e and rate != 1}
-        for size in accumulate(map(_bits, exponents.values())):
+        for size in accumulate(map(bit_length, exponents.values())):
             self._spend_on(4000 + size)  # bounds of logarithms have hundreds of bits themselves
         bounds = [[e * bound for bound in self.minus_log(rate)] for rate, e in exponents.items()]
         low, high = sum(map(min, bounds)), sum(map(max, bounds))
@@ -963,7 +967,7 @@ class Check:
     def _add(self, total: Amount, amount: Amount) -> None:
         for key, value in amount.items():
             total[key] = total[key] + value if key in total else value
-            self._spend_on(_bits(total[key]))
+            self._spend_on(bit_length(total[key]))
 
     def times(self, amount: Amount, factor: Fraction) -> Amount:
         """Return an amount times a factor."""
@@ -988,7 +992,8 @@ class Check:
             raise LimitError(f"to check it takes more than {self.allowed:,} steps")
 
 
-def _bits(value: Fraction) -> int:
+def bit_length(value: Fraction) -> int:
+    """Return the length of a fraction."""
     return value.numerator.bit_length() + value.denominator.bit_length()
 
 
@@ -1130,14 +1135,15 @@ def _own(rule: Rule, units: int) -> None:
         require(type(max_sum) is int, "a limit is no whole number")
         counted: list[int] = []
         for amount, counted_units in read_object(amounts).items():
-            number = _rational(amount)
+            number = read_rational(amount)
             whole = number > 0 and number.denominator == 1
             require(whole, "a limit counts what is no whole number above zero")
             counted += read_numbers(counted_units, units)
         require(len(set(counted)) == len(counted), "a limit counts a unit twice")
 
 
-def _rational(value: Any) -> Fraction:
+def read_rational(value: Any) -> Fraction:
+    """Read a fraction in lowest terms."""
     require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
     if len(value) > ALLOWED.digits:
         raise LimitError(f"a fraction has more than {ALLOWED.digits:,} digits")

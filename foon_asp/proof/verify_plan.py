@@ -3,8 +3,9 @@
 docs/dev/certificates.md describes these certificates and proves that what passes here is true. In short: how
 often a plan executes each unit satisfies conditions that can be read from the network. Of every node no more
 copies are used up than come (its *balance*), and each cut before a goal, or before a unit that is executed,
-is crossed. A Farkas combination of these conditions, with weights from 0, bounds the cost of every plan: the
-right-hand sides, plus for each unit the least of its reduced cost over all the counts that it may have.
+is crossed. As counts are whole, sums of balances can be rounded. A Farkas combination of these conditions,
+with weights from 0, bounds the cost of every plan: the right-hand sides, plus for each unit the least of its
+reduced cost over all the counts that it may have.
 
 What becomes of the inputs of a unit, and whether a plan runs, is worked out here anew from the plain network.
 """
@@ -15,7 +16,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, cached_property, partial
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import ObjectNode
 from foon_asp.proof.rule_meaning import LIBRARY, Rule
@@ -27,6 +28,7 @@ from foon_asp.proof.verifier import (
     Subject,
     UsedUp,
     Verified,
+    bit_length,
     negative,
     read_frame,
     read_list,
@@ -34,12 +36,13 @@ from foon_asp.proof.verifier import (
     read_numbers,
     read_object,
     read_pair,
+    read_rational,
     refusing_depth,
     require,
     verify,
 )
 
-PLAN = Form("foon-asp certificate of a plan", 2, CERTIFICATE_KEYS | {"items", "unreached"})
+PLAN = Form("foon-asp certificate of a plan", 3, CERTIFICATE_KEYS | {"items", "unreached", "rounded"})
 
 # The rules that plans can be checked against: those that remove units, at-least-one constraints, and those
 # whose limit counts each execution.
@@ -49,7 +52,7 @@ PLAN_RULES = frozenset({*COUNTING, *WANTING, *(name for name, rule in LIBRARY.it
 
 LOGARITHM_SCALE = 10**9  # scale of logarithms, where plans have to be as good by success as the incumbent
 _MAX_COUNT = 10**9  # of copies in stock, and of executions in a branch
-_LEAF = {"weights", "before", "supply", "balance", "limits", "levels"}
+_LEAF = {"weights", "before", "supply", "balance", "limits", "levels", "rounded"}
 
 
 class Flow(NamedTuple):
@@ -58,6 +61,10 @@ class Flow(NamedTuple):
     asks: Mapping[int, int]
     uses: Mapping[int, int]
     adds: Mapping[int, int]
+
+
+Row: TypeAlias = tuple[Mapping[int, int | Fraction], int | Fraction]
+"""A condition on counts: the coefficient of each unit, and the least of the sum."""
 
 
 class Node(NamedTuple):
@@ -111,6 +118,7 @@ class PlanCheck(Check):
         self.lacks = cache(self._lacks)
         super().__init__(certificate, rules, subject)
         require(set(self.goals).issuperset(self.wanted_stated), "an amount is wanted of what is no goal")
+        self.rounded = self._read_rounded()
 
     # --- what units do
 
@@ -209,6 +217,50 @@ class PlanCheck(Check):
             if o not in self.endless:
                 units += (unit for unit in network.producers[o] if o in self.flow(unit).adds)
         yield from (u for u in units if u not in self.idle and cut.isdisjoint(self.lacks(u)))
+
+    # --- conditions on counts alone
+
+    def balance(self, o: int) -> tuple[dict[int, int], int]:
+        """Return by how much each unit changes the copies of a node, and how many are wanted in the end."""
+        network = self.network
+        read_number(o, range(len(network.objects)), "the id of a node in a balance")
+        require(o not in self.endless, "what never runs out has no balance")
+        changes = {}
+        for unit in {*network.producers[o], *network.consumers[o]}:
+            flow = self.flow(unit)
+            if change := flow.adds.get(o, 0) - flow.uses.get(o, 0):
+                changes[unit] = change
+        return changes, self.wanted(o) if o in self.goals else 0
+
+    def _read_rounded(self) -> list[Row]:
+        """Read the rounded sums, each of balances, limits of rules and earlier ones with weights from 0."""
+        rows: list[Row] = []
+        for stated in read_list(self.certificate["rounded"]):
+            require(
+                set(read_object(stated)) <= {"balance", "limits", "rounded"}, "expected sums of conditions"
+            )
+            coefficients, least = dict[int, Fraction](), Fraction(0)
+            for key, weights in stated.items():
+                for (number,), text in self.read_named(key, weights):
+                    weight = read_rational(text)
+                    require(weight > 0, "what is rounded has a weight that is not above zero")
+                    row, wanted = self._of_counts(key, number, rows)
+                    least += weight * wanted
+                    for unit, n in row.items():
+                        coefficients[unit] = coefficients.get(unit, Fraction(0)) + weight * n
+                        self._spend_on(bit_length(coefficients[unit]))
+            rows.append(_round(coefficients, least))
+        return rows
+
+    def _of_counts(self, key: str, number: int, earlier: Sequence[Row]) -> Row:
+        """Return a condition on counts alone: the coefficients of units, and the least of their sum."""
+        if key == "rounded":
+            return earlier[read_number(number, range(len(earlier)), "the number of an earlier rounded sum")]
+        if key == "limits":
+            limit = self.limit_at(number)
+            return {unit: -amount for unit, amount in limit.amounts.items()}, -limit.max_sum
+        changes, wanted = self.balance(number)
+        return changes, wanted - self.stock.get(number, 0)
 
     # --- the plan
 
@@ -457,6 +509,12 @@ class _Conditions:
             self._demand(weight, -limit.max_sum)
             for member, amount in limit.amounts.items():
                 self._bring(self.executed, member, weight, amount)
+        for (number,), weight in self._read("rounded"):
+            rows = check.rounded
+            row, least = rows[read_number(number, range(len(rows)), "the number of a rounded sum")]
+            self._demand(weight, least)
+            for unit, coefficient in row.items():
+                self._bring(self.executed, unit, weight, -coefficient)
         for (number,), weight in self._read("levels"):
             require(0 <= number < level, "an objective that is not before this one is given a weight")
             self._demand(weight, -check.limit(number))
@@ -478,15 +536,10 @@ class _Conditions:
 
     def _balance(self, o: int, weight: Amount) -> None:
         """Add the balance of a node: no more copies are consumed than there are, and a goal keeps one."""
-        check, network = self.check, self.check.network
-        read_number(o, range(len(network.objects)), "the id of a node in a balance")
-        require(o not in check.endless, "what never runs out has no balance")
-        wanted = check.wanted(o) if o in check.goals else 0
+        changes, wanted = self.check.balance(o)
         self._demand(weight, wanted - self._initial(o, weight))
-        for unit in {*network.producers[o], *network.consumers[o]}:
-            flow = check.flow(unit)
-            if change := flow.adds.get(o, 0) - flow.uses.get(o, 0):
-                self._bring(self.executed, unit, weight, -change)
+        for unit, change in changes.items():
+            self._bring(self.executed, unit, weight, -change)
 
     def _supply(self, o: int, supplied: int, weight: Amount) -> None:
         """Add the supply of a unit: before it is executed, there are the copies of a node that it asks for.
@@ -520,6 +573,18 @@ class _Conditions:
 
     def _added(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
         return self.check.sum([amount, self.check.times(weight, Fraction(factor))])
+
+
+def _round(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
+    """Return a sum that is rounded: counts are whole numbers from 0."""
+    fraction = least - math.floor(least)
+    require(fraction > 0, "a sum is rounded that is whole")
+
+    def rounded(coefficient: Fraction) -> Fraction:
+        below = math.floor(coefficient)
+        return below + min(Fraction(1), (coefficient - below) / fraction)
+
+    return {unit: rounded(n) for unit, n in coefficients.items()}, math.ceil(least)
 
 
 def _copies(value: Any, what: str) -> dict[int, int]:

@@ -13,11 +13,12 @@ from foon_asp.asp import Settings
 from foon_asp.asp.optimum import solve
 from foon_asp.certificate import certify_outcome
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector
-from foon_asp.plans import count_proof
-from foon_asp.plans.conditions import Balance, Counts, Landmark, Level, Measure, Sum, SumLimit
+from foon_asp.plans import count_proof, state_equation
+from foon_asp.plans.conditions import Balance, Counts, Landmark, Level, Measure, Rounded, Sum, SumLimit
 from foon_asp.plans.count_bound import CountBound
 from foon_asp.plans.count_proof import Claim, CountProof, PlanProver, Split
 from foon_asp.plans.flows import Flows
+from foon_asp.plans.tuning import PLANS
 from foon_asp.plans.whole_program import Relaxation, WholeProgram
 from foon_asp.problem import Objective
 from tests.oracle import used_up
@@ -78,9 +79,24 @@ def require_shows(
         if caps:
             first[action] = min(caps)
 
-    def meaning(condition: Any) -> tuple[int, Counter[int], Counter[int]]:
+    def meaning(condition: Any) -> tuple[int | Fraction, Mapping[int, Any], Counter[int]]:
         """Return what a sum is at least: of counts times the first, and of what is executed, the second."""
         each, once = Counter[int](), Counter[int]()
+        if isinstance(condition, Rounded):
+            total, sums = Fraction(0), defaultdict[int, Fraction](Fraction)
+            for part, weight in condition.weights:
+                assert weight > 0
+                wanted, counts, _ = meaning(part)
+                if isinstance(part, Balance) and part.object in taken:  # all copies that there are
+                    wanted -= made.start.get(part.object, 0)
+                    counts = {a: n for a, n in counts.items() if a < size}
+                total += weight * wanted
+                for a, n in counts.items():
+                    sums[a] += weight * n
+            part_of = total - math.floor(total)
+            floors = {a: math.floor(n) for a, n in sums.items()}
+            row = {a: floors[a] + min(Fraction(1), (n - floors[a]) / part_of) for a, n in sums.items()}
+            return math.ceil(total) * condition.scale, {a: n * condition.scale for a, n in row.items()}, once
         if isinstance(condition, Balance):
             o = condition.object
             for action in range(size):
@@ -247,13 +263,16 @@ def test_a_proof_is_given_up_where_parts_are_too_many(monkeypatch: pytest.Monkey
 
     half, whole_proof = (Fraction(3, 2),), ((Fraction(2),), [1, 2, 2])
     assert proved() == ((Fraction(2),), [0])  # a bound of 3/2 is one of 2
+    assert proved(None) == ((Fraction(2),), [0])  # and so is the rounded half of the sum of all conditions
+    # without rounded sums it takes parts
+    monkeypatch.setattr(state_equation, "PLANS", PLANS._replace(stalled_rounds=-1))
     assert proved(None) == whole_proof
     for parts in (None, 2):
         assert proved(parts, expired=lambda: True) == (half, [0])
-    for name in ("_MOST_LEAVES", "_MOST_DEPTH"):
+    for name in ("leaves", "depth"):
         with monkeypatch.context() as patched:
             for most, expected in ((-1, (half, [0])), (0, (half, [1, 1])), (1, whole_proof)):
-                patched.setattr(count_proof, name, most)
+                patched.setattr(count_proof, "PLANS", PLANS._replace(**{name: most}))
                 assert proved(None) == expected
 
 

@@ -183,10 +183,10 @@ FORGED: dict[str, Forged] = {
     "read_numbers: an id stands twice": plain(**ANY, tree=[0, 0], costs=[2]),
     "read_numbers: expected ids in order": plain(cuts=[BOTH[::-1]]),
     "read_number: expected …": plain(at=LOST, **NO_TREE, cuts=[LOST_CUT], proof={"hopeless": False}),
-    "read_weights: …: expected what has a weight by its number, and the weight": plain(
+    "read_named: …: expected what has a weight by its number, and the weight": plain(
         proof={"weights": [[0, ["1"], 2]]}
     ),
-    "read_weights: …: expected weights in order, each once": plain(proof={"weights": [[0, ["1/2"]]] * 2}),
+    "read_named: …: expected weights in order, each once": plain(proof={"weights": [[0, ["1/2"]]] * 2}),
     "read_rules: it has more than … rules": plain(rules=forbid(f"sing {number:03}" for number in range(101))),
     "read_rules: a rule is unknown": plain(rules=[{"rule": "sing"}], stays=KIND),
     "read_rules: a value of a rule is of another kind": plain(rules=at_most(True)),
@@ -203,9 +203,9 @@ FORGED: dict[str, Forged] = {
     ),
     "_own: a limit counts a unit twice": plain(rules=[own((), [[{"1": [3], "2": [3]}, 1]])]),
     "_goal: a goal is not the node of its id": plain(goals=[{"id": END, "node": "another"}]),
-    "_rational: expected a number such as 3/2": plain(proof=weigh("one"), stays=KIND),
-    "_rational: expected a fraction in lowest terms": plain(proof=weigh("2/2")),
-    "_rational: a fraction has more than … digits": plain(**ANY, proof=weigh("1/1" + "0" * 2500)),
+    "read_rational: expected a number such as 3/2": plain(proof=weigh("one"), stays=KIND),
+    "read_rational: expected a fraction in lowest terms": plain(proof=weigh("2/2")),
+    "read_rational: a fraction has more than … digits": plain(**ANY, proof=weigh("1/1" + "0" * 2500)),
     # --- the question
     "__init__: expected the containers strict or implied": plain(containers="loose"),
     "__init__: an objective is unknown": plain(**bound("0", objective=["unit"]), **UNPROVED),

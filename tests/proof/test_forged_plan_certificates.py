@@ -58,6 +58,15 @@ LEVEL = replace(PLAIN, network=network_at_level(PLAIN.network, 2))
 MIX, DIG = PLAIN.network.unit(0), PLAIN.network.unit(2)
 COUNTED = replace(PLAIN, amounts={MIX: UnitAmounts({PLAIN.network.objects[SALT]: 2})})
 DUG = replace(PLAIN, amounts={DIG: UnitAmounts({}, {PLAIN.network.objects[GOLD]: 2})})
+# Baking makes two loaves, and salt is bought by twos.
+BAKE, BUY = PLAIN.network.unit(1), PLAIN.network.unit(3)
+FROM_TWO = replace(
+    PLAIN,
+    amounts={
+        BAKE: UnitAmounts({}, {PLAIN.network.objects[BREAD]: 2}),
+        BUY: UnitAmounts({}, {PLAIN.network.objects[SALT]: 2}),
+    },
+)
 
 
 def proving(**more: Any) -> Content:
@@ -82,7 +91,7 @@ def certificate(at: Problem = PLAIN, **values: Any) -> Content:
         "version": verify_plan.PLAN.version,
         "items": items([[SALT, 1]]),
     }
-    right = {"tree": [0, 1], "costs": [2], "unreached": [RARE, GOLD], "proof": [PROOF]}
+    right = {"tree": [0, 1], "costs": [2], "unreached": [RARE, GOLD], "rounded": [], "proof": [PROOF]}
     content = {**handmade(at), **frame, **right, **values}
     return {**content, "seal": verifier.seal(content)}
 
@@ -147,6 +156,17 @@ def supplied(least: str) -> Forged:
     return at_least(least, proof, cuts=[[DOUGH, BREAD], [BREAD]], **TWO_SALTS)
 
 
+def rounded(least: str, weight: str) -> Forged:
+    """Return a certificate that salt is bought and bread made, both by twos, which is right for 2."""
+    goal = goals(FROM_TWO, SALT, BREAD)
+    amounts = [[1, [], [[BREAD, 2]]], [3, [], [[SALT, 2]]]]
+    return at_least(
+        *(least, {"rounded": [[0, weight], [1, weight]]}),
+        **{**goal, "items": items([[SALT, 1]], (), [[SALT, 2]], amounts), "at": FROM_TWO},
+        rounded=[{"balance": [[SALT, "1/3"]]}, {"balance": [[BREAD, "1/3"]]}],
+    )
+
+
 FORGED: dict[str, Forged] = {
     # --- the frame
     "verify_plan: below level 3 nothing says what is used up: contents decide": plain(level=2, at=LEVEL),
@@ -190,6 +210,11 @@ FORGED: dict[str, Forged] = {
     "kept: a unit that never succeeds is not compared": at_least(
         {"3/4": "1"}, {"balance": [[BREAD, {"3/4": "1"}]]}, objective=["success"], at=NEVER, stays=KIND
     ),
+    "_read_rounded: expected sums of conditions": plain(rounded=[{"more": [], "balance": [[BREAD, "1/2"]]}]),
+    "_read_rounded: what is rounded has a weight that is not above zero": plain(
+        rounded=[{"balance": [[BREAD, "-1/2"]]}]
+    ),
+    "_round: a sum is rounded that is whole": plain(rounded=[{"balance": [[BREAD, "1"]]}], stays=KIND),
     "_require_enough: the weights do not add up to enough": plain(proof=[BREAD_ONCE]),
     "__init__: an objective that is not before this one is given a weight": at_least(
         "0", {"levels": [[0, "1"]]}
@@ -197,7 +222,7 @@ FORGED: dict[str, Forged] = {
     "_cross: cut … holds neither a goal nor what the unit asks for": at_least(
         "3", proving(weights=[[0, "1"]]), cuts=[[RARE, GOLD]]
     ),
-    "_balance: what never runs out has no balance": plain(
+    "balance: what never runs out has no balance": plain(
         proof=[{"balance": [[FLOUR, "1"], *PROOF["balance"]]}]
     ),
     # --- items
@@ -227,7 +252,7 @@ FORGED: dict[str, Forged] = {
 PLACES: dict[str, Forged] = {
     "expected items and their copies in stock": plain(items=items([[SALT, True]])),
     "expected the format": plain(format="a song"),
-    "expected version 2 of the format": plain(version=99),
+    "expected version 3 of the format": plain(version=99),
     "expected the keys": plain(more=1),
     "not a claim about level 3": plain(level=3.0),
     "the seal does not match: something was changed": Forged(certificate() | {"seal": "0"}, PLAIN),
@@ -247,6 +272,8 @@ PLACES: dict[str, Forged] = {
     "balance: expected weights in order, each once": plain(proof=[{"balance": [[BREAD, "2"], [DOUGH, "1"]]}]),
     "balance: a weight is not above zero": at_least("1", {"balance": [[SALT, "-1"]]}),
     "expected the id of a unit that is supplied": plain(proof=[proving(supply=[[SALT, -1, "1"]])]),
+    "expected the number of an earlier rounded sum": plain(rounded=[{"rounded": [[0, "1/2"]]}]),
+    "expected the number of a rounded sum": plain(proof=[proving(rounded=[[0, "1"]])]),
     "expected the id of a node in a supply": plain(proof=[proving(supply=[[-1, 0, "1"]])]),
     "expected the id of a node in a balance": plain(proof=[{"balance": [[-1, "1"], *PROOF["balance"]]}]),
 }
@@ -265,6 +292,7 @@ def test_right_certificates_pass(tmp_path: Path) -> None:
     )
     bounds = (
         supplied("3"),
+        rounded("2", "1"),
         at_least("3", {"balance": [[SALT, "1"], [DOUGH, "3"], [BREAD, "4"]]}, **TWO_SALTS),
         at_least("1", BREAD_ONCE),
         at_least(
@@ -332,6 +360,14 @@ def test_what_is_nested_too_deeply_is_refused(tmp_path: Path) -> None:
 # --- what refuses by what it computes
 
 PARTS = {
+    "a sum is at least the next whole number": Part(
+        "for unit, n in coefficients.items()}, math.ceil(least)",
+        "for unit, n in coefficients.items()}, math.ceil(least) + 1",
+        rounded("4", "1"),
+    ),
+    "a coefficient is rounded by its part": Part(
+        "below + min(Fraction(1), (coefficient - below) / fraction)", "Fraction(below)", rounded("4", "2")
+    ),
     "copies in stock need not be made": Part(
         "wanted - self._initial(o, weight)",
         "wanted",
@@ -456,8 +492,8 @@ PARTS = {
         at_least("9", BREAD_OFTEN),
     ),
     "what is left of a limit is taken from the bound": Part(
-        "-limit.max_sum",
-        "0",
+        "self._demand(weight, -limit.max_sum)",
+        "self._demand(weight, 0)",
         at_least(
             "3",
             {"limits": [[0, "1"]], "balance": [[DOUGH, "2"], [BREAD, "4"]]},

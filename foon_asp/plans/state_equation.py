@@ -1,0 +1,237 @@
+"""The state equation alone, strengthened by mixed-integer rounding: bounds, and counts of least cost.
+
+The rows are about counts only, without indicators. Rows of the inverse basis of its relaxation are weights of
+rows which add up to one that a fractional solution violates once it is rounded (Gomory 1958; Nemhauser &
+Wolsey 1990): where ``sum a[j] x[j] >= b`` holds of counts from 0, and ``f`` is the fractional part of ``b``,
+so does ``sum (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)``. Weights may be any numbers
+from 0, so floats only suggest them.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from operator import itemgetter
+
+from foon_asp.plans.conditions import (
+    Balance,
+    Condition,
+    Landmark,
+    Level,
+    Remainder,
+    Rounded,
+    Sum,
+    SumLimit,
+    Supply,
+)
+from foon_asp.plans.flows import Flows
+from foon_asp.plans.tuning import PLANS
+from foon_asp.plans.whole_program import INTEGRALITY, Solved, WholeProgram
+
+_Row = tuple[dict[int, int], int]
+
+
+class RoundedProgram:
+    """A program over counts whose rows are sums of conditions, to which rounded rows are added."""
+
+    def __init__(self, columns: int, expired: Callable[[], bool]) -> None:
+        self.program = WholeProgram(columns, expired)
+        self._conditions: list[Sequence[Condition]] = []  # of each row, if it is about counts alone
+
+    def add(self, conditions: Sequence[Condition], row: dict[int, int], least: int) -> None:
+        """Add the row that is the sum of conditions; without any, one that is not rounded."""
+        self.program.row(row, least)
+        self._conditions.append(conditions)
+
+    @property
+    def rounded(self) -> Iterator[tuple[Rounded, dict[int, int], int]]:
+        """The rounded rows, with the conditions that they follow from."""
+        for number, conditions in enumerate(self._conditions):
+            for condition in conditions:
+                if isinstance(condition, Rounded):
+                    yield condition, *self.program.row_of(number)
+
+    def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
+        """Add rounded rows while they raise the bound; return the last solution of the relaxation.
+
+        A bound above ``cutoff`` is enough; without one, none is proved.
+        """
+        program, value, stalled = self.program, -math.inf, 0
+        while True:
+            if cutoff is None:
+                solved = Solved(program.relaxation(costs).x, -math.inf)
+            else:
+                solved = program.solve(costs, cutoff)
+            if solved.x is None or (cutoff is not None and solved.bound > cutoff):
+                return solved
+            previous, value = value, sum(cost * solved.x[a] for a, cost in costs.items())
+            stalled = stalled + 1 if value < previous + INTEGRALITY * max(1.0, abs(previous)) else 0
+            if stalled > PLANS.stalled_rounds or not self._round(solved.x):
+                return solved
+
+    def _round(self, x: Sequence[float]) -> bool:
+        """Add the rounded rows that a solution violates most; return whether there are any."""
+        violated: dict[tuple[tuple[int, int], ...], tuple[float, Rounded, _Row]] = {}
+        for floats in self.program.inverse_rows(x):
+            for sign in (1, -1):
+                shares = {row: _share(sign * floats[row]) for row in floats if self._conditions[row]}
+                rounded = self._rounded({row: share for row, share in shares.items() if share})
+                if rounded is None:
+                    continue
+                condition, (row, least) = rounded
+                length = math.sqrt(sum(coefficient**2 for coefficient in row.values()))
+                violation = (least - sum(n * x[column] for column, n in row.items())) / length
+                if violation > INTEGRALITY:
+                    violated[tuple(sorted(row.items()))] = violation, condition, (row, least)
+        for _, condition, (row, least) in sorted(violated.values(), key=itemgetter(0))[-PLANS.rounded_rows :]:
+            self.add((condition,), row, least)
+        return bool(violated)
+
+    def _rounded(self, weights: Mapping[int, Fraction]) -> tuple[Rounded, _Row] | None:
+        """Return the rounded sum of weighted rows, in whole numbers; ``None`` where it says nothing."""
+        parts = math.lcm(*(weight.denominator for weight in weights.values()))
+        coefficients: dict[int, int] = {}
+        least = 0
+        for number, weight in weights.items():
+            times = int(weight * parts)
+            row, wanted = self.program.row_of(number)
+            least += times * wanted
+            for column, coefficient in row.items():
+                coefficients[column] = coefficients.get(column, 0) + times * coefficient
+        fraction = least % parts
+        if not fraction:
+            return None
+        sums = {
+            column: n // parts * fraction + min(fraction, n % parts) for column, n in coefficients.items()
+        }
+        least = -(-least // parts) * fraction
+        common = math.gcd(least, *sums.values())
+        scale = Fraction(fraction, common)
+        if scale > PLANS.rounding_denominator:
+            return None
+        conditions = (
+            (condition, weight) for row, weight in weights.items() for condition in self._conditions[row]
+        )
+        return Rounded(tuple(conditions), scale), (
+            {column: n // common for column, n in sums.items() if n},
+            least // common,
+        )
+
+
+def _share(weight: float) -> Fraction:
+    """Return the fractional part of a weight: whole multiples of a row only add what is whole already."""
+    share = Fraction(weight).limit_denominator(PLANS.rounding_denominator)
+    return share - math.floor(share)
+
+
+class StateEquation(RoundedProgram):
+    """The conditions on counts alone as rows: balances, sums of executions, levels, and rounded rows.
+
+    Landmarks, supplies and remainders may be added, for which a few actions get an indicator.
+    """
+
+    def __init__(
+        self,
+        flows: Flows,
+        limits: Sequence[SumLimit],
+        caps: Sequence[int | None],
+        expired: Callable[[], bool],
+    ) -> None:
+        super().__init__(len(flows.asks), expired)
+        self._flows, self._expired = flows, expired
+        for action, cap in enumerate(caps):
+            if cap is not None:
+                self.program.cap(action, cap)
+        self._caps = list(self.program.upper)
+        self._indicators: dict[int, int] = {}  # columns, of a few actions
+        for o, change, least in flows.balances():
+            self.add((Balance(o),), change, least - flows.start.get(o, 0))
+        for number, (weights, limit, at_least, used) in enumerate(limits):
+            sign = 1 if at_least else -1
+            if not used:
+                self.add((Sum(number),), {a: sign * weight for a, weight in weights.items()}, sign * limit)
+
+    def keep(self, level: Level) -> None:
+        """Add the row that counts are as good by a level as the incumbent."""
+        # without the costs of items, which have no columns, the row is weaker
+        costs = level.measure.costs
+        self.add((level,), {a: -cost for a, cost in enumerate(costs) if cost}, -level.max_cost)
+
+    def add_landmark(self, landmark: Landmark) -> None:
+        """Add the row of a landmark, of executions of its members, if it can be stated."""
+        row, least = dict.fromkeys(landmark.members, 1), 1
+        indicator = None if landmark.action is None else self._indicator(landmark.action)
+        if indicator is not None:
+            row[indicator], least = -1, 0
+        if not landmark.stock and (landmark.action is None) == (indicator is None):
+            self.add((), row, least)
+
+    def add_copies(self, condition: Supply | Remainder) -> None:
+        """Add the row of copies that an action asks for or leaves, if it can be stated."""
+        indicator = self._indicator(condition.action)
+        if indicator is not None:
+            row = {**self._flows.change(condition), indicator: -condition.copies}
+            self.add((), row, -self._flows.start.get(condition.object, 0))
+
+    def _indicator(self, action: int) -> int | None:
+        """Return the column that is 1 if an action is executed; ``None`` if it has no bound on its count."""
+        max_count = self._caps[action]
+        if action not in self._indicators and max_count is not None:
+            self._indicators[action] = self.program.column(0, 1)
+            self.add((), {self._indicators[action]: max_count, action: -1}, 0)
+        return self._indicators.get(action)
+
+    def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
+        """Add rounded rows as :class:`RoundedProgram` does, first of all those about alternatives."""
+        self._costs: Mapping[int, int] | None = costs
+        return super().strengthen(costs, cutoff)
+
+    def _round(self, x: Sequence[float]) -> bool:
+        costs, self._costs = self._costs, None
+        return (costs is not None and self._round_alternatives(costs)) or super()._round(x)
+
+    def _round_alternatives(self, costs: Mapping[int, int]) -> bool:
+        """Add rounded rows of a smaller program, in which objects of one role are one; return whether any.
+
+        Its rows are the sums of the balances of such objects, as of planks of any wood, and actions are one
+        column that are alike in all rows and in their cost. A row that is about one of many alternatives
+        says little: the solution changes over to another one.
+        """
+        roles = self._flows.roles
+        sums: dict[object, tuple[list[Condition], dict[int, int], int]] = {}
+        for number, conditions in enumerate(self._conditions):
+            for condition in conditions:
+                role = roles[condition.object] if isinstance(condition, Balance) else -1 - number
+                parts, total, least = sums.get(role, ([], {}, 0))
+                row, wanted = self.program.row_of(number)
+                for column, coefficient in row.items():
+                    total[column] = total.get(column, 0) + coefficient
+                sums[role] = [*parts, condition], total, least + wanted
+        columns: dict[tuple[int, ...], list[int]] = {}
+        for action in range(len(self._flows.asks)):
+            alike = (costs.get(action, 0), *(total.get(action, 0) for _, total, _ in sums.values()))
+            columns.setdefault(alike, []).append(action)
+        if len(columns) == len(self._flows.asks):
+            return False
+        merged = RoundedProgram(len(columns), self._expired)
+        members = list(columns.values())
+        for parts, total, least in sums.values():
+            row = {column: total.get(actions[0], 0) for column, actions in enumerate(members)}
+            merged.add(parts, {column: n for column, n in row.items() if n}, least)
+        earlier = len(list(merged.rounded))
+        merged.strengthen({column: alike[0] for column, alike in enumerate(columns) if alike[0]})
+        for condition, row, least in list(merged.rounded)[earlier:]:
+            self.add((condition,), {a: n for column, n in row.items() for a in members[column]}, least)
+        return len(list(merged.rounded)) > earlier
+
+    def optimum(self, costs: Sequence[int]) -> list[float] | None:
+        """Return whole values of least cost in floats; ``None`` if HiGHS finds none, or when time is up."""
+        objective = {a: cost for a, cost in enumerate(costs) if cost}
+        x = self.strengthen(objective).x
+        if x is None or all(abs(value - round(value)) < INTEGRALITY for value in x):
+            return x
+        least = sum(cost * x[a] for a, cost in objective.items())
+        # HiGHS has cuts of its own, and is slower with rows of great coefficients
+        program = self.program.without(
+            {row for row, parts in enumerate(self._conditions) if parts and isinstance(parts[0], Rounded)}
+        )
+        return program.whole_optimum(objective, math.ceil(least - INTEGRALITY * max(1.0, abs(least))))

@@ -1,0 +1,58 @@
+"""Numbers that steer the stages of this room; none of them decides what is proved, only how fast.
+
+Stages read the object at the end of this module when they are called.
+"""
+
+from typing import NamedTuple
+
+
+class PlanTuning(NamedTuple):
+    """When the searches for counts, orders and proofs end, and what they begin with.
+
+    ``rounded_rows``: rows that are added for one solution of the state equation, at most.
+    ``stalled_rounds``: rounds of such rows that may leave the bound as it is.
+    ``role_depth``: how far objects are told apart, of which rounded rows count some as alternatives.
+    ``rounding_denominator``: greatest denominator of the weights that rounded rows are made of.
+    ``equation_nodes``: nodes of branch and bound over the state equation, before actions get indicators.
+    ``probes``: actions of which it is asked at the root whether they can be executed twice.
+    ``nodes``: nodes of branch and bound over counts, after which a proof is given up.
+    ``uncapped_nodes``: the same where nothing bounds the number of executions.
+    ``landmark_orders``: orders in which landmarks are grown before a search for violated ones ends.
+    ``first_executions``: executions of an action for each copy wanted, at most, where counts are looked for.
+    ``last_executions``: the same after counts as great as that.
+    ``leaves``: leaves of a proof by branching, in a certificate.
+    ``depth``: of the branching in such a proof, which is checked with as many calls.
+    ``order_steps``: runs that a search for an order tries; most orders take as many as there are actions.
+    ``single_executions``: executions up to which every order is tried, one execution at a time.
+    ``stocks``: numbers of copies of the stock that an order is looked for with.
+    ``unordered_counts``: counts without an order, after which clingo searches all counts at once.
+    ``clingo_executions``: executions in one such search.
+    ``exact_cost``: largest cost that is counted unrounded.
+    ``cost_steps``: steps of the greatest cost where costs are rounded.
+    ``extra_executions``: executions of a unit beyond its count, in the search of clingo for a first plan.
+    """
+
+    rounded_rows: int = 20
+    stalled_rounds: int = 10
+    role_depth: int = 2
+    rounding_denominator: int = 50_000
+    equation_nodes: int = 200
+    probes: int = 60
+    nodes: int = 20_000
+    uncapped_nodes: int = 1_000
+    landmark_orders: int = 3
+    first_executions: int = 8
+    last_executions: int = 1_000
+    leaves: int = 1_000
+    depth: int = 150
+    order_steps: int = 20_000
+    single_executions: int = 300
+    stocks: int = 200
+    unordered_counts: int = 10
+    clingo_executions: int = 500
+    exact_cost: int = 10**12
+    cost_steps: int = 10**6
+    extra_executions: int = 4
+
+
+PLANS = PlanTuning()
