@@ -52,13 +52,13 @@ class TraitReader:
         if signature == AVAILABLE:
             unit = f"{next(self._fresh)} unit"
             return [[(USE, 0, (unit,)), (("gives", 2), 0, (unit, *terms))]]
-        found = []
+        disjuncts: list[list[_Atom]] = []
         for clause in self._clauses.get(signature, ()):
             assert clause.head is not None
             pairs = zip(clause.head.arguments, terms, strict=True)
             names = {str(one): term for one, term in pairs if one.ast_type == ASTType.Variable}
-            found += self._disjuncts(clause.body, names, (*above, signature))
-        return found
+            disjuncts += self._disjuncts(clause.body, names, (*above, signature))
+        return disjuncts
 
     def _term(self, term: AST, names: dict[str, _Term]) -> _Term:
         symbol = value(term, self._constants)

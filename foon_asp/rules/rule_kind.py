@@ -118,8 +118,8 @@ class Analysis:
         statements = tuple(statements)
         self.definitions = [statement for statement in statements if statement.ast_type == ASTType.Definition]
         self.constants: Constants = constant_values(self.definitions, settings)
-        known = {name: symbol for name, symbol in self.constants.items() if symbol is not None}
-        self.constant_texts = [f"#const {name} = {symbol}." for name, symbol in known.items()]
+        symbols = {name: symbol for name, symbol in self.constants.items() if symbol is not None}
+        self.constant_texts = [f"#const {name} = {symbol}." for name, symbol in symbols.items()]
         self.statements = [statement for statement in statements if statement.ast_type not in _WITHOUT_EFFECT]
         clauses_by_rule = [
             list(clauses(statement, number, self.constants)) if statement.ast_type == ASTType.Rule else []
@@ -240,9 +240,9 @@ class Analysis:
         if rule.kind is not Kind.FACT and len(live) == 1 and (row := self.translator.row(live[0])):
             self.rows[number] = row
         if rule.kind is Kind.REQUIRING:
-            found = [self.translator.at_least_one(clause) for clause in live]
-            at_least_ones = tuple(one for one in found if one is not None)
-            if len(at_least_ones) < len(found):
+            readings = [self.translator.at_least_one(clause) for clause in live]
+            at_least_ones = tuple(one for one in readings if one is not None)
+            if len(at_least_ones) < len(readings):
                 return rule
             self.at_least_ones[number] = at_least_ones
             return rule._replace(one_of=True)

@@ -127,7 +127,7 @@ class Translator:
         program = [f"{self._head('asks', of, _WORLD_OF_NOTHING)} :- {'; '.join(when) or '#true'}."]
         rows: list[Sequence[Trait]] = []
         always = all(getattr(clause.body[n], "holds", None) for n in others)
-        for written, conjuncts in (one for found in alternatives for one in found or ()):
+        for written, conjuncts in (pair for pairs in alternatives for pair in pairs or ()):
             body = "; ".join([*when, *written, f"__world({self._world})"])
             program.append(f"{self._head('meets', of, self._world)} :- {body}.")
             rows += TraitReader(self._clauses, self._constants).rows(conjuncts)
@@ -186,14 +186,14 @@ class Translator:
             return None
         allowed = self._allowed(aggregate.guards[0].comparison, aggregate.guards[0].term)
         self._numbers += 1
-        found = [
+        element_weights = [
             self._weights(element, list(node.condition))
             for element, node in zip(aggregate.elements, elements, strict=True)
         ]
-        used = {signature for weights in found if weights for signature in weights[1:]}
-        if allowed is None or None in found or len(used) != 1:
+        used = {signature for weights in element_weights if weights for signature in weights[1:]}
+        if allowed is None or None in element_weights or len(used) != 1:
             return None
-        program = tuple(weights[0] for weights in found if weights)
+        program = tuple(weights[0] for weights in element_weights if weights)
         return Row(self._numbers, program, allowed[1], allowed[0], used == {USE})
 
     def _weights(self, element: Element, condition: Sequence[AST]) -> tuple[str, Signature] | None:
@@ -212,8 +212,8 @@ class Translator:
         position = next(n for n, one in enumerate(element.condition) if _executes(one))
         others = [one for n, one in enumerate(element.condition) if n != position]
         for factor in map(str, count):
-            elsewhere = [name for one in others for name in variables(*_terms_of(one))]
-            if written.count(factor) != 1 or factor in {*elsewhere, str(unit), "_"}:
+            other_names = [name for one in others for name in variables(*_terms_of(one))]
+            if written.count(factor) != 1 or factor in {*other_names, str(unit), "_"}:
                 return None
             written.remove(factor)
         if len(written) > 1 or str(last) != str(unit) or self._looks_of(others):
@@ -385,8 +385,8 @@ def _executes(conjunct: Conjunct) -> bool:
 
 def _executions(condition: Iterable[Conjunct]) -> tuple[AST, ...] | None:
     """Return the arguments of the one literal of a condition that states executions, else ``None``."""
-    found = [one for one in condition if _executes(one)]
-    return found[0].arguments if len(found) == 1 and isinstance(found[0], Literal) else None
+    literals = [one for one in condition if _executes(one)]
+    return literals[0].arguments if len(literals) == 1 and isinstance(literals[0], Literal) else None
 
 
 def _counts(condition: Iterable[Conjunct], count: AST) -> bool:
