@@ -21,7 +21,7 @@ from foon_asp.hypergraph.covering import UnsolvedError
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
-from foon_asp.hypergraph.optimality_proof import Branch, Cases, CostFixing, Hopeless, Packing, Proof
+from foon_asp.hypergraph.proof_tree import Branch, Cases, CostFixing, Hopeless, Packing, Proof
 
 Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
 

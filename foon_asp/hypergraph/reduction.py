@@ -31,7 +31,7 @@ from foon_asp.problem import Objective, Problem
 
 if TYPE_CHECKING:  # few questions need it
     from foon_asp.hypergraph.cost_partition import SharedCosts
-    from foon_asp.hypergraph.optimality_proof import Cases
+    from foon_asp.hypergraph.proof_tree import Cases
 
 Expired = Callable[[], bool]
 Guard = Callable[[], AbstractContextManager[object]]
