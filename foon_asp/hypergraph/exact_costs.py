@@ -12,12 +12,10 @@ from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.lexicographic import Lexicographic
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 
-_COARSE = 1000  # scale of -ln(rate) and of fractions in estimates
 _SCALE = 10**40  # scale of logarithms where rounding must not decide
 _ROUNDED = 10**20  # more than the sum of all rounding errors at that scale
 _FINE = Context(prec=60, rounding=ROUND_CEILING)
 _SHOWN = Context(prec=18, rounding=ROUND_CEILING)  # of bounds on success
-_LONGEST = 50_000  # sum of exponents up to which products of rates are compared
 
 
 class TooFineError(Exception):
@@ -189,7 +187,8 @@ class ExactCosts:
 
 
 def _large(vector: Sequence[int]) -> bool:
-    return sum(map(abs, vector)) > _LONGEST
+    """Return whether products of rates with these exponents take too long to be compared."""
+    return sum(map(abs, vector)) > 50_000
 
 
 class _Vectors:
@@ -229,20 +228,19 @@ class CoarseCosts:
             own = self._by_unit.get(action)
             return self._by_motion[self._problem.network.motions[action]] if own is None else own
         cost = self._problem.figure(self._objective, action)
-        return int(cost if self._objective.row.whole else cost * _COARSE)
+        return int(cost if self._objective.row.whole else cost * 1000)
 
 
 def _coarse(rate: Fraction) -> int:
+    """Return ``-ln(rate)`` in thousandths; for a rate of 0, as for one of some ``10**-43``."""
     if not rate:
-        return 100 * _COARSE
-    return int((math.log(rate.denominator) - math.log(rate.numerator)) * _COARSE)  # a float may not hold it
+        return 100_000
+    return int((math.log(rate.denominator) - math.log(rate.numerator)) * 1000)  # a float may not hold it
 
 
 def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
-    """Return for each rate the sum of the rounded scaled logarithms of its coprime factors.
-
-    Raises :class:`TooFineError` for denominators above 10^9, where the logarithms may not tell rates apart.
-    """
+    """Return for each rate the sum of the rounded scaled logarithms of its coprime factors."""
+    # logarithms at this scale distinguish rates up to such denominators for sure
     if not all(0 < rate <= 1 and rate.denominator <= 10**9 for rate in rates):
         raise TooFineError
     base = coprime_base(n for rate in rates for n in rate.as_integer_ratio())

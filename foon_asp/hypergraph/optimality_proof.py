@@ -21,7 +21,7 @@ from typing import Protocol
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.branch_and_bound import branched
 from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
-from foon_asp.hypergraph.covering import Covering
+from foon_asp.hypergraph.covering import TOLERANCE, Covering
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.hypergraph.hypergraph import Hypergraph
@@ -38,10 +38,6 @@ from foon_asp.hypergraph.proof_tree import (
     cuts_of,
 )
 from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
-
-_SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
-_EXCESS_COST_FACTOR = 1000  # times the goal of the proof: what exceeding a limit by 1 costs an LP solution
-
 
 # Continues the proof for derivations without the given actions, from the given cuts.
 Others = Callable[[frozenset[int], Collection[frozenset[int]]], Proof]
@@ -112,7 +108,7 @@ class Prover:
             # rates may all be next to 1, where a solver would see nothing
             unit = largest or 1.0 if rates else 1.0
             self._scales.append(scale / unit)
-            scale *= 1e-4 / (1 + largest / unit)  # the next level weighs far less than this one
+            scale *= 1e-4 / (1 + largest / unit)  # so that a level weighs much less than the one before
 
     def scaled(self, vector: Vector) -> float:
         """Return a cost as one float: a sum in which each level weighs much less than the one before."""
@@ -451,11 +447,7 @@ class _Node:
         floats = {cost: prover.scaled(cost) for cost in set(self._costs)}
         self._floats = [floats[cost] for cost in self._costs]
         self._limits = [self._limited(column, limit) for column, limit in enumerate(prover._limits)]
-        excess_cost = (
-            (Fraction(1),) * prover._order.width
-            if goal is None
-            else times(goal, Fraction(_EXCESS_COST_FACTOR))
-        )
+        excess_cost = (Fraction(1),) * prover._order.width if goal is None else times(goal, Fraction(1000))
         self._costs += [excess_cost] * len(self._limits)
         self._covering = Covering([*self._floats, *[prover.scaled(excess_cost)] * len(self._limits)])
         for amounts, max_amount in self._limits:
@@ -497,8 +489,7 @@ class _Node:
         """
         order = self._prover._order
         wanted = math.inf if enough is None else self._prover.scaled(enough)
-        if enough is not None and len(enough) == len(self._prover._multiples) == 1:
-            # from more than one step less, bounds are rounded up
+        if enough is not None and len(enough) == len(self._prover._multiples) == 1:  # more than one step less
             wanted -= 0.99 * self._prover.scaled((self._prover._multiples[0],))
         while True:
             self._check()
@@ -540,7 +531,7 @@ class _Node:
         halves = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])
             for column, x in enumerate(self.shares[: len(self._actions)])
-            if abs(x - 0.5) < 0.499999
+            if abs(x - 0.5) < 0.5 - TOLERANCE
         ]
         return min(halves)[2] if halves else None
 
@@ -550,17 +541,14 @@ class _Node:
         return sorted({action for action, x in shares if round(x)} | self._used)
 
     def _separate(self) -> bool:
-        """Add violated cuts with disjoint landmarks; return whether any of a few random orders has some."""
-        return any(self._add_disjoint_cuts() for _ in range(tuning.PROOF.orders))
-
-    def _add_disjoint_cuts(self) -> bool:
+        """Add violated cuts with disjoint landmarks; return whether there are any."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         count = len(self._actions)
         shares, costs = np.zeros((2, len(self._prover._costs)))
         shares[self._actions], costs[self._actions] = self.shares[:count], self._floats
         random_number = self._prover._random.random
-        cuts = disjoint_violated_cuts(self._cutter, self._used, shares, costs, random_number, _SATISFIED)
+        cuts = disjoint_violated_cuts(self._cutter, self._used, shares, costs, random_number, TOLERANCE)
         violated = list(islice(cuts, tuning.RELAXATION.cuts))
         self.admit(violated)
         return bool(violated)
