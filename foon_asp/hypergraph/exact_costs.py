@@ -216,19 +216,21 @@ class CoarseCosts:
     def __init__(self, problem: Problem, objective: Objective) -> None:
         self._problem, self._objective = problem, objective
         self._multiplied = multiplies(objective)
-        rates, own = (problem.rates, problem.own_rates) if self._multiplied else (None, {})
-        self._by_motion = {motion: _coarse(rate) for motion, rate in (rates or {}).items()}
-        self._by_unit = {unit: _coarse(rate) for unit, rate in own.items()}
+        self._of_rates: dict[int | str, int] = {}  # by motion, or by unit with a rate of its own
 
     def __call__(self, action: int) -> int:
         """Return the approximate cost of an action."""
-        if action >= len(self._problem.network):
+        problem = self._problem
+        if action >= len(problem.network):
             return self._objective.row.item
         if self._multiplied:
-            own = self._by_unit.get(action)
-            return self._by_motion[self._problem.network.motions[action]] if own is None else own
-        cost = self._problem.figure(self._objective, action)
-        return int(cost if self._objective.row.whole else cost * 1000)
+            rated = action if action in problem.own_rates else problem.network.motions[action]
+            cost = self._of_rates.get(rated)
+            if cost is None:
+                cost = self._of_rates[rated] = _coarse(problem.rate(action))
+            return cost
+        figure = problem.figure(self._objective, action)
+        return int(figure if self._objective.row.whole else figure * 1000)
 
 
 def _coarse(rate: Fraction) -> int:
