@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from foon_asp.problem import Costs, Objective, Problem
 
 if TYPE_CHECKING:  # few questions need it
-    from foon_asp.hypergraph.optimality_proof import Cases
+    from foon_asp.hypergraph.proof_tree import Cases
 
 
 class Status(StrEnum):

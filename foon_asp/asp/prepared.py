@@ -14,13 +14,13 @@ from foon_asp.deadline import Deadline
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import (
+    BOUND,
     NONE,
     Bounds,
     Listener,
     Reduced,
     Reduction,
     SolvedGoals,
-    bound_under_rules,
     reduce,
     reduce_under_rules,
 )
@@ -207,8 +207,8 @@ def prepare(
         if listener is not None and (program.own or _limits_unsettled(prepared)):
             presolve = partial(reduce, solved=None if prepared.kept else solved)
             if prepared.unsettled:
-                under_rules = bound_under_rules if brief else reduce_under_rules
-                presolve = partial(under_rules, redundant=prepared.redundant)
+                course = BOUND if brief else None
+                presolve = partial(reduce_under_rules, redundant=prepared.redundant, course=course)
             reduced = presolve(
                 kept,
                 by,

@@ -9,7 +9,7 @@ from foon_asp.certificate.coverage import Coverage
 from foon_asp.hypergraph.exact_optimum import Limit
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector
-from foon_asp.hypergraph.optimality_proof import Cases
+from foon_asp.hypergraph.proof_tree import Cases
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.proof import ruled, verifier
 

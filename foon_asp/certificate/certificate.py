@@ -12,19 +12,10 @@ from typing import Any, NamedTuple
 from foon_asp.certificate.arrays import Arrays, written
 from foon_asp.certificate.coverage import NOTHING, Coverage, needed
 from foon_asp.errors import BugError
-from foon_asp.hypergraph.branch_and_bound import branched
 from foon_asp.hypergraph.cut import Cut
 from foon_asp.hypergraph.lexicographic import Vector
-from foon_asp.hypergraph.optimality_proof import (
-    Broken,
-    Cases,
-    CheaperError,
-    CostFixing,
-    Hopeless,
-    Packing,
-    Proof,
-    Prover,
-)
+from foon_asp.hypergraph.optimality_proof import CheaperError, Prover
+from foon_asp.hypergraph.proof_tree import Broken, Cases, CostFixing, Hopeless, Packing, Proof
 from foon_asp.problem import Costs, Known, Objective, Problem
 from foon_asp.proof import verifier
 from foon_asp.proof.verify_plan import verify_any
@@ -156,7 +147,6 @@ def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence
         limits=arrays.limits,
         rules=rules,
         multiples=arrays.multiples,
-        search=branched,
     )
 
 

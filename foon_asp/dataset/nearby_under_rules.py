@@ -19,7 +19,7 @@ from foon_asp.asp.assembly import ReachOfRules, program_of, reach_of_rules, vary
 from foon_asp.asp.optimum import solve
 from foon_asp.dataset.nearby import Nearby
 from foon_asp.dataset.nearby_optimum import REFINEMENT, least_with_more, near_goals, solve_nearby
-from foon_asp.hypergraph import bound_under_rules
+from foon_asp.hypergraph import BOUND, reduce_under_rules
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.store.outline import FAR, Mask
 from foon_asp.store.unit_distances import UnitDistances, greatest_cost
@@ -168,7 +168,10 @@ class _Search:
         nearby, deadline = self._nearby, self._settings.begun
         while nearby.units <= NEARBY.max_units:
             relaxed = nearby.relaxed
-            subproblem = bound_under_rules(relaxed, self._order, expired=lambda: deadline.passed).subproblem
+            relaxed_bound = reduce_under_rules(
+                relaxed, self._order, expired=lambda: deadline.passed, course=BOUND
+            )
+            subproblem = relaxed_bound.subproblem
             if subproblem is None:
                 return None
             units = subproblem.units_within(subproblem.costs.of(costs), lambda: deadline.passed)

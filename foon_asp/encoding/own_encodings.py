@@ -5,7 +5,7 @@ changed in place runs, but is treated as one of the user.
 """
 
 import hashlib
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from foon_asp.errors import UserError
@@ -38,7 +38,13 @@ def exact_success() -> Path:
 
 
 def digest(file: Path) -> str:
-    """Return the SHA-256 of a text with the line ends of Unix."""
+    """Return the SHA-256 of a text with the line ends of Unix; a file is read again once it has changed."""
+    state = file.stat()
+    return _digest(file, state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns)
+
+
+@lru_cache(maxsize=100)
+def _digest(file: Path, *_state: int) -> str:
     return hashlib.sha256(file.read_bytes().replace(b"\r\n", b"\n")).hexdigest()
 
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from foon_asp.hypergraph.exact_costs import ExactCosts as ExactCosts
     from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem as Subproblem
+    from foon_asp.hypergraph.reduction import BOUND as BOUND
     from foon_asp.hypergraph.reduction import Bounds as Bounds
     from foon_asp.hypergraph.reduction import Listener as Listener
     from foon_asp.hypergraph.reduction import Reduced as Reduced
-    from foon_asp.hypergraph.reduction import bound_under_rules as bound_under_rules
     from foon_asp.hypergraph.reduction import reduce as reduce
     from foon_asp.hypergraph.reduction import reduce_under_rules as reduce_under_rules
     from foon_asp.hypergraph.reductions import ALL as ALL
@@ -25,7 +25,7 @@ else:  # not for type checkers, which then know each name
     _MODULES = {"ExactCosts": "exact_costs", "Subproblem": "gap_bounded_subproblem"}
     _MODULES["SolvedGoals"] = "solved_goals"
     _MODULES |= dict.fromkeys(
-        ("Bounds", "Listener", "Reduced", "bound_under_rules", "reduce", "reduce_under_rules"), "reduction"
+        ("BOUND", "Bounds", "Listener", "Reduced", "reduce", "reduce_under_rules"), "reduction"
     )
     _MODULES |= dict.fromkeys(("ALL", "NONE", "SAFE", "Reduction", "parse_reductions"), "reductions")
 

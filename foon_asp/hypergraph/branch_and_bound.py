@@ -17,11 +17,11 @@ from typing import Any
 
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.cost_partition import stalled
-from foon_asp.hypergraph.covering import UnsolvedError
+from foon_asp.hypergraph.covering import TOLERANCE, UnsolvedError
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
-from foon_asp.hypergraph.optimality_proof import Branch, Cases, CostFixing, Hopeless, Packing, Proof
+from foon_asp.hypergraph.proof_tree import Branch, Cases, CostFixing, Hopeless, Packing, Proof
 
 Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
 
@@ -183,7 +183,7 @@ class Branching:
                 return True
             if self._stopped(expired):
                 return False
-            halves = self._np.flatnonzero(free & (shares > 1e-6) & (shares < 1 - 1e-6))
+            halves = self._np.flatnonzero(free & (shares > TOLERANCE) & (shares < 1 - TOLERANCE))
             if not len(halves):
                 chosen = self._rounded_derivation(cutter, shares, node)
                 if not chosen:
@@ -298,7 +298,7 @@ class Branching:
     def _packing(self, node: _Node) -> tuple[Packing, set[int]]:
         """Return the cost partition of a node, and the forbidden actions that its proof relies on."""
         weights: list[tuple[Cut, tuple[Fraction]]] = []
-        self._length_budget -= 5000  # for each partition, beside its own length: limits the branching depth
+        self._length_budget -= 5000  # which limits the depth of the branching, too
         for row, weight in self._carrying(node):
             cut = self._stated(self._relaxation.cuts[row], node)
             self._length_budget -= len(cut.objects) + len(cut.members)

@@ -13,14 +13,10 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.covering import UnsolvedError, Weighed
+from foon_asp.hypergraph.covering import ROUGH_TOLERANCE, UnsolvedError, Weighed
 from foon_asp.hypergraph.cut import Cutter
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
-
-_SMALL = 0.5  # of the actions: the size of a cutter for a single target, at most
-_TWICE = 1.001  # a cut with a greater sum of LP values is not tight
-_LOST = Fraction(1, 100)  # how much the rounded bound may be below the LP value
 
 
 class SharedCosts(NamedTuple):
@@ -110,7 +106,7 @@ class CostPartitioning:
                     continue
                 shared = self._shared(relaxed)
                 lost = Fraction(relaxed.value) * self._relaxation.dearest - Fraction(shared.bound, PARTS)
-                if not self._interior_point or lost < _LOST:
+                if not self._interior_point or lost < Fraction(1, 100):
                     self.converged = True
                     return shared
                 self._interior_point = False
@@ -149,13 +145,13 @@ class CostPartitioning:
         count, targets = len(self._relaxation.actions), self._cutter.targets
         alone: list[Cutter] = []
         others: list[int] = []
-        effort = tuning.RELAXATION.target_cutters * count if len(targets) > 1 else 0
+        effort = tuning.RELAXATION.cuts * count if len(targets) > 1 else 0
         everything = bytearray(b"\1") * graph.size
         for target in targets:
             if effort > 0:
                 cutter = Cutter(graph, [target], reachable=everything)
                 effort -= len(cutter.actions)
-                if len(cutter.actions) <= count * _SMALL:
+                if 2 * len(cutter.actions) <= count:
                     alone.append(cutter)
                     continue
             others.append(target)
@@ -169,11 +165,11 @@ class CostPartitioning:
         capacity, rows = relaxation.in_parts(), relaxation.rows
         dual_values = [*solved.weights] + [0.0] * (len(rows) - len(solved.weights))  # for rows added since
         weights = relaxation.shared_out(enumerate(dual_values), capacity)
-        whole, cuts = relaxation.whole, relaxation.cuts
+        whole, cuts, tight = relaxation.whole, relaxation.cuts, 1 + ROUGH_TOLERANCE
         return SharedCosts(
             sum(weights.values()),
             dict(zip(relaxation.actions, capacity.tolist(), strict=True)),
             [(whole(cuts[row]), weight) for row, weight in weights.items() if weight],
             dict(zip(relaxation.actions, solved.x, strict=True)),
-            [whole(cut) for cut, row in zip(cuts, rows, strict=True) if shares[row].sum() < _TWICE],
+            [whole(cut) for cut, row in zip(cuts, rows, strict=True) if shares[row].sum() < tight],
         )

@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import Final, NamedTuple
 
 from foon_asp.errors import BugError
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.highs_run import libraries, run, silent_highs
 
 _OPTIONS: Final[dict[str, bool | str | float]] = {
@@ -26,6 +27,8 @@ _INTERIOR_POINT: Final[dict[str, bool | str | float]] = {
 _VERTEX: Final[dict[str, bool | str | float]] = (
     _INTERIOR_POINT | _OPTIONS | {"solver": "ipm", "run_crossover": "on"}
 )
+TOLERANCE = 1e-6  # of the values of a basic solution
+ROUGH_TOLERANCE = 1e-3  # of sums of the values of any solution
 
 
 class UnsolvedError(BugError):
@@ -108,8 +111,7 @@ class Covering:
         return Weighed(value, list(solution.col_value), list(solution.row_dual))
 
     def _run(self, options: dict[str, bool | str | float], expired: Callable[[], bool]) -> None:
-        # two seconds: the interior-point method cannot be continued
-        self._set(options | {"time_limit": self._highs.getRunTime() + 2.0})
+        self._set(options | {"time_limit": self._highs.getRunTime() + tuning.RELAXATION.run_seconds})
         run(self._highs, expired)
 
     def solve(self, expired: Callable[[], bool] = lambda: False) -> Relaxed:

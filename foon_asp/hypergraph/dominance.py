@@ -5,8 +5,6 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
 
-_INDEXED = 20  # actions of a node: more are indexed by effect
-
 
 def undominated(graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return the actions that stay: no other has a subset of their preconditions, all effects, and less cost.
@@ -41,39 +39,27 @@ def undominated(graph: GoalGraph, actions: Collection[int], cost: Callable[[int]
 
 
 class _PreconditionTrie:
-    """A set-trie (Savnik 2013) of actions by their preconditions, rare preconditions first."""
+    """A set-trie (Savnik 2013) of actions by their preconditions, rare preconditions first.
+
+    The actions of each node are indexed by effect.
+    """
 
     def __init__(self, ordered: Mapping[int, Sequence[int]], effects: Mapping[int, frozenset[int]]) -> None:
-        self._effects = effects
         self._children: dict[tuple[int, int], int] = {}  # by node and precondition
-        self._actions_at: list[list[int]] = [[]]
-        self._by_effect: dict[int, dict[int, list[int]]] = {}
+        self._achievers: dict[tuple[int, int], list[int]] = {}  # by node and effect
         for action, needs in ordered.items():
             node = 0
             for need in needs:
-                child = self._children.setdefault((node, need), len(self._actions_at))
-                if child == len(self._actions_at):
-                    self._actions_at.append([])
-                node = child
-            self._actions_at[node].append(action)
+                node = self._children.setdefault((node, need), len(self._children) + 1)
+            for o in effects[action]:
+                self._achievers.setdefault((node, o), []).append(action)
 
     def with_subset(self, needs: Sequence[int], effect: int) -> Iterator[int]:
-        """Yield actions with a subset of some preconditions; of many, only achievers of ``effect``."""
-        actions_at, children = self._actions_at, self._children
+        """Yield the achievers of ``effect`` with a subset of some preconditions."""
+        children, achievers = self._children, self._achievers
         nodes = [0]  # reached by subsets of the preconditions so far
-        yield from (actions_at[0] if len(actions_at[0]) <= _INDEXED else self._achieving(0).get(effect, ()))
+        yield from achievers.get((0, effect), ())
         for need in needs:
             for node in [children[node, need] for node in nodes if (node, need) in children]:
                 nodes.append(node)
-                actions = actions_at[node]
-                yield from (actions if len(actions) <= _INDEXED else self._achieving(node).get(effect, ()))
-
-    def _achieving(self, node: int) -> dict[int, list[int]]:
-        """Return the actions at a node by each of their effects, computed once."""
-        if node not in self._by_effect:
-            achievers: dict[int, list[int]] = {}
-            for action in self._actions_at[node]:
-                for o in self._effects[action]:
-                    achievers.setdefault(o, []).append(action)
-            self._by_effect[node] = achievers
-        return self._by_effect[node]
+                yield from achievers.get((node, effect), ())

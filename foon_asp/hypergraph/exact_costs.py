@@ -12,12 +12,10 @@ from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.lexicographic import Lexicographic
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 
-_COARSE = 1000  # scale of -ln(rate) and of fractions in estimates
 _SCALE = 10**40  # scale of logarithms where rounding must not decide
 _ROUNDED = 10**20  # more than the sum of all rounding errors at that scale
 _FINE = Context(prec=60, rounding=ROUND_CEILING)
 _SHOWN = Context(prec=18, rounding=ROUND_CEILING)  # of bounds on success
-_LONGEST = 50_000  # sum of exponents up to which products of rates are compared
 
 
 class TooFineError(Exception):
@@ -189,7 +187,8 @@ class ExactCosts:
 
 
 def _large(vector: Sequence[int]) -> bool:
-    return sum(map(abs, vector)) > _LONGEST
+    """Return whether products of rates with these exponents take too long to be compared."""
+    return sum(map(abs, vector)) > 50_000
 
 
 class _Vectors:
@@ -217,32 +216,33 @@ class CoarseCosts:
     def __init__(self, problem: Problem, objective: Objective) -> None:
         self._problem, self._objective = problem, objective
         self._multiplied = multiplies(objective)
-        rates, own = (problem.rates, problem.own_rates) if self._multiplied else (None, {})
-        self._by_motion = {motion: _coarse(rate) for motion, rate in (rates or {}).items()}
-        self._by_unit = {unit: _coarse(rate) for unit, rate in own.items()}
+        self._of_rates: dict[int | str, int] = {}  # by motion, or by unit with a rate of its own
 
     def __call__(self, action: int) -> int:
         """Return the approximate cost of an action."""
-        if action >= len(self._problem.network):
+        problem = self._problem
+        if action >= len(problem.network):
             return self._objective.row.item
         if self._multiplied:
-            own = self._by_unit.get(action)
-            return self._by_motion[self._problem.network.motions[action]] if own is None else own
-        cost = self._problem.figure(self._objective, action)
-        return int(cost if self._objective.row.whole else cost * _COARSE)
+            rated = action if action in problem.own_rates else problem.network.motions[action]
+            cost = self._of_rates.get(rated)
+            if cost is None:
+                cost = self._of_rates[rated] = _coarse(problem.rate(action))
+            return cost
+        figure = problem.figure(self._objective, action)
+        return int(figure if self._objective.row.whole else figure * 1000)
 
 
 def _coarse(rate: Fraction) -> int:
+    """Return ``-ln(rate)`` in thousandths; for a rate of 0, as for one of some ``10**-43``."""
     if not rate:
-        return 100 * _COARSE
-    return int((math.log(rate.denominator) - math.log(rate.numerator)) * _COARSE)  # a float may not hold it
+        return 100_000
+    return int((math.log(rate.denominator) - math.log(rate.numerator)) * 1000)  # a float may not hold it
 
 
 def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
-    """Return for each rate the sum of the rounded scaled logarithms of its coprime factors.
-
-    Raises :class:`TooFineError` for denominators above 10^9, where the logarithms may not tell rates apart.
-    """
+    """Return for each rate the sum of the rounded scaled logarithms of its coprime factors."""
+    # logarithms at this scale distinguish rates up to such denominators for sure
     if not all(0 < rate <= 1 and rate.denominator <= 10**9 for rate in rates):
         raise TooFineError
     base = coprime_base(n for rate in rates for n in rate.as_integer_ratio())

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, times
 
-_STEPS = 400  # pivots; few are needed from a float optimum
 _ZERO, _ONE = Fraction(), Fraction(1)
 
 Matrix = Mapping[int, Mapping[int, Fraction]]
@@ -50,7 +50,7 @@ def exact_optimum(
     full += (dict.fromkeys(row, _ONE) for row in rows)
     least = [-max_amount for _, max_amount in limits] + [_ONE] * len(rows)
     try:
-        for _ in range(_STEPS):
+        for _ in range(tuning.PROOF.pivots):
             basis = _Basis(full, least, costs, basic_columns, tight_rows)
             entering = basis.entering(order)
             if entering is None:

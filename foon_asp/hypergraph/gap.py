@@ -8,7 +8,7 @@ from foon_asp.hypergraph.landmark_cuts import Cuts
 
 if TYPE_CHECKING:  # few questions need it
     from foon_asp.hypergraph.cost_partition import SharedCosts
-    from foon_asp.hypergraph.optimality_proof import Cases
+    from foon_asp.hypergraph.proof_tree import Cases
 
 
 class FirstCuts(NamedTuple):

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Collection, Container, Iterable
 from dataclasses import dataclass
 
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.goal_graph import GoalGraph
 from foon_asp.hypergraph.h_values import derive
@@ -114,7 +115,7 @@ class Subproblem:
         """
         graph, costs, cuts = self.graph, self.costs, self.cuts
         remaining: Collection[int] = self._all() if self.redundant else self.remaining
-        for _ in range(6):  # rounds of cuts and reduced-cost fixing, at most
+        while True:
             gap = limit - cuts.bound + costs.doubt
             if gap < 0:
                 return ()
@@ -125,7 +126,7 @@ class Subproblem:
                 remaining = {action for action, h_action in h_actions.items() if h_action <= gap}
             else:
                 remaining = reduced_cost_fixing(graph, remaining, reduced_cost, gap, expired)
-            if len(remaining) == before or expired():
+            if len(remaining) >= tuning.PRESOLVE.worthwhile_share * before or expired():
                 break
             candidates = remaining
             cuts = landmark_cuts(

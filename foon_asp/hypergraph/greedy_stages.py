@@ -48,10 +48,13 @@ def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | No
     yield gap
     if cuts.interrupted:
         raise KeyboardInterrupt
-    if not meets(task, gap, cuts) and not task.expired():
-        gap = improve(task, gap, cuts, thorough)
+    met = meets(task, gap, cuts)
+    if not met and not task.expired():
+        improved_gap = improve(task, gap, cuts, thorough)
+        met = improved_gap is not gap and meets(task, improved_gap, cuts)
+        gap = improved_gap
         yield gap
-    if meets(task, gap, cuts):
+    if met:
         gap = gap.closed()
     elif Reduction.DEAR in task.reductions and not task.expired():
         gap = fix(task, gap, cuts)

@@ -11,8 +11,6 @@ from foon_asp.hypergraph.support import Support
 if TYPE_CHECKING:  # few questions need it
     from foon_asp.hypergraph.cost_partition import SharedCosts
 
-_FINE = 1000  # scale of LP values and of perturbed costs
-
 
 def irredundant(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
@@ -45,7 +43,7 @@ def guessed(
     allowed = [a for a in actions if a not in without]
 
     def unshared(action: int) -> int:
-        return 1 + cost(action) * int(_FINE * (1 - min(1.0, shares[action])))
+        return 1 + _scaled(cost(action), 1 - min(1.0, shares[action]))
 
     for h_add in (True, False):
         tree = derive(graph, allowed, unshared, h_add).tree(graph, graph.goals)
@@ -54,8 +52,8 @@ def guessed(
 
 
 def _scaled(cost: int, share: float) -> int:
-    """Return a share of a scaled cost, rounded down, in whole numbers since costs may exceed floats."""
-    return cost * int(share * _FINE * _FINE) // _FINE
+    """Return a share of a cost in thousandths, in whole numbers since costs may exceed floats."""
+    return cost * int(share * 1_000_000) // 1000
 
 
 def following(
@@ -98,9 +96,7 @@ def perturbation_search(
     total = sum(map(cost, tree))
     ordered = sorted(actions)
     effort = tries * len(ordered)
-    for _ in range(160):  # trees
-        if effort <= 0 or total <= enough or expired():
-            break
+    while effort > 0 and total > enough and not expired():
         if random_number() < 0.5:
             candidates = ordered
             unused = ((a, (1 - min(1.0, shares[a])) * (0.5 + random_number())) for a in candidates)

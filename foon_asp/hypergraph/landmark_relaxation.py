@@ -17,7 +17,6 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
 
 PARTS = 720720  # of 1: most weights are simple fractions
-_LARGE = 2**62  # sums that do not fit into 64 bits
 
 
 class LandmarkRelaxation:
@@ -102,7 +101,7 @@ class LandmarkRelaxation:
 
     def in_parts(self) -> Any:
         """Return an array of costs in parts: 64-bit integers where their sum fits, else Python integers."""
-        fits = sum(self.costs) * PARTS < _LARGE
+        fits = sum(self.costs) * PARTS < 2**62
         return self._np.array(self.costs, dtype=self._np.int64 if fits else object) * PARTS
 
     def shared_out(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:

@@ -15,12 +15,7 @@ from foon_asp.hypergraph.coprime_base import coprime_base, powers
 
 Vector = tuple[Fraction, ...]
 
-_MARGIN = 1e-9  # relative error of a sum of logarithms in floats, at most
-_TINY = 1e-290  # below this, floats lose their last digits
-_MAX_EXPONENT = 10**15  # with greater exponents, lost digits of a logarithm could matter
 _DIGITS = 60  # of a logarithm, at first
-
-_GREATEST = 10**12  # exponents in approximations: HiGHS fails far above
 
 
 class Lexicographic:
@@ -66,9 +61,13 @@ class Lexicographic:
         return self.sign(minus(one, other))
 
     def approximate(self, vector: Sequence[Fraction | int]) -> list[float]:
-        """Return each level as a float, for heuristics; coordinates are capped at 10^12."""
+        """Return each level as a float, for heuristics.
+
+        Coordinates are capped at 10^12, since HiGHS fails far above.
+        """
+        greatest = 10**12
         return [
-            sum(self._terms(level, [max(-_GREATEST, min(e, _GREATEST)) for e in coordinates]))
+            sum(self._terms(level, [max(-greatest, min(e, greatest)) for e in coordinates]))
             for level, coordinates in self._parts(vector)
         ]
 
@@ -89,10 +88,12 @@ class Lexicographic:
         """Compare a product of powers of a level's rates with 1: -1 where it is above 1."""
         if not any(exponents):
             return 0
-        if all(-_MAX_EXPONENT < exponent < _MAX_EXPONENT for exponent in exponents):
+        large = 10**15  # with larger exponents, lost digits could matter
+        if all(-large < exponent < large for exponent in exponents):
             terms = self._terms(level, exponents)
             about = sum(terms)
-            if abs(about) > _MARGIN * sum(map(abs, terms)) + _TINY:
+            # the sum is this exact, at least; below 1e-290 floats lose their last digits
+            if abs(about) > 1e-9 * sum(map(abs, terms)) + 1e-290:
                 return _sign(about)
         if self._is_one(level, exponents):
             return 0

@@ -16,87 +16,31 @@ from fractions import Fraction
 from functools import cache, cmp_to_key, partial
 from itertools import islice
 from operator import mul
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from foon_asp.hypergraph import tuning
+from foon_asp.hypergraph.branch_and_bound import branched
 from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
-from foon_asp.hypergraph.covering import Covering
+from foon_asp.hypergraph.covering import TOLERANCE, Covering
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_relaxation import PARTS
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.hypergraph.proof_tree import (
+    Branch,
+    Broken,
+    Cases,
+    CostFixing,
+    Hopeless,
+    Packing,
+    Proof,
+    cuts_of,
+)
 from foon_asp.hypergraph.violated_cuts import disjoint_violated_cuts
-
-_SATISFIED = 0.999999  # a landmark with a greater sum of LP values counts as satisfied
-_EXCESS_COST_FACTOR = 1000  # times the goal of the proof: what exceeding a limit by 1 costs an LP solution
-
-
-class Packing(NamedTuple):
-    """A cost partition over cuts; its weights and the costs of the used actions add up to a lower bound.
-
-    ``limits`` are the weights of limits, by their index; the unused amount of a limit, times its weight, is
-    taken from the bound. The bound is rounded up at the coordinate ``rounded``, if not ``None``.
-    """
-
-    weights: tuple[tuple[Cut, Vector], ...]
-    limits: tuple[tuple[int, Vector], ...] = ()
-    rounded: int | None = None
-
-
-class Hopeless(NamedTuple):
-    """A cut with an empty landmark: under the branches taken, no derivation reaches the targets."""
-
-    cut: Cut
-
-
-class Broken(NamedTuple):
-    """The end of a branch: every derivation with the used actions breaks a rule."""
-
-    rule: int
-
-
-class Branch(NamedTuple):
-    """Two proofs: for all derivations without an action, and for all those with it."""
-
-    action: int
-    without: "Proof"
-    using: "Proof"
-
-
-class CostFixing(NamedTuple):
-    """Reduced-cost fixing.
-
-    ``packing`` shows ``actions`` above the cutoff, and ``others`` is the proof without them.
-    """
-
-    actions: tuple[int, ...]
-    packing: Packing
-    others: "Proof"
-
-
-Proof = Packing | Hopeless | Broken | Branch | CostFixing
-# A branching tree: an action, the cases without it and the cases with it.
-Cases = tuple[int, "Cases", "Cases"] | None
-
 
 # Continues the proof for derivations without the given actions, from the given cuts.
 Others = Callable[[frozenset[int], Collection[frozenset[int]]], Proof]
-
-# Searches for a proof that no derivation of the targets by the actions costs less than a total, for whole
-# costs, from the given cuts, until time is up. The sums of its weights are to be rounded up.
-Search = Callable[
-    [
-        Hypergraph,
-        Iterable[int],
-        Collection[int],
-        Callable[[int], int],
-        Iterable[Collection[int]],
-        int,
-        Callable[[], bool],
-    ],
-    Proof | None,
-]
 
 
 class Rules(Protocol):
@@ -135,7 +79,7 @@ class Prover:
     ``limits`` or break one of the ``rules``. ``expired`` returns whether to give up; it is called between
     steps that take milliseconds on thousands of actions. Costs are multiples of the positive ``multiples``,
     coordinate by coordinate, so that bounds are rounded up. ``known_cuts`` are objects of cuts to begin
-    with. ``search`` is tried where many actions have whole costs and a cost partition does not suffice.
+    with.
     """
 
     def __init__(
@@ -150,9 +94,8 @@ class Prover:
         limits: Sequence[Limit] = (),
         rules: Rules | None = None,
         multiples: Sequence[Fraction] = (),
-        search: Search | None = None,
     ) -> None:
-        self._multiples, self._search = multiples, search
+        self._multiples = multiples
         self._known_cuts, self._limits, self._rules = tuple(map(frozenset, known_cuts)), [*limits], rules
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
@@ -165,7 +108,7 @@ class Prover:
             # rates may all be next to 1, where a solver would see nothing
             unit = largest or 1.0 if rates else 1.0
             self._scales.append(scale / unit)
-            scale *= 1e-4 / (1 + largest / unit)  # the next level weighs far less than this one
+            scale *= 1e-4 / (1 + largest / unit)  # so that a level weighs much less than the one before
 
     def scaled(self, vector: Vector) -> float:
         """Return a cost as one float: a sum in which each level weighs much less than the one before."""
@@ -177,34 +120,32 @@ class Prover:
         The proof branches on ``cases`` first, where the known cuts do not suffice. Raises
         :class:`CheaperError` when a cheaper derivation is found.
         """
-        actions = frozenset(derivation)
         try:
-            goal, nothing = self._total(actions), frozenset[int]()
-            return self._prove(actions, goal, nothing, self._forbidden, self._known_cuts, cases, at_root=True)
+            goal, nothing = self._total(derivation), frozenset[int]()
+            return self._prove(goal, nothing, self._forbidden, self._known_cuts, cases, at_root=True)
         except _TimeUpError:
             return None
 
     def prove_none(self) -> Proof | None:
         """Return a proof that there is no derivation; ``None`` where that takes too long or one exists."""
         try:
-            return self._prove(frozenset(), None, frozenset(), self._forbidden)
+            return self._prove(None, frozenset(), self._forbidden)
         except _TimeUpError:
             return None
 
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
         """Return the optimal cost partition of the relaxation at the root and its sum, a lower bound.
 
-        Cuts are grown around ``derivation``. ``None`` where time was up, and where the targets cannot be
-        reached.
+        To exceed a limit costs a solution much more than ``derivation``. ``None`` where time was up, and
+        where the targets cannot be reached.
         """
         nothing: frozenset[int] = frozenset()
         barred = self._bars(nothing, self._forbidden).values()
         cutter = Cutter(self._graph, self._targets, self._forbidden.union(*barred))
         if cutter.hopeless:
             return None
-        actions = frozenset(derivation)
         try:
-            node = _Node(self, cutter, actions, nothing, self._total(actions))
+            node = _Node(self, cutter, nothing, self._total(derivation))
             exact = node.relax(None)
         except _TimeUpError:
             return None
@@ -212,7 +153,6 @@ class Prover:
 
     def _prove(
         self,
-        derivation: frozenset[int],
         goal: Vector | None,
         used: frozenset[int],
         forbidden: frozenset[int],
@@ -241,9 +181,7 @@ class Prover:
         if remaining_goal is not None:
 
             def others(above_cutoff: frozenset[int], known_cuts: Collection[frozenset[int]]) -> Proof:
-                return self._prove(
-                    derivation, goal, used, forbidden | above_cutoff, known_cuts, cases, at_root
-                )
+                return self._prove(goal, used, forbidden | above_cutoff, known_cuts, cases, at_root)
 
             many = len(cutter.actions) > tuning.PROOF.rounded_actions or (
                 at_root and forbidden != self._forbidden
@@ -256,9 +194,9 @@ class Prover:
             if proof is not None:
                 return proof
         if cases is not None:
-            return self._branch(derivation, goal, used, forbidden, known_cuts, cases[0], cases[1:])
+            return self._branch(goal, used, forbidden, known_cuts, cases[0], cases[1:])
         while True:
-            node = _Node(self, cutter, derivation, used, goal)
+            node = _Node(self, cutter, used, goal)
             node.admit(widened)
             exact = node.relax(remaining_goal)
             if exact is not None and node.suffices(exact.value, remaining_goal):
@@ -279,11 +217,10 @@ class Prover:
                 raise _TimeUpError  # floats led nowhere
             action = breaking[0]
         known_cuts = [frozenset(cut.objects) for cut in node.cuts]
-        return self._branch(derivation, goal, used, forbidden, known_cuts, action, (None, None))
+        return self._branch(goal, used, forbidden, known_cuts, action, (None, None))
 
     def _branch(
         self,
-        derivation: frozenset[int],
         goal: Vector | None,
         used: frozenset[int],
         forbidden: frozenset[int],
@@ -295,8 +232,8 @@ class Prover:
         without, using = cases
         return Branch(
             action,
-            self._prove(derivation, goal, used, forbidden | {action}, known_cuts, without),
-            self._prove(derivation, goal, used | {action}, forbidden, known_cuts, using),
+            self._prove(goal, used, forbidden | {action}, known_cuts, without),
+            self._prove(goal, used | {action}, forbidden, known_cuts, using),
         )
 
     def rounded(self, bound: Vector) -> tuple[Vector, int | None]:
@@ -425,7 +362,7 @@ class Prover:
 
     def _crossing(self, proof: Proof) -> Iterator[int]:
         """Return the actions that cross cuts of a proof, including the fixed ones."""
-        for objects in {cut.objects for cut in _cuts(proof)}:
+        for objects in {cut.objects for cut in cuts_of(proof)}:
             yield from self._members(frozenset(objects))
 
     def _widened(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
@@ -438,9 +375,9 @@ class Prover:
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
         """Return the proof of the search, its cuts widened to all actions; ``None`` where it finds none."""
-        if self._search is None or not step:
+        if not step:
             return None
-        result = self._search(
+        result = branched(
             *(self._graph, cutter.targets, cutter.actions),
             *(lambda action: int(self._costs[action][0] / step), [cut.objects for cut in known_cuts]),
             *(math.ceil(goal[0] / step), self._expired),
@@ -496,48 +433,21 @@ class Prover:
         return self._order.total(self._costs[a] for a in actions)
 
 
-def _cuts(proof: Proof) -> Iterator[Cut]:
-    """Return the cuts of a proof."""
-    waiting = [proof]
-    while waiting:
-        step = waiting.pop()
-        if isinstance(step, Branch):
-            waiting += [step.without, step.using]
-        elif isinstance(step, CostFixing):
-            waiting += [step.packing, step.others]
-        elif isinstance(step, Hopeless):
-            yield step.cut
-        elif isinstance(step, Packing):
-            yield from (cut for cut, _ in step.weights)
-
-
 class _Node:
     """The relaxation at one node of the branching, a column for each action and a row for each cut.
 
     ``shares`` are the LP values of the columns in the last solution, ``cuts`` the cuts of the rows.
     """
 
-    def __init__(
-        self,
-        prover: Prover,
-        cutter: Cutter,
-        derivation: frozenset[int],
-        used: frozenset[int],
-        goal: Vector | None,
-    ) -> None:
+    def __init__(self, prover: Prover, cutter: Cutter, used: frozenset[int], goal: Vector | None) -> None:
         self._prover, self._cutter, self._used = prover, cutter, used
-        self._derivation = sorted(derivation)
         self._actions = cutter.actions
         self._columns = {action: column for column, action in enumerate(self._actions)}
         self._costs = [prover._costs[action] for action in self._actions]
         floats = {cost: prover.scaled(cost) for cost in set(self._costs)}
         self._floats = [floats[cost] for cost in self._costs]
         self._limits = [self._limited(column, limit) for column, limit in enumerate(prover._limits)]
-        excess_cost = (
-            (Fraction(1),) * prover._order.width
-            if goal is None
-            else times(goal, Fraction(_EXCESS_COST_FACTOR))
-        )
+        excess_cost = (Fraction(1),) * prover._order.width if goal is None else times(goal, Fraction(1000))
         self._costs += [excess_cost] * len(self._limits)
         self._covering = Covering([*self._floats, *[prover.scaled(excess_cost)] * len(self._limits)])
         for amounts, max_amount in self._limits:
@@ -579,8 +489,7 @@ class _Node:
         """
         order = self._prover._order
         wanted = math.inf if enough is None else self._prover.scaled(enough)
-        if enough is not None and len(enough) == len(self._prover._multiples) == 1:
-            # from more than one step less, bounds are rounded up
+        if enough is not None and len(enough) == len(self._prover._multiples) == 1:  # more than one step less
             wanted -= 0.99 * self._prover.scaled((self._prover._multiples[0],))
         while True:
             self._check()
@@ -622,7 +531,7 @@ class _Node:
         halves = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])
             for column, x in enumerate(self.shares[: len(self._actions)])
-            if abs(x - 0.5) < 0.499999
+            if abs(x - 0.5) < 0.5 - TOLERANCE
         ]
         return min(halves)[2] if halves else None
 
@@ -632,38 +541,17 @@ class _Node:
         return sorted({action for action, x in shares if round(x)} | self._used)
 
     def _separate(self) -> bool:
-        """Add cuts that the LP solution violates; return whether there were any."""
-        return self._add_disjoint_cuts() or any(self._add_violated_cuts() for _ in range(tuning.PROOF.orders))
-
-    def _add_disjoint_cuts(self) -> bool:
-        """Add violated cuts with disjoint landmarks; return whether there were any."""
+        """Add violated cuts with disjoint landmarks; return whether there are any."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
-        shares = np.zeros(len(self._prover._costs))
-        shares[self._actions] = self.shares[: len(self._actions)]
-        costs = np.zeros(len(self._prover._costs))
-        costs[self._actions] = self._floats
+        count = len(self._actions)
+        shares, costs = np.zeros((2, len(self._prover._costs)))
+        shares[self._actions], costs[self._actions] = self.shares[:count], self._floats
         random_number = self._prover._random.random
-        cuts = disjoint_violated_cuts(self._cutter, self._used, shares, costs, random_number, _SATISFIED)
+        cuts = disjoint_violated_cuts(self._cutter, self._used, shares, costs, random_number, TOLERANCE)
         violated = list(islice(cuts, tuning.RELAXATION.cuts))
         self.admit(violated)
         return bool(violated)
-
-    def _add_violated_cuts(self) -> bool:
-        """Add violated cuts grown around the incumbent less one action; return whether there were any.
-
-        Actions of great LP values are kept out of landmarks first, in a random order among equals.
-        """
-        arbitrary = self._prover._random.random
-        order = sorted(self._actions, key=lambda a: (-self.shares[self._columns[a]], arbitrary()))
-        keeps = [[b for b in self._derivation if b != a] for a in self._derivation]
-        missed: dict[tuple[int, ...], Cut] = {}
-        for keep in (*keeps, ()):
-            cut = self._cutter.cut([*keep, *self._used], order)
-            if cut is not None and sum(self.shares[self._columns[a]] for a in cut.members) < _SATISFIED:
-                missed[cut.members] = cut
-        self.admit(missed.values())
-        return bool(missed)
 
     def admit(self, cuts: Iterable[Cut]) -> None:
         """Add cuts whose landmark actions are all columns."""

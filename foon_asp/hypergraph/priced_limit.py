@@ -95,7 +95,7 @@ def _by_rising_prices(
     unit, to the one at which ``incumbent`` and ``over`` cost the same; the optimal tree at a price replaces
     one of the two. The price of the greatest bound determines the units of trees better than ``incumbent``.
     """
-    next_price = tuning.LOWEST_PRICE * subproblem.total(over) / len(over)
+    next_price = Fraction(subproblem.total(over), len(over))
     greatest: tuple[Fraction, Fraction] | None = None  # bound, and its price
     subproblem = _restricted_to_cost(subproblem, incumbent, expired)
     for _ in range(tuning.PRICES.rising_prices):

@@ -31,7 +31,7 @@ from foon_asp.problem import Objective, Problem
 
 if TYPE_CHECKING:  # few questions need it
     from foon_asp.hypergraph.cost_partition import SharedCosts
-    from foon_asp.hypergraph.optimality_proof import Cases
+    from foon_asp.hypergraph.proof_tree import Cases
 
 Expired = Callable[[], bool]
 Guard = Callable[[], AbstractContextManager[object]]
@@ -128,27 +128,20 @@ def reduce_under_rules(
     listener: Listener | None = None,
     guard: Guard = nullcontext,
     redundant: bool = False,
+    course: Course | None = None,
 ) -> Reduced:
     """Reduce a problem whose trees have to keep to rules unknown here, for which ``subproblem`` is computed.
 
-    With ``redundant``, its trees may have units that lead to no goal. Other arguments are those of
-    :func:`reduce`.
+    With ``redundant``, its trees may have units that lead to no goal. ``course`` is :data:`BOUND` where any
+    tree will do, else :data:`ROUNDS`. Other arguments are those of :func:`reduce`.
     """
-    return _without_branching(problem, objectives, reductions, expired, listener, guard, redundant, ROUNDS)
-
-
-def bound_under_rules(
-    problem: Problem,
-    objectives: Sequence[Objective],
-    reductions: Collection[Reduction] = ALL,
-    expired: Expired = lambda: False,
-    listener: Listener | None = None,
-    guard: Guard = nullcontext,
-    redundant: bool = False,
-) -> Reduced:
-    """Compute any tree and ``subproblem``; arguments are those of :func:`reduce_under_rules`."""
-    course = Course(_bound_lazily, _bound_once)
-    return _without_branching(problem, objectives, reductions, expired, listener, guard, redundant, course)
+    presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
+    with uncollected():
+        with guard():
+            task = _task(problem, objectives, reductions, expired, presolve_tuning)
+            presolve = _Presolve(task, listener, guard, redundant)
+        presolve.run(course or ROUNDS)
+        return presolve.reduced(redundant)
 
 
 def h_add_tree(problem: Problem, objectives: Sequence[Objective]) -> frozenset[int] | None:
@@ -157,30 +150,10 @@ def h_add_tree(problem: Problem, objectives: Sequence[Objective]) -> frozenset[i
     ``objectives`` are those of :func:`reduce`. ``None`` where there is no tree. Raises
     ``KeyboardInterrupt`` where it is interrupted.
     """
-    course = Course(_follow_h_add, _follow_h_add)
-    reduced = _without_branching(problem, objectives, ALL, lambda: False, None, nullcontext, False, course)
+    reduced = reduce_under_rules(problem, objectives, course=Course(_follow_h_add, _follow_h_add))
     if reduced.interrupted:
         raise KeyboardInterrupt
     return reduced.tree
-
-
-def _without_branching(
-    problem: Problem,
-    objectives: Sequence[Objective],
-    reductions: Collection[Reduction],
-    expired: Expired,
-    listener: Listener | None,
-    guard: Guard,
-    redundant: bool,
-    course: Course,
-) -> Reduced:
-    presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
-    with uncollected():
-        with guard():
-            task = _task(problem, objectives, reductions, expired, presolve_tuning)
-            presolve = _Presolve(task, listener, guard, redundant)
-        presolve.run(course)
-        return presolve.reduced(redundant)
 
 
 def at_costs(
@@ -198,7 +171,7 @@ def at_costs(
     the incumbent; that is given up where more than ``max_actions`` remain and the first cuts exclude hardly
     any.
     """
-    presolve_tuning = tuning.PRESOLVE._replace(rounds=6, branching_budget=0, landmark_actions=math.inf)
+    presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
         presolve_tuning = presolve_tuning._replace(relaxed_actions=presolve_tuning.easy_actions)
     reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
@@ -263,7 +236,7 @@ def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
         gap = gap.closed() if greedy.meets(task, gap, greedy.NO_CUTS) else gap
         yield gap
     thorough = False  # as a last resort
-    for _ in range(0 if gap.proved else limits.rounds):
+    while not gap.proved:
         before = gap
         if costs is not None and task.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
             guide = greedy.guide_by(task, gap)
@@ -330,9 +303,6 @@ def rounds_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
     return gap
 
 
-ROUNDS = Course(rounds_near_goals, rounds)
-
-
 def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
     """Look for a better tree by h_add."""
     if task.costs is not None:
@@ -355,6 +325,9 @@ def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
         gap = greedy.bound(task, gap, h_values, None).gap
         yield gap
     return gap
+
+
+ROUNDS, BOUND = Course(rounds_near_goals, rounds), Course(_bound_lazily, _bound_once)
 
 
 def _near_goals(task: Task) -> tuple[Gap, HValues] | None:

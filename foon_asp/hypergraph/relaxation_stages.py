@@ -3,10 +3,12 @@
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from itertools import accumulate
 
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.branch_and_bound import Branching
 from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
+from foon_asp.hypergraph.covering import ROUGH_TOLERANCE
 from foon_asp.hypergraph.gap import Gap, Stage
 from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing
 from foon_asp.hypergraph.greedy_stages import improve_repeatedly, prune_dominated
@@ -17,74 +19,55 @@ from foon_asp.hypergraph.reductions import Reduction
 from foon_asp.hypergraph.task import Task
 
 
-class StageTuning(NamedTuple):
-    """How LP solutions are followed to trees, and with which landmarks the relaxation begins.
-
-    ``solutions``: LP solutions between two searches for a better tree.
-    ``last_search``: times the looks of others that the search after the last solution has.
-    ``used_value``: LP value above which a solution uses an action.
-    ``dense_size``: sizes of all landmarks together, for each action; above it, the LP begins without large
-    landmarks, which make it slow and are weak.
-    ``large_landmark``, ``large_share``: a large landmark has more actions than this, and more than this
-    share of all actions.
-    """
-
-    solutions: int = 8
-    last_search: int = 4
-    used_value: float = 1e-4
-    dense_size: int = 2
-    large_landmark: int = 50
-    large_share: float = 0.01
-
-
-STAGE = StageTuning()
-
-
 def partition_costs(task: Task, gap: Gap) -> Stage:
     """Raise the bound by optimal cost partitioning, follow its solutions to trees, and fix by it.
 
     The relaxation begins anew over the candidates that remain, as long as that is worthwhile.
     """
-    costs, graph, tuning = task.costs, task.graph, task.tuning
+    costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
     if not gap.evidence.starting:
         gap = replace(gap, evidence=gap.evidence._replace(starting=_starting_cuts(gap)))
     before = math.inf
-    while tuning.relaxed_actions < len(gap.candidates) < tuning.worthwhile_share * before:
+    while limits.relaxed_actions < len(gap.candidates) < limits.worthwhile_share * before:
         before, almost_closed, starting = len(gap.candidates), False, gap.evidence.starting
         partitioning = CostPartitioning(graph, graph.goals, gap.candidates, costs, task.expired, starting)
         while True:
-            shared = partitioning.advance(task.total(gap), STAGE.solutions)
+            shared = partitioning.advance(task.total(gap), tuning.RELAXATION.stalled_solutions)
             if shared is None:
                 return gap
             if partitioning.converged:
                 break
-            gap = yield from follow_solution(task, gap, shared, tuning.search_looks)
+            gap = yield from follow_solution(task, gap, shared, limits.search_looks)
             almost_closed = (
-                may_branch(task, gap) and gap.lower_bound > task.total(gap) * tuning.sufficient_bound
+                may_branch(task, gap) and gap.lower_bound > task.total(gap) * limits.sufficient_bound
             )
-            if gap.proved or almost_closed or len(gap.candidates) < tuning.worthwhile_share * before:
+            if gap.proved or almost_closed or len(gap.candidates) < limits.worthwhile_share * before:
                 break
         if not gap.proved:
-            gap = yield from follow_solution(task, gap, shared, STAGE.last_search * tuning.search_looks)
+            gap = yield from follow_solution(task, gap, shared, limits.search_looks)
         if gap.proved or almost_closed or task.expired():
             break
     return gap
 
 
 def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
-    """Return the greedy cuts to begin the relaxation with: without large landmarks, where these are many."""
+    """Return the greedy cuts to begin the relaxation with.
+
+    Large landmarks are weak and make the LP slow: of many, only the smallest are returned.
+    """
     cuts = gap.evidence.cuts.cuts if gap.evidence.cuts else []
-    dense = sum(len(cut.members) for cut in cuts) > STAGE.dense_size * len(gap.candidates)
-    max_members = max(STAGE.large_landmark, STAGE.large_share * len(gap.candidates)) if dense else math.inf
-    return tuple(cut.objects for cut in cuts if len(cut.members) <= max_members)
+    budget = tuning.RELAXATION.starting_landmarks * len(gap.candidates)
+    smallest_first = sorted(cuts, key=lambda cut: len(cut.members))
+    sizes = accumulate(len(cut.members) for cut in smallest_first)
+    return tuple(cut.objects for cut, size in zip(smallest_first, sizes, strict=True) if size <= budget)
 
 
 def follow_solution(task: Task, gap: Gap, shared: SharedCosts, looks: int) -> Stage:
     """Look for better trees by an LP solution, and fix by it; ``looks`` is the budget of each candidate."""
     costs, graph = task.costs, task.graph
     assert costs is not None
-    used = {action for action, share in shared.shares.items() if share > STAGE.used_value} | gap.incumbent
+    used = {action for action, share in shared.shares.items() if share > ROUGH_TOLERANCE} | gap.incumbent
     for tree in following(graph, gap.candidates, costs, shared):
         used |= tree
         if task.is_better(tree, gap):
@@ -150,10 +133,10 @@ def may_branch(task: Task, gap: Gap) -> bool:
 
 def branch(task: Task, gap: Gap) -> Stage:
     """Branch and bound over the candidates, within the budget, where the bound is close enough for it."""
-    costs, graph, tuning = task.costs, task.graph, task.tuning
+    costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
-    close = gap.lower_bound >= task.total(gap) * tuning.branching_bound
-    if not may_branch(task, gap) or len(gap.candidates) <= tuning.relaxed_actions or not close:
+    close = gap.lower_bound >= task.total(gap) * limits.branching_bound
+    if not may_branch(task, gap) or len(gap.candidates) <= limits.relaxed_actions or not close:
         return gap
     gap = yield from improve_repeatedly(task, gap)
     total, evidence, candidates = task.total(gap), gap.evidence, gap.candidates

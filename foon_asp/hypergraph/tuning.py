@@ -17,7 +17,6 @@ class PresolveTuning(NamedTuple):
     ``neighbourhood_actions``: actions of the neighbourhood in which better trees are looked for.
     ``easy_actions``: actions; with fewer, clingo is faster than a thorough search for better trees.
     ``relaxed_actions``: actions; with fewer, clingo is faster than the linear relaxation.
-    ``rounds``: rounds of cuts, better trees and fixing, at most.
     ``branching_budget``: actions that branch and bound may look at; some 20 s of processor time.
     ``branching_bound``: share of the incumbent's cost; branching begins from such a bound on.
     ``sufficient_bound``: share of the incumbent's cost; from such a bound on, branching is faster than cuts.
@@ -33,11 +32,10 @@ class PresolveTuning(NamedTuple):
     neighbourhood_actions: int = 2_000
     easy_actions: int = 600
     relaxed_actions: int = 200
-    rounds: int = 24
     branching_budget: int = 3_000_000
     branching_bound: Fraction = Fraction(3, 4)
     sufficient_bound: Fraction = Fraction(49, 50)
-    search_looks: int = 10
+    search_looks: int = 20
     sparse_share: float = 0.2
     landmark_actions: float = 20
     worthwhile_share: float = 0.9
@@ -62,41 +60,43 @@ class RelaxationTuning(NamedTuple):
     """How the linear relaxation is solved and searched.
 
     ``cuts``: violated cuts with disjoint landmarks that are separated for one LP solution, at most.
-    ``target_cutters``: total size of the cutters of single targets, times all actions, at most.
     ``stalled_solutions``: solutions after which a bound that hardly grows counts as optimal.
     ``stalled_growth``: share of the gap that these solutions have to gain.
     ``node_rounds``: rounds of separation at each node but the root.
     ``guess_interval``: nodes from one at which derivations are guessed to the next.
     ``landmark_bits``: bits of the landmark sets by which first achievers are computed; in larger graphs,
     landmarks among fewer objects are.
+    ``starting_landmarks``: sizes of the landmarks with which it begins together, for each action.
+    ``run_seconds``: of an interior-point run, which cannot be continued.
     """
 
     cuts: int = 40
-    target_cutters: int = 8
     stalled_solutions: int = 8
     stalled_growth: float = 0.01
     node_rounds: int = 3
     guess_interval: int = 10
     landmark_bits: int = 400_000_000
+    starting_landmarks: int = 2
+    run_seconds: float = 2.0
 
 
 class ProofTuning(NamedTuple):
     """How certificates are looked for, by :class:`foon_asp.hypergraph.optimality_proof.Prover`.
 
-    ``orders``: orders in which cuts are grown before the relaxation counts as optimal.
     ``rounded_actions``: actions; with more, rounded weights are tried before exact ones.
     ``greedy_cuts``: known cuts that get weights greedily; others get weights only from the LP.
     ``fixed_share``: share of the actions; with more above the cutoff, these are fixed before anything else.
     ``search_budget``: actions that branch and bound may look at; about a minute of processor time.
     ``proof_length``: objects and landmark actions that a proof by branching may list.
+    ``pivots``: steps of the exact simplex algorithm from the basis of floats; few are needed.
     """
 
-    orders: int = 3
     rounded_actions: int = 1000
     greedy_cuts: int = 200
     fixed_share: float = 0.5
     search_budget: int = 10_000_000
     proof_length: int = 2_000_000
+    pivots: int = 400
 
 
 class PriceTuning(NamedTuple):
@@ -123,7 +123,6 @@ class SharedTuning(NamedTuple):
     unions: int = 3
 
 
-LOWEST_PRICE = Fraction(3, 2)  # of the rising prices, times the mean cost of a unit
 PRESOLVE = PresolveTuning()
 CUTS = CutTuning()
 RELAXATION = RelaxationTuning()

@@ -7,7 +7,6 @@ for, depth first.
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cache
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode
@@ -48,20 +47,24 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     if problem.network.level < 3:
         return UsedUpRun(None, proved=False)
     executions = Executions(problem)
-    endless = cache(executions.is_endless)
+    whole_steps, wanted = [executions.of(unit) for unit in tree], executions.wanted()
+    nodes = set(wanted).union(*(copies for step in whole_steps for copies in (step.preconditions, step.adds)))
+    endless = set(filter(executions.is_endless, nodes))
 
-    def finite(copies: Mapping[ObjectNode, int]) -> dict[ObjectNode, int]:
-        return {node: n for node, n in copies.items() if not endless(node)}
+    def finite(copies: Mapping[ObjectNode, int]) -> Mapping[ObjectNode, int]:
+        if endless.isdisjoint(copies):
+            return copies
+        return {node: n for node, n in copies.items() if node not in endless}
 
-    steps = [Execution(*map(finite, executions.of(unit))) for unit in tree]
-    stock, goals = executions.stock(), finite(executions.wanted())
+    steps = [Execution(*map(finite, step)) for step in whole_steps]
+    stock, goals = executions.stock(), finite(wanted)
     listed = _shortage_as_listed(steps, stock, goals)
     if listed is None:
         return UsedUpRun(tuple(range(len(steps))))
-    search = _OrderSearch(steps, stock, goals)
-    overdrawn = search.overdrawn()
+    overdrawn = _overdrawn(steps, stock, goals)
     if overdrawn is not None:
         return UsedUpRun(None, overdrawn)
+    search = _OrderSearch(steps, stock, goals)
     order = search.order()
     shortage = None if order else search.dead_end or listed
     return UsedUpRun(order, shortage, order is not None or search.looks_left > 0)
@@ -91,6 +94,27 @@ def _shortage_as_listed(
     return missing(None, goals)
 
 
+def _overdrawn(
+    steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
+) -> Shortage | None:
+    """Return the first copy that is missing in every order, as more are used up than there ever are."""
+    copies = dict(stock)
+    for step in steps:
+        for node, amount in step.adds.items():
+            copies[node] = copies.get(node, 0) + amount
+    consumers: dict[ObjectNode, list[int]] = {}
+    for position, step in enumerate(steps):
+        for node, amount in step.consumes.items():
+            present = copies.get(node, 0)
+            if present < amount:
+                return Shortage(position, node, tuple(consumers.get(node, ())), amount)
+            copies[node] = present - amount
+            consumers.setdefault(node, []).append(position)
+    lacking = (node for node, n in goals.items() if copies.get(node, 0) < n and node in consumers)
+    goal = next(lacking, None)
+    return None if goal is None else Shortage(None, goal, tuple(consumers[goal]), goals[goal])
+
+
 class _OrderSearch:
     """A depth-first search for an order of steps, the earliest listed step first.
 
@@ -116,22 +140,6 @@ class _OrderSearch:
             for node, read in _reads(waiting):
                 self._readers[node] += 1
                 self._most_read[node] = max(self._most_read[node], read)
-
-    def overdrawn(self) -> Shortage | None:
-        """Return the first copy that is missing in every order, as more are used up than there ever are."""
-        copies = self._copies.copy()
-        for execution in self._steps:
-            copies.update(execution.adds)
-        consumers: dict[ObjectNode, list[int]] = {}
-        for position, execution in enumerate(self._steps):
-            for node, amount in execution.consumes.items():
-                if copies[node] < amount:
-                    return Shortage(position, node, tuple(consumers.get(node, ())), amount)
-                copies[node] -= amount
-                consumers.setdefault(node, []).append(position)
-        lacking = (node for node, n in self._goals.items() if copies[node] < n and node in consumers)
-        goal = next(lacking, None)
-        return None if goal is None else Shortage(None, goal, tuple(consumers[goal]), self._goals[goal])
 
     def order(self) -> tuple[int, ...] | None:
         """Return an order that runs, where no node is overdrawn; ``None`` where none is found."""

@@ -19,7 +19,7 @@ from foon_asp.certificate import (
     certify_outcome,
 )
 from foon_asp.errors import BugError
-from foon_asp.hypergraph.optimality_proof import Packing
+from foon_asp.hypergraph.proof_tree import Packing
 from foon_asp.problem import Objective, Problem
 from foon_asp.proof import verifier
 from tests.proof.by_hand import recipe

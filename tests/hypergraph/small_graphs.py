@@ -9,7 +9,7 @@ from typing import Protocol
 
 from foon_asp.hypergraph.exact_optimum import Limit
 from foon_asp.hypergraph.hypergraph import Hypergraph
-from foon_asp.hypergraph.optimality_proof import Branch, Broken, CostFixing, Hopeless, Packing, Proof
+from foon_asp.hypergraph.proof_tree import Branch, Broken, CostFixing, Hopeless, Packing, Proof
 
 NOBODY: frozenset[int] = frozenset()
 

@@ -13,14 +13,8 @@ from foon_asp.hypergraph.cut import Cut
 from foon_asp.hypergraph.exact_optimum import Limit
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.lexicographic import Lexicographic
-from foon_asp.hypergraph.optimality_proof import (
-    Branch,
-    Broken,
-    CheaperError,
-    Packing,
-    Proof,
-    Prover,
-)
+from foon_asp.hypergraph.optimality_proof import CheaperError, Prover
+from foon_asp.hypergraph.proof_tree import Branch, Broken, Packing, Proof
 from tests.hypergraph.small_graphs import NOBODY, parts, reaches, require_proves
 
 COUNT = Lexicographic([None])

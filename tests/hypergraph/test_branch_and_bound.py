@@ -25,7 +25,7 @@ from foon_asp.hypergraph import (
 from foon_asp.hypergraph.branch_and_bound import Branching, TooLongError, branched
 from foon_asp.hypergraph.covering import Covering, Relaxed
 from foon_asp.hypergraph.hypergraph import Hypergraph
-from foon_asp.hypergraph.optimality_proof import Branch
+from foon_asp.hypergraph.proof_tree import Branch
 from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verifier import RefusedError, seal, verify

@@ -187,7 +187,7 @@ def test_answers_are_those_of_the_plain_program(
     few_members = seed % 2 / 600  # hardly any, or none
     presolve_tuning = PresolveTuning(relaxed_actions=0, landmark_actions=few_members)
     monkeypatch.setattr(tuning, "PRESOLVE", presolve_tuning)
-    monkeypatch.setattr(relaxation_stages, "STAGE", relaxation_stages.STAGE._replace(solutions=1))
+    monkeypatch.setattr(tuning, "RELAXATION", tuning.RELAXATION._replace(stalled_solutions=1))
     monkeypatch.setattr(greedy_stages, "improved", lambda graph, few, tree, *_: tree)
     problem = random_problem(seed, rule, units=14)
     objectives = [(Objective.UNITS,), (Objective.PRICE,), (Objective.SUCCESS,), (Objective.KITCHEN,)][

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import pytest
 
-from foon_asp.hypergraph import exact_optimum as exact_optimum_module
+from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.covering import Covering
 from foon_asp.hypergraph.exact_optimum import ExactOptimum, exact_optimum
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector
@@ -100,9 +100,9 @@ def test_a_walk_that_is_too_long_leads_nowhere(monkeypatch: pytest.MonkeyPatch) 
     rows, costs = [[0, 1], [1, 2], [0, 2]], counts(5, 1, 1)
     found = exact_optimum(rows, costs, COUNT, [0, 1], [1, 2])
     assert found == ({1: ONE, 2: ONE}, {0: (ONE,), 2: (ONE,)}, (Fraction(2),))
-    monkeypatch.setattr(exact_optimum_module, "_STEPS", 3)
+    monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(pivots=3))
     assert exact_optimum(rows, costs, COUNT, [0, 1], [1, 2]) == found
-    monkeypatch.setattr(exact_optimum_module, "_STEPS", 2)
+    monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(pivots=2))
     assert exact_optimum(rows, costs, COUNT, [0, 1], [1, 2]) is None
 
 

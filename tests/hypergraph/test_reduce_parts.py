@@ -11,7 +11,7 @@ from itertools import count
 import pytest
 
 from foon_asp.errors import UserError
-from foon_asp.hypergraph import ALL, NONE, SAFE, Reduction, dominance, parse_reductions, tuning
+from foon_asp.hypergraph import ALL, NONE, SAFE, Reduction, parse_reductions, tuning
 from foon_asp.hypergraph.action_landmarks import relevant_beside_landmarks
 from foon_asp.hypergraph.dominance import undominated
 from foon_asp.hypergraph.exact_costs import CoarseCosts
@@ -283,11 +283,7 @@ def test_of_a_large_network_few_actions_are_added() -> None:
 # --- What is of no use.
 
 
-@pytest.mark.parametrize("few", [0, 3, 99])
-def test_those_that_dominate_are_found_as_by_looking_at_all(
-    few: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(dominance, "_INDEXED", few)
+def test_those_that_dominate_are_found_as_by_looking_at_all() -> None:
     gone = 0
     for seed in range(60):
         chance = random.Random(seed)

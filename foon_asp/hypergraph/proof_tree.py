@@ -1,0 +1,70 @@
+"""The nodes of a proof that no derivation costs less than a total."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from foon_asp.hypergraph.cut import Cut
+from foon_asp.hypergraph.lexicographic import Vector
+
+
+class Packing(NamedTuple):
+    """A cost partition over cuts; its weights and the costs of the used actions add up to a lower bound.
+
+    ``limits`` are the weights of limits, by their index; the unused amount of a limit, times its weight, is
+    taken from the bound. The bound is rounded up at the coordinate ``rounded``, if not ``None``.
+    """
+
+    weights: tuple[tuple[Cut, Vector], ...]
+    limits: tuple[tuple[int, Vector], ...] = ()
+    rounded: int | None = None
+
+
+class Hopeless(NamedTuple):
+    """A cut with an empty landmark: under the branches taken, no derivation reaches the targets."""
+
+    cut: Cut
+
+
+class Broken(NamedTuple):
+    """The end of a branch: every derivation with the used actions breaks a rule."""
+
+    rule: int
+
+
+class Branch(NamedTuple):
+    """Two proofs: for all derivations without an action, and for all those with it."""
+
+    action: int
+    without: "Proof"
+    using: "Proof"
+
+
+class CostFixing(NamedTuple):
+    """Reduced-cost fixing.
+
+    ``packing`` shows ``actions`` above the cutoff, and ``others`` is the proof without them.
+    """
+
+    actions: tuple[int, ...]
+    packing: Packing
+    others: "Proof"
+
+
+Proof = Packing | Hopeless | Broken | Branch | CostFixing
+# A branching tree: an action, the cases without it and the cases with it.
+Cases = tuple[int, "Cases", "Cases"] | None
+
+
+def cuts_of(proof: Proof) -> Iterator[Cut]:
+    """Return the cuts of a proof."""
+    waiting = [proof]
+    while waiting:
+        step = waiting.pop()
+        if isinstance(step, Branch):
+            waiting += [step.without, step.using]
+        elif isinstance(step, CostFixing):
+            waiting += [step.packing, step.others]
+        elif isinstance(step, Hopeless):
+            yield step.cut
+        elif isinstance(step, Packing):
+            yield from (cut for cut, _ in step.weights)
