@@ -68,7 +68,7 @@ UNREAD = (
     "load_certificate: it has more than … letters",
     "read_certificate: it has more than … letters or … brackets",
     "read_rules: it has more than … rules",
-    "_rational: a fraction has more than … digits",
+    "read_rational: a fraction has more than … digits",
     "_figures: the success rate of the tree is too long a number to be written",
     "_spend_on: its fractions add up to numbers that are too long",
     "_own: a file of rules has no printable name",
