@@ -63,7 +63,10 @@ def assemble(
     """
     ours = encodings_folder() / USED_UP if used_up else encodings_folder()
     folder = _find_encodings(settings.encodings, ours)
-    base = tuple(folder / name if (folder / name).is_file() else ours / name for name in ENCODING_FILES)
+    is_replaced = folder != ours
+    base = tuple(
+        folder / name if is_replaced and (folder / name).is_file() else ours / name for name in ENCODING_FILES
+    )
     added = tuple(dict.fromkeys(map(find_constraint, settings.constraints)))
     relaxed, bounded = settings.relaxed, settings.bounded
     kept, rules = added, ""

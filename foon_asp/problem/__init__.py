@@ -36,6 +36,7 @@ from foon_asp.problem.problem import UnitPricesNamed as UnitPricesNamed
 from foon_asp.problem.problem import Unpriced as Unpriced
 from foon_asp.problem.problem import count_unpriced as count_unpriced
 from foon_asp.problem.problem import first_places as first_places
+from foon_asp.problem.problem import for_each_goal as for_each_goal
 from foon_asp.problem.problem import unrated_remarks as unrated_remarks
 from foon_asp.problem.problem import unrated_text as unrated_text
 from foon_asp.problem.relevance import Reached as Reached

@@ -667,6 +667,15 @@ class _MeasuredUnit(NamedTuple):
         return self.problem.measure(name, self.unit)
 
 
+def for_each_goal(problem: Problem) -> list[Problem]:
+    """Return the problem of each goal by itself, in order; prices that are known are not found anew."""
+    shared = {name: value for name, value in vars(problem).items() if name in {"prices", "unpriced"}}
+    problems = [replace(problem, goals=(goal,)) for goal in problem.goals]
+    for single in problems:
+        vars(single).update(shared)
+    return problems
+
+
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:
     """Return units without a price by motion; ``units`` are their motions and the sources of their copies."""
     by_motion: dict[str, Unpriced] = {}

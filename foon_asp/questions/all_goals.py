@@ -1,7 +1,6 @@
 """The optimum of every goal by itself, under one or several lists of objectives."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
 from typing import Unpack
@@ -12,7 +11,7 @@ from foon_asp.dataset.nearby import NearbyProblem, shown
 from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import SolvedGoals
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Objective, Problem, for_each_goal
 from foon_asp.questions.answer import Answer, answered_nearby
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
@@ -177,5 +176,4 @@ def _each_goal(problem: Problem, settings: Settings) -> list[Problem]:
     """Return a problem for each goal; a large store without rules is read as far as an answer takes."""
     if isinstance(problem, NearbyProblem) and not settings.constraints and settings.replaced is None:
         return problem.each_goal()
-    problem = asked_with(problem, settings)
-    return [replace(problem, goals=(goal,)) for goal in problem.goals]
+    return for_each_goal(asked_with(problem, settings))

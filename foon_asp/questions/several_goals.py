@@ -1,14 +1,13 @@
 """Several goals of one tree: the optimum for each goal by itself, and the goals that each unit serves."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.nearby import NearbyProblem
-from foon_asp.problem import Objective, Problem, levels, multiplies
+from foon_asp.problem import Objective, Problem, for_each_goal, levels, multiplies
 from foon_asp.questions.answer import Alone, Answer, Serving, answered_under
 from foon_asp.results.values_of import node_of, nodes_of
 
@@ -55,7 +54,7 @@ def _solved_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Ou
             answered_under(goal_problem, objectives, settings, Reporter()).outcome for goal_problem in single
         ]
     else:
-        single = [replace(problem, goals=(goal,)) for goal in problem.goals]
+        single = for_each_goal(problem)
         apart = [solve(goal_problem, objectives, settings, Reporter()) for goal_problem in single]
     if settings.constraints == () and settings.replaced is None:  # else goals may have rules of their own
         holds = Postconditions(problem, levels(objectives), settings)
