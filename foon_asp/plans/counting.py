@@ -35,6 +35,7 @@ class Counting:
     def __init__(self, question: PlanQuestion, units: list[int]) -> None:
         self._question, self._problem, self.units = question, question.problem, units
         self._measures: dict[Objective, Measure] = {}
+        self._known_figures: dict[Objective, list[Fraction]] = {}
         self._step = Fraction(1)  # step of the counted costs of the first objective
         self._orders_sought = -math.inf  # searches for an order since the proof began
         problem = question.problem
@@ -89,7 +90,11 @@ class Counting:
         return Measure(costs, 0, total, _classes(figures, Fraction(0)))
 
     def _figures(self, objective: Objective) -> list[Fraction]:
-        return [Fraction(self._problem.figure(objective, unit)) for unit in self.units]
+        if objective not in self._known_figures:
+            self._known_figures[objective] = [
+                Fraction(self._problem.figure(objective, unit)) for unit in self.units
+            ]
+        return self._known_figures[objective]
 
     @cached_property
     def _rates(self) -> RateScale:
@@ -226,6 +231,12 @@ class Counting:
         """Return an executable order of counts; ``None`` if no order runs."""
         if self._problem.counts_amounts:
             return self._bulk_plan(counts)
+        if Objective.KITCHEN not in self._question.levels:
+            try:
+                return self._bulk_plan(counts)
+            except Stopped:
+                if self._question.deadline.passed:
+                    raise
         return self._plan({a: (n, n) for a, n in counts.items()})
 
     def any_order(self, counts: Counts) -> Plan | None:

@@ -105,6 +105,8 @@ class RoundedProgram:
         }
         least = -(-least // parts) * fraction
         common = math.gcd(least, *sums.values())
+        if not common:
+            return None
         scale = Fraction(fraction, common)
         if scale > PLANS.rounding_denominator:
             return None
@@ -186,6 +188,8 @@ class StateEquation(RoundedProgram):
         return super().strengthen(costs, cutoff)
 
     def _round(self, x: Sequence[float]) -> bool:
+        if all(abs(value - round(value)) < INTEGRALITY for value in x):
+            return False  # no row that holds of whole counts is violated
         costs, self._costs = self._costs, None
         return (costs is not None and self._round_alternatives(costs)) or super()._round(x)
 

@@ -3,10 +3,12 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import lru_cache
 from types import MappingProxyType
 from typing import NamedTuple, overload
 
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitAmounts
+from foon_asp.problem.container_rule import ContainerRule, network_sides
 
 ITEMS = ("lasting", "used-up")
 """The two models of items: they last, and can be used any number of times, or they are used up."""
@@ -179,3 +181,15 @@ class UsedUp:
             amount = output_amounts.get(objects[o], 1)
             adds[o] = amount - input_amounts.get(objects[o], 1) if o in inputs else amount
         return Flow(asks, *({o: n for o, n in effect.items() if n > 0} for effect in (uses, adds)))
+
+
+@lru_cache(maxsize=4)  # successive questions are mostly about the same network
+def plain_flows(
+    network: Network, rule: ContainerRule, utensils: frozenset[str], told: frozenset[tuple[Named, bool]]
+) -> UnitFlows:
+    """Return the flows of the units of a network without amounts, with what the user told of items."""
+    needs, gives = network_sides(network, rule, utensils)
+    items, none = UsedUp(told=dict(told)), UnitAmounts()
+    return UnitFlows(
+        len(network), lambda unit: items.flow(network, unit, needs[unit], gives[unit], utensils, none)
+    )

@@ -22,7 +22,6 @@ from foon_asp.network import (
     Source,
     StandInTable,
     TaskTree,
-    UnitAmounts,
     UnitPrices,
 )
 from foon_asp.problem.container_rule import (
@@ -33,7 +32,7 @@ from foon_asp.problem.container_rule import (
     network_sides,
 )
 from foon_asp.problem.costs import Costs, tree_costs
-from foon_asp.problem.items import Flow, UnitFlows, UsedUp
+from foon_asp.problem.items import Flow, UnitFlows, UsedUp, plain_flows
 from foon_asp.problem.number import Number
 from foon_asp.problem.objective import Known, Measured, Objective
 from foon_asp.problem.restriction import Restriction
@@ -308,12 +307,16 @@ class Problem:
                 Flow(dict.fromkeys(needs, 1), {}, dict.fromkeys(gives, 1))
                 for needs, gives in zip(self.needs, self.gives, strict=True)
             )
+        plain = plain_flows(network, self.containers, self.utensils, frozenset(items.told.items()))
+        if not self.amounts:
+            return plain
         counted = {unit.motion for unit in self.amounts}
-        none = UnitAmounts()
 
         def flow(unit: int) -> Flow:
             has_amounts = network.motions[unit] in counted
-            amounts = self.amounts.get(network.unit(unit), none) if has_amounts else none
+            amounts = self.amounts.get(network.unit(unit)) if has_amounts else None
+            if amounts is None:
+                return plain[unit]
             return items.flow(network, unit, self.needs[unit], self.gives[unit], self.utensils, amounts)
 
         return UnitFlows(len(network), flow)

@@ -41,24 +41,23 @@ def reach(problem: Problem) -> Reached:
     for o in queue:
         available[o] = 1
 
-    def execute(unit: int) -> None:
-        if removed and removed(unit):
-            return
-        order.append(unit)
-        for o in gives[unit]:
-            if not available[o]:
-                available[o] = 1
-                makers[o] = unit
-                queue.append(o)
-
-    for unit, count in enumerate(missing):
-        if not count:  # under a container rule that skips every input
-            execute(unit)
-    while queue:
-        for unit in consumers[queue.popleft()]:
-            missing[unit] -= 1
-            if not missing[unit]:
-                execute(unit)
+    ready = [unit for unit, count in enumerate(missing) if not count]  # a container rule skips every input
+    while ready or queue:
+        for unit in ready:
+            if removed and removed(unit):
+                continue
+            order.append(unit)
+            for o in gives[unit]:
+                if not available[o]:
+                    available[o] = 1
+                    makers[o] = unit
+                    queue.append(o)
+        ready = []
+        if queue:
+            for unit in consumers[queue.popleft()]:
+                missing[unit] -= 1
+                if not missing[unit]:
+                    ready.append(unit)
     if restriction and restriction.required:
         positions = {unit: position for position, unit in enumerate(order)}
         for o, units in enumerate(restriction.required, start=len(network.objects)):
