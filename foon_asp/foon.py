@@ -10,8 +10,8 @@ from typing import Any, Self
 from foon_asp.argument_checks import typed
 from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.item_options import Stays, Stock, items_for
-from foon_asp.dataset.named_ids import in_python, node_ids, stated_copies
 from foon_asp.dataset.paths import File, Files, files
+from foon_asp.dataset.python_names import in_python, node_ids, stated_copies
 from foon_asp.deadline import Cancel, seconds, stoppable
 from foon_asp.errors import UserError
 from foon_asp.network import (
