@@ -239,8 +239,8 @@ def build(
 def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[[int], None]) -> Network:
     """Build a network of units as callers write them; the place of a unit is its number, from 1.
 
-    A node that is listed several times is meant several times, which ``amounts`` records. ``tell`` is called
-    with the number of units added since the last call.
+    A node that is listed several times is taken or made in as many copies, recorded in ``amounts``.
+    ``tell`` is called with the number of units added since the last call.
     """
     builder, number, reported = NetworkBuilder(), 0, 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):

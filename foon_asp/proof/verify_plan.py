@@ -156,8 +156,8 @@ class PlanCheck(Check):
     def _kept(self, unit: int, o: int, amount: int, made: int) -> int:
         """Return how many of the copies of an input stay when a unit has run.
 
-        The number is the one that the certificate states; else, for an input that is also an output, the
-        number made; else, the number by the rule.
+        The certificate may state it. Else, if an output has the label of the input, as many copies stay as
+        are made of the same node. Else, the rule for utensils and places decides.
         """
         objects, network = self.network.objects, self.network
         node = objects[o]
