@@ -300,6 +300,7 @@ def _costs(problem: Problem, objectives: Sequence[Objective], units: Sequence[in
 
 
 def _verified(certificate: Certificate, subject: verifier.Subject) -> verifier.Verified:
+    """Seal a certificate, and return what the verifier says that it proves."""
     content = certificate.content
     content["seal"] = verifier.seal(content)
     return verify_any(verifier.read_certificate(certificate.text()), subject)
