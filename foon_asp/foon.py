@@ -10,8 +10,8 @@ from typing import Any, Self
 from foon_asp.argument_checks import typed
 from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.item_options import Stays, Stock, items_for
-from foon_asp.dataset.named_ids import in_python, node_ids, stated_copies
 from foon_asp.dataset.paths import File, Files, files
+from foon_asp.dataset.python_names import in_python, node_ids, stated_copies
 from foon_asp.deadline import Cancel, seconds, stoppable
 from foon_asp.errors import UserError
 from foon_asp.network import (
@@ -239,8 +239,8 @@ def build(
 def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[[int], None]) -> Network:
     """Build a network of units as callers write them; the place of a unit is its number, from 1.
 
-    A node that is listed several times is meant several times, which ``amounts`` records. ``tell`` is called
-    with the number of units added since the last call.
+    A node that is listed several times is taken or made in as many copies, recorded in ``amounts``.
+    ``tell`` is called with the number of units added since the last call.
     """
     builder, number, reported = NetworkBuilder(), 0, 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):

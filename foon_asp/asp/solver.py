@@ -333,9 +333,10 @@ class _Solver:
     def _settle_open_preconditions(
         self, run: "Run", program: Program, text: str, explored: Collection[int], fewest: int
     ) -> "Run | None":
-        """Examine totals that rounding may have hidden among trees with open preconditions.
+        """Find the exactly best tree where costs are rounded and trees may have open preconditions.
 
-        No tree has fewer units than ``fewest``. ``None`` where the best tree has open preconditions.
+        Every tree has at least ``fewest`` units. Returns the run with that tree; ``None`` if it is not
+        proved best, or has units that were not ``explored``, so that it may have open preconditions.
         """
         assert run.units is not None
         self._measures_agree(run.units, run.cost, self.levels)

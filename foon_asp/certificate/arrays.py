@@ -185,7 +185,7 @@ class Arrays:
         return map(self.problem.rate, range(len(self.problem.network)))
 
     def _measures(self, unit: int) -> Iterator[Fraction | int | None]:
-        """Yield the rate of a unit, ``None`` where rates do not count, and its other figures."""
+        """Yield the rate of a unit, ``None`` where rates do not count, and its additive costs."""
         yield self.problem.rate(unit) if self.rates else None
         for objective in self.objectives:
             if not multiplies(objective):

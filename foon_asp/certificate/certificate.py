@@ -70,16 +70,25 @@ def certify(
 ) -> Certificate | None:
     """Return a certificate that a tree is optimal by the first objectives, as many as are proved, or a bound.
 
-    ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that is
-    not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
-    trees: then the certificate proves a bound on all of them. ``cuts`` are sets of object nodes, a goal in
-    each, that are tried first, and ``cases`` are told apart first: :attr:`foon_asp.asp.Outcome.cuts` and
-    ``Outcome.cases``. ``subject`` is the whole that the network is a part of, if it is one: with all
-    makers of each node that is neither available nor an output alone, and without constraints. ``None`` where
-    nothing is found before
-    ``expired`` says so, for objectives that need rates with rates of 0 or with rates that are not those of
-    the motions, and where nothing is found within the limits of ``verify``, as where products of rates are
-    too close to be compared, or too long to be written.
+    Parameters:
+        problem: The problem; its network may be a part of a larger one (see ``subject``).
+        objectives: The objectives, the most important first.
+        units: The tree, by unit ids in an executable order.
+        covered: The user rules that the certificate states, and what they claim.
+        expired: Whether time is up.
+        cuts: Sets of object nodes with a goal in each, tried first (:attr:`foon_asp.asp.Outcome.cuts`).
+        cases: The case split to begin with (``Outcome.cases``).
+        subject: The whole network and its data, if the problem has only a part of it. The part then has all
+            achievers of each node that is needed and not available, and there are no constraints.
+
+    Returns:
+        The certificate. Under constraints that are not covered, it proves a bound on all trees only. ``None``
+        if time is up before a proof is found; if an objective needs rates, and one is 0 or is not the rate
+        of its motion; and if the proof is beyond the limits of ``verify`` (products of rates too close to
+        be compared, or numbers too long to be written).
+
+    Raises:
+        NotBestError: if the tree is not optimal, and no constraint is uncovered.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -291,6 +300,7 @@ def _costs(problem: Problem, objectives: Sequence[Objective], units: Sequence[in
 
 
 def _verified(certificate: Certificate, subject: verifier.Subject) -> verifier.Verified:
+    """Seal a certificate, and return what the verifier says that it proves."""
     content = certificate.content
     content["seal"] = verifier.seal(content)
     return verify_any(verifier.read_certificate(certificate.text()), subject)

@@ -151,9 +151,10 @@ def _digest(content: bytes) -> str:
 
 
 def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()) -> tuple[Rule, ...]:
-    """Return the coverage without the claims of user rules that a proof does not need.
+    """Return the coverage with only those claims of user rules that a proof uses.
 
-    The removals of units that are not ``members`` of any cut are left out; limits stay where they are used.
+    A claim that removes units is kept if all of them are ``members`` of cuts; the others are kept, too.
+    ``limits`` are the limits that the proof uses.
     """
     kept, stated = set(members), [_stated(*limit) for limit in limits]
     return tuple(

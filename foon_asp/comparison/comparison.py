@@ -22,7 +22,7 @@ from foon_asp.results.values_of import goals_of, named_node, node_of
 from foon_asp.searches import Ending, Search, SearchSettings
 
 if TYPE_CHECKING:
-    from foon_asp.asp.breaking import Breaking
+    from foon_asp.asp.user_rule_check import UserRuleCheck
 
 # The objectives by which trees are compared with the optimum.
 MEASURED = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)
@@ -160,10 +160,10 @@ def _require_consistent(comparison: Comparison) -> None:
 
 
 @lru_cache(maxsize=1)
-def _breaking(rules: Settings, used_up: bool) -> "Breaking":
-    from foon_asp.asp.breaking import Breaking  # noqa: PLC0415 (takes clingo along)
+def _user_rule_check(rules: Settings, used_up: bool) -> "UserRuleCheck":
+    from foon_asp.asp.user_rule_check import UserRuleCheck  # noqa: PLC0415 (takes clingo along)
 
-    return Breaking(rules, used_up)
+    return UserRuleCheck(rules, used_up)
 
 
 def judge(
@@ -194,7 +194,7 @@ def judge(
     }
     executes = simulation.verdict is not Verdict.NEVER
     check_rules = rules.constraints and executes
-    broken = _breaking(rules, not lasting).broken(problem, retrieval.units) if check_rules else ()
+    broken = _user_rule_check(rules, not lasting).broken(problem, retrieval.units) if check_rules else ()
     return SearchResult(
         search.name,
         retrieval.ending,

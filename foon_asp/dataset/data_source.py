@@ -5,8 +5,8 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from foon_asp.dataset.named_ids import NamesAndUnits
 from foon_asp.dataset.prices import DataPrices
+from foon_asp.dataset.python_names import NamesAndUnits
 from foon_asp.network import (
     NO_AMOUNTS,
     DataAmounts,

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 from foon_asp.dataset.data_source import Source
 from foon_asp.dataset.kitchen import Kitchen
-from foon_asp.dataset.named_ids import (
+from foon_asp.dataset.prices import NO_PRICES, DataPrices
+from foon_asp.dataset.python_names import (
     NamesAndUnits,
     changed_prices,
     changed_rates,
@@ -20,7 +21,6 @@ from foon_asp.dataset.named_ids import (
     node_ids,
     stated_copies,
 )
-from foon_asp.dataset.prices import NO_PRICES, DataPrices
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,

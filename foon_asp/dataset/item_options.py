@@ -6,7 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from foon_asp.dataset.dataset import Dataset
-from foon_asp.dataset.named_ids import node_id, stated_copies
+from foon_asp.dataset.python_names import node_id, stated_copies
 from foon_asp.errors import UserError
 from foon_asp.network import MAX_AMOUNT, ObjectNode, counted
 from foon_asp.problem import ITEMS, UsedUp

@@ -115,7 +115,7 @@ class Nearby:
     def grow(self, objects: Iterable[int], step: int) -> None:
         """Read more units that lead to open objects, by id in the whole network.
 
-        One unit more is read for each ``step`` units that were read before.
+        With ``n`` units read so far, ``n // step + 1`` more are read: a smaller ``step`` reads more.
         """
         self._cone.grow(objects, len(self._cone.units) // step + 1)
         self._problem = self._relaxed = None

@@ -168,8 +168,8 @@ def _read_more(
 ) -> None:
     """Read more units that lead to the nodes that an optimal tree of the relaxation lacks.
 
-    Where many were read, that goes on until a tree that follows h_add lacks none: such trees mostly lead to
-    the units that the optimal one needs, and are found in a tenth of a proof's time.
+    If many units are read already, repeats this for trees that follow h_add, until one lacks no node. Such
+    trees mostly lead to the units of an optimal tree, and take a tenth of the time of a proof.
     """
     many_read = nearby.units > REFINEMENT.proved_units
     long_rounds = many_read or leave_unsettled(settings)

@@ -22,23 +22,25 @@ def serve() -> None:
         nonlocal program
         if command == "ground":
             program = None  # frees the memory before the next one
-            folder, *described, memory = parameters
+            folder, *arguments, memory = parameters
             if folder is not None:
                 os.chdir(folder)
             limit_own_memory(memory)
-            program = GroundProgram(*described)
+            program = GroundProgram(*arguments)
             return None
         if command == "derive":
-            *described, memory = parameters
+            *arguments, memory = parameters
             limit_own_memory(memory)
-            return derive(*described)
+            return derive(*arguments)
         assert program is not None
         if command == "consequences":
             return program.consequences(*parameters)
         assert command == "search"
         opt_mode, predicates = parameters
-        tree, bound = (lambda value, kind=kind: send(answers, (kind, value)) for kind in ("tree", "bound"))
-        return tuple(program.search(opt_mode, predicates, tree, bound))
+        send_tree, send_bound = (
+            lambda value, kind=kind: send(answers, (kind, value)) for kind in ("tree", "bound")
+        )
+        return tuple(program.search(opt_mode, predicates, send_tree, send_bound))
 
     while True:
         command = commands.get()

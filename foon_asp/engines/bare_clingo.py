@@ -274,8 +274,9 @@ class _Check:
     ) -> None:
         """Compare lexicographically where one objective is ``rounded`` in the facts.
 
-        All kinds of trees within the bound on its weight are enumerated, and measured in fractions; among the
-        kinds as good as our tree, clingo minimizes the less important objectives.
+        Trees with the same number of units of each cost are one kind. clingo enumerates the kinds up to a
+        bound on the weight of that objective, and their costs are compared in fractions. Among the kinds as
+        good as our tree, clingo minimizes the less important objectives.
         """
         index = self.levels.index(rounded)
         before, after, weights = self.levels[:index], self.levels[index:], self.weights[rounded]

@@ -141,7 +141,7 @@ class CostPartitioning:
         return added > 0
 
     def _by_target(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
-        """Return cutters of single targets that need few of the actions, and one of all other targets."""
+        """Return a cutter for each target with few relevant actions, and one for all other targets."""
         count, targets = len(self._relaxation.actions), self._cutter.targets
         alone: list[Cutter] = []
         others: list[int] = []

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from foon_asp.hypergraph.action_landmarks import relevant_beside_landmarks
 from foon_asp.hypergraph.dominance import undominated
-from foon_asp.hypergraph.gap import FirstCuts, Gap, Stage
 from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing, reduced_costs_of
 from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.incumbent_gap import FirstCuts, Gap, Stage
 from foon_asp.hypergraph.incumbent_trees import improved, irredundant
 from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood

@@ -407,8 +407,8 @@ class Prover:
     def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> tuple[Packing, dict[int, Vector]]:
         """Partition costs greedily: each cut in turn gets the least reduced cost of its landmark actions.
 
-        A cut with a number gets at most that. Returns the cost partition, and the reduced costs of the
-        landmark actions.
+        The number of a cut is the maximum of its weight, ``None`` for a cut without one. Returns the cost
+        partition, and the reduced costs of the landmark actions.
         """
         reduced_costs: dict[int, Vector] = {}
         weights: list[tuple[Cut, Vector]] = []

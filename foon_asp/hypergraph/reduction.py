@@ -15,10 +15,10 @@ from foon_asp.hypergraph import greedy_stages as greedy
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineError
 from foon_asp.hypergraph.extension import extended, extensions
-from foon_asp.hypergraph.gap import Gap, Stage
 from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem
 from foon_asp.hypergraph.goal_graph import graph_of
 from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.incumbent_gap import Gap, Stage
 from foon_asp.hypergraph.incumbent_trees import irredundant
 from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
@@ -130,10 +130,11 @@ def reduce_under_rules(
     redundant: bool = False,
     course: Course | None = None,
 ) -> Reduced:
-    """Reduce a problem whose trees have to keep to rules unknown here, for which ``subproblem`` is computed.
+    """Reduce a problem whose trees have to keep to user rules, without knowing the rules.
 
-    With ``redundant``, its trees may have units that lead to no goal. ``course`` is :data:`BOUND` where any
-    tree will do, else :data:`ROUNDS`. Other arguments are those of :func:`reduce`.
+    Of the result, ``subproblem`` and ``bound`` hold for the trees under any rules. With ``redundant``, its
+    trees may have units that lead to no goal. ``course`` is :data:`BOUND` where any tree
+    will do, else :data:`ROUNDS`. Other arguments are those of :func:`reduce`.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     with uncollected():
@@ -268,7 +269,7 @@ def _differs(gap: Gap, before: Gap) -> bool:
 
 
 def _relaxed(task: Task, gap: Gap) -> Stage:
-    """Go on with linear programs, where there are enough candidates for these to be of use."""
+    """Tighten the gap by optimal cost partitions and branch and bound, if there are many candidates."""
     if len(gap.candidates) <= task.tuning.relaxed_actions:
         return gap
     from foon_asp.hypergraph.relaxation_stages import (  # noqa: PLC0415 (few questions need it)
@@ -281,9 +282,9 @@ def _relaxed(task: Task, gap: Gap) -> Stage:
 
 
 def rounds_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Look at what a large network has near the goals, and go on with the candidates that remain.
+    """Run the greedy stages near the goals of a large network, then rounds over the remaining candidates.
 
-    h-values of reduced costs would look at all actions, so no guide is asked.
+    No guide is used, since h-values of reduced costs take time linear in all actions.
     """
     if task.costs is not None:
         gap = yield from greedy.tighten(task, gap, h_values, None, thorough=False)
@@ -417,7 +418,7 @@ class _Presolve:
         self.guarded(begin)
 
     def extend_or_run(self) -> None:
-        """Take all rounds, from trees for the goals alone where sets are required and that helps."""
+        """Run all rounds. Where sets of units are required, first try to extend trees of the goals alone."""
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:
             _extend(self)

@@ -9,10 +9,10 @@ from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.branch_and_bound import Branching
 from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
 from foon_asp.hypergraph.covering import ROUGH_TOLERANCE
-from foon_asp.hypergraph.gap import Gap, Stage
 from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing
 from foon_asp.hypergraph.greedy_stages import improve_repeatedly, prune_dominated
 from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.incumbent_gap import Gap, Stage
 from foon_asp.hypergraph.incumbent_trees import following, guessed, irredundant, perturbation_search
 from foon_asp.hypergraph.landmark_relaxation import PARTS
 from foon_asp.hypergraph.reductions import Reduction

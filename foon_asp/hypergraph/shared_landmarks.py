@@ -12,7 +12,7 @@ from foon_asp.hypergraph.cost_partition import SharedCosts, quotient, stalled
 from foon_asp.hypergraph.covering import Covering, UnsolvedError
 from foon_asp.hypergraph.cut import Cutter
 from foon_asp.hypergraph.exact_costs import ExactCosts
-from foon_asp.hypergraph.gap import Gap
+from foon_asp.hypergraph.incumbent_gap import Gap
 from foon_asp.hypergraph.incumbent_trees import guessed
 from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 from foon_asp.hypergraph.relaxation_stages import apply

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import ExactCosts, TooFineError
-from foon_asp.hypergraph.gap import Gap
 from foon_asp.hypergraph.h_values import Derivations, derive
+from foon_asp.hypergraph.incumbent_gap import Gap
 from foon_asp.hypergraph.incumbent_trees import irredundant
 from foon_asp.hypergraph.reductions import Reduction
 from foon_asp.hypergraph.task import Task

@@ -5,8 +5,8 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 
 from foon_asp.hypergraph.exact_costs import ExactCosts
-from foon_asp.hypergraph.gap import Gap
 from foon_asp.hypergraph.goal_graph import GoalGraph
+from foon_asp.hypergraph.incumbent_gap import Gap
 from foon_asp.hypergraph.reductions import Reduction
 from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import Objective, Problem

@@ -56,13 +56,13 @@ def cycles(network: Network) -> list[list[int]]:
     for root in range(size):
         if index[root]:
             continue
-        work = [(root, iter(network.consumers[root]))]
+        path = [(root, iter(network.consumers[root]))]
         counter += 1
         index[root] = low[root] = counter
         stack.append(root)
         on_stack[root] = 1
-        while work:
-            vertex, edges = work[-1]
+        while path:
+            vertex, edges = path[-1]
             for edge in edges:
                 target = edge + size if vertex < size else edge
                 if not index[target]:
@@ -71,14 +71,14 @@ def cycles(network: Network) -> list[list[int]]:
                     stack.append(target)
                     on_stack[target] = 1
                     targets = network.consumers[target] if target < size else network.outputs[target - size]
-                    work.append((target, iter(targets)))
+                    path.append((target, iter(targets)))
                     break
                 if on_stack[target]:
                     low[vertex] = min(low[vertex], index[target])
             else:
-                work.pop()
-                if work:
-                    low[work[-1][0]] = min(low[work[-1][0]], low[vertex])
+                path.pop()
+                if path:
+                    low[path[-1][0]] = min(low[path[-1][0]], low[vertex])
                 if low[vertex] == index[vertex]:
                     component: list[int] = []
                     while True:

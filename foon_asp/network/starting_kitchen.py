@@ -121,7 +121,7 @@ class StartingKitchen(ABC, Generic[File]):
 
 
 class NetworkStartingKitchen(StartingKitchen[str]):
-    """The starting kitchen of a network in memory. Units without a source are of one file."""
+    """The starting kitchen of a network in memory. Units without a source count as one file."""
 
     def __init__(self, network: Network) -> None:
         self._network = network

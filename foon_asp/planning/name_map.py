@@ -168,10 +168,10 @@ def read_name_map(file: Path) -> NameMap:
     text = read_plain_text(file)
     check_json(text, str(file))
     try:
-        tree = read_json(text)
-        if not isinstance(tree, dict) or tree.get("schema") != schema_name(KIND):
+        content = read_json(text)
+        if not isinstance(content, dict) or content.get("schema") != schema_name(KIND):
             raise ValueError(f"its schema is not {schema_name(KIND)!r}")
-        return _read(tree)
+        return _read(content)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         reason = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise UserError(

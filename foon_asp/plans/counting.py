@@ -157,11 +157,11 @@ class Counting:
                 self.bound.prove(levels, self._is_better)
 
     def _split(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
-        """Split costs too large to count unrounded into two levels: large ones in steps, and all others.
+        """Split costs that are too large for exact counting into two levels: the large ones, and all others.
 
-        Plans that differ in the large costs differ by a step at least. Where the small costs of the plan sum
-        up to less, no plan that costs a step more is better. Returns the step and the levels; ``None`` where
-        costs need no such levels, or cannot be split.
+        Large costs are multiples of a step, their greatest common divisor. The small costs of the incumbent
+        sum up to less than a step, so that a plan with greater large costs is never better.
+        Returns the step and the levels; ``None`` where costs need no such levels, or cannot be split.
         """
         if multiplies(objective) or objective.row.item or self.measure(objective).exact is None:
             return None

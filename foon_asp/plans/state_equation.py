@@ -159,7 +159,10 @@ class StateEquation(RoundedProgram):
         self.add((level,), {a: -cost for a, cost in enumerate(costs) if cost}, -level.max_cost)
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark, of executions of its members, if it can be stated."""
+        """Add the row that a member of a landmark is executed (where it has an action, if that is).
+
+        Nothing is added if initial copies satisfy the landmark too, or if its action has no indicator.
+        """
         row, least = dict.fromkeys(landmark.members, 1), 1
         indicator = None if landmark.action is None else self._indicator(landmark.action)
         if indicator is not None:
@@ -168,7 +171,7 @@ class StateEquation(RoundedProgram):
             self.add((), row, least)
 
     def add_copies(self, condition: Supply | Remainder) -> None:
-        """Add the row of copies that an action asks for or leaves, if it can be stated."""
+        """Add the row of copies that an action requires or leaves, if the action has an indicator."""
         indicator = self._indicator(condition.action)
         if indicator is not None:
             row = {**self._flows.change(condition), indicator: -condition.copies}

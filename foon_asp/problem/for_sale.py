@@ -11,11 +11,13 @@ _FRESH_STATES = frozenset({"empty", "clean"})
 
 
 class Offer(StrEnum):
-    """The set of nodes that shopping lists may contain; the first offer that suffices for the goals is used.
+    """The set of nodes that shopping lists may contain.
 
-    ``for sale``: what :class:`Shop` sells, without the dish. ``cycle``: also nodes that can only be made from
-    each other. ``processed``: everything but the dish. ``dish``: everything but the goals. ``goal``:
-    everything. ``priced``: what a price list has, and nothing else.
+    Without a price list, the first of these sets that suffices for the goals is used. ``for sale``: the nodes
+    that :class:`Shop` sells, without the dish. ``cycle``: also nodes that can only be made from each other.
+    ``processed``: every node but the dish. ``dish``: every node but the goals. ``goal``: every node.
+
+    With a price list, it is ``priced``: the nodes on the list.
     """
 
     FOR_SALE = "for sale"

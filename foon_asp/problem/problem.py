@@ -680,7 +680,7 @@ def for_each_goal(problem: Problem) -> list[Problem]:
 
 
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:
-    """Return units without a price by motion; ``units`` are their motions and the sources of their copies."""
+    """Count units without a price by motion; ``units`` has the motion and the sources of each."""
     by_motion: dict[str, Unpriced] = {}
     for motion, sources in units:
         counted = by_motion.get(motion) or Unpriced(motion, 0, sources[0] if sources else Source("-", 0))

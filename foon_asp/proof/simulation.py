@@ -83,44 +83,44 @@ def simulate(
     """
     needs = [needed_inputs(unit, containers, utensils, network) for unit in tree]
     gives = [given_outputs(unit, containers, utensils, network) for unit in tree]
-    at_hand = set(kitchen)
+    available = set(kitchen)
     as_listed: Obstacle | None = None
     for position, needed in enumerate(needs):
-        lacking = next((node for node in needed if node not in at_hand), None)
+        lacking = next((node for node in needed if node not in available), None)
         if lacking is not None:
             as_listed = Obstacle(position, lacking)
             break
-        at_hand.update(gives[position])
+        available.update(gives[position])
     if as_listed is None:
-        as_listed = _missing_goal(goals, at_hand)
+        as_listed = _missing_goal(goals, available)
         if as_listed is None:
             return Simulation(Verdict.AS_LISTED, tuple(range(len(tree))), None, None)
 
-    at_hand = set(kitchen)
+    available = set(kitchen)
     order: list[int] = []
     waiting = list(range(len(tree)))
     progress = True
     while waiting and progress:
         held_back: list[int] = []
         for position in waiting:
-            if at_hand.issuperset(needs[position]):
-                at_hand.update(gives[position])
+            if available.issuperset(needs[position]):
+                available.update(gives[position])
                 order.append(position)
             else:
                 held_back.append(position)
         progress = len(held_back) < len(waiting)
         waiting = held_back
     if waiting:
-        lacking = next(node for node in needs[waiting[0]] if node not in at_hand)
-        blocked = Obstacle(waiting[0], lacking, _cycle(needs, gives, waiting, at_hand))
+        lacking = next(node for node in needs[waiting[0]] if node not in available)
+        blocked = Obstacle(waiting[0], lacking, _cycle(needs, gives, waiting, available))
         return Simulation(Verdict.NEVER, tuple(order), as_listed, blocked)
-    obstacle = _missing_goal(goals, at_hand)
+    obstacle = _missing_goal(goals, available)
     verdict = Verdict.REORDERED if obstacle is None else Verdict.NEVER
     return Simulation(verdict, tuple(order), as_listed, obstacle)
 
 
-def _missing_goal(goals: tuple[ObjectNode, ...], at_hand: set[ObjectNode]) -> Obstacle | None:
-    missing = next((goal for goal in goals if goal not in at_hand), None)
+def _missing_goal(goals: tuple[ObjectNode, ...], available: set[ObjectNode]) -> Obstacle | None:
+    missing = next((goal for goal in goals if goal not in available), None)
     return None if missing is None else Obstacle(None, missing)
 
 
@@ -128,7 +128,7 @@ def _cycle(
     needs: Sequence[tuple[ObjectNode, ...]],
     gives: Sequence[tuple[ObjectNode, ...]],
     waiting: Sequence[int],
-    at_hand: set[ObjectNode],
+    available: set[ObjectNode],
 ) -> tuple[int, ...]:
     """Return a cycle of units that the first waiting one waits for, by depth-first search; else empty."""
     makers: dict[ObjectNode, list[int]] = {}
@@ -138,7 +138,7 @@ def _cycle(
 
     def waits_for(position: int) -> Iterator[int]:
         for node in needs[position]:
-            if node not in at_hand:
+            if node not in available:
                 yield from makers.get(node, ())
 
     path = [waiting[0]]

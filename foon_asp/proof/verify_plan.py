@@ -140,7 +140,7 @@ class PlanCheck(Check):
     def _lacks(self, unit: int) -> frozenset[int]:
         """Return the preconditions of a unit that initial copies do not satisfy.
 
-        With the objective ``kitchen``, initial copies are members of cuts, and satisfy none.
+        With the objective ``kitchen``, initial copies satisfy none: they are members of cuts instead.
         """
         return frozenset(o for o, n in self.flow(unit).asks.items() if self._is_lacking(o, n))
 
@@ -156,7 +156,8 @@ class PlanCheck(Check):
     def _kept(self, unit: int, o: int, amount: int, made: int) -> int:
         """Return how many of the copies of an input stay when a unit has run.
 
-        As the certificate states; of what is also an output, as many as that has; or by the rule.
+        The certificate may state it. Else, if an output has the label of the input, as many copies stay as
+        are made of the same node. Else, the rule for utensils and places decides.
         """
         objects, network = self.network.objects, self.network
         node = objects[o]

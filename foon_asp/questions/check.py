@@ -31,7 +31,7 @@ from foon_asp.text.json_value import schema_name
 
 if TYPE_CHECKING:  # clingo and linear programs, which only rules and certificates need
     from foon_asp.asp import Settings
-    from foon_asp.asp.breaking import Breaking
+    from foon_asp.asp.user_rule_check import UserRuleCheck
     from foon_asp.certificate import Certificate  # noqa: F401 (named in a text)
     from foon_asp.questions.repair import Repaired
 
@@ -284,16 +284,16 @@ def check(
         raise UserError(f"{rules.replaced}: a tree is checked without encodings: leave them out")
     if objectives and certificate is None:
         raise UserError("objectives are those of a certificate: add --certificate FILE")
-    breaking = _breaking(rules, used_up) if rules.constraints or rules.constants else None
-    if certificate is not None or (breaking is not None and not breaking.local):
+    rule_check = _user_rule_check(rules, used_up) if rules.constraints or rules.constants else None
+    if certificate is not None or (rule_check is not None and not rule_check.local):
         problem = whole(problem)
     chosen = () if certificate is None else chosen_objectives(problem, objectives or "units")
     listed = posed_tree(problem, tree)
     checked = Checked.of(listed, chosen)
-    if breaking is not None:
+    if rule_check is not None:
         broken = None
         if checked.executes and not checked.not_in_network:
-            broken = tuple(rule.listed for rule in breaking.broken(listed.problem, listed.ids))
+            broken = tuple(rule.listed for rule in rule_check.broken(listed.problem, listed.ids))
         checked = structs.replace(checked, breaks=broken).knowing(**checked.__dict__)
     in_order = checked.in_order
     if certificate is not None and in_order is not None and checked.ending is Ending.DONE:
@@ -304,7 +304,7 @@ def check(
     return checked
 
 
-def _breaking(rules: "Settings", used_up: bool) -> "Breaking":
-    from foon_asp.asp.breaking import Breaking  # noqa: PLC0415 (takes clingo along)
+def _user_rule_check(rules: "Settings", used_up: bool) -> "UserRuleCheck":
+    from foon_asp.asp.user_rule_check import UserRuleCheck  # noqa: PLC0415 (takes clingo along)
 
-    return Breaking(rules, used_up)
+    return UserRuleCheck(rules, used_up)

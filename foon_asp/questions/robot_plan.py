@@ -44,11 +44,11 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
         durations: Mapping[str, Duration],
         policy: Sequence[tuple[Collection[int], int]] | None = None,
     ) -> Self:
-        """Return the plan that units, by id, are in an order that executes.
+        """Return the robot plan of units, listed by id in an executable order.
 
         Parameters:
             problem: The problem.
-            objectives: What the plan is best by.
+            objectives: The objectives that the plan is optimal by.
             plan: The units by id.
             durations: How long motions take, as far as that is known.
             policy: With ``--retries``, the trees to follow: units by id, and how many failures end each.

@@ -427,10 +427,10 @@ def _tree(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str
             yield f"{margin}{node}  {f'({numbers[node]})' if node in numbers else unopened}"
             return
         first, *others = makers[node]
-        above = first in shown
-        yield from (f"{margin}{node}", f"{margin}  {first}{'  (see above)' if above else ''}")
+        is_shown = first in shown
+        yield from (f"{margin}{node}", f"{margin}  {first}{'  (see above)' if is_shown else ''}")
         shown.update((node, first))
-        for lack in () if above else first.lacks:
+        for lack in () if is_shown else first.lacks:
             yield from lines(lack, f"{margin}    ")
         yield from (f"{margin}  or {other}" for other in others[: _MAX_SHOWN.other_units])
         if len(others) > _MAX_SHOWN.other_units:

@@ -103,8 +103,9 @@ def find_data(
 ) -> DataFiles:
     """Find the files of a question: a file that is named precedes the folder's file of the same kind.
 
-    Without folder and network it is the bundled kitchen. A network of its own does not get the bundled
-    kitchen and rates, which are made for another one.
+    Without a folder and a network, the files are those of the bundled kitchen. A network without a folder
+    gets no bundled kitchen or rates, since those belong to the bundled network.
+
     A folder has its network in ``FOON.txt`` or else in its other ``*.txt``, ``*.json`` and ``*.jsonl``
     files, and may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
     ``unit_prices.txt``, ``unit_amounts.txt``, ``stand_ins.txt``, and ``goal_nodes.json`` or

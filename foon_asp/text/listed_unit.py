@@ -71,14 +71,14 @@ class ListedUnit(NamedTuple):
 
     @property
     def amounts(self) -> UnitAmounts:
-        """The amounts of its nodes, where one that is listed twice is meant twice."""
+        """The amount of each input and output node: the sum over all lines that list the node."""
         return counted_amounts(
             *([(block.node, block.amount or 1) for block in blocks] for blocks in (self.inputs, self.outputs))
         )
 
     @property
     def without_repeats(self) -> "ListedUnit":
-        """The unit with each node once on a side, with its greatest amount, as FOON text is meant."""
+        """The unit with each node once on a side, with its greatest amount, as in FOON text."""
         return self._replace(inputs=_each_once(self.inputs, max), outputs=_each_once(self.outputs, max))
 
     @property

@@ -12,8 +12,8 @@ import pytest
 import foon_asp
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.assembly import ready_made
-from foon_asp.asp.breaking import Breaking
 from foon_asp.asp.ranking import Ranked
+from foon_asp.asp.user_rule_check import UserRuleCheck
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.network import UnitPrices
@@ -96,7 +96,7 @@ def test_trees_in_order_keep_to_them_and_others_break_them(seeds: range) -> None
             assert {frozenset(units) for units, _ in ranked} == minimal, chosen
             for units, tree in found[:3]:
                 for rule in chosen:
-                    broken = Breaking(settings_of([rule])).broken(problem, units)
+                    broken = UserRuleCheck(settings_of([rule])).broken(problem, units)
                     assert bool(broken) is not keeps(problem, tree, rule), rule
 
 

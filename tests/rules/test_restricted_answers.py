@@ -10,8 +10,8 @@ from typing import NamedTuple
 import pytest
 
 from foon_asp.asp import Proof, Settings, Status, solve
-from foon_asp.asp.breaking import Breaking
 from foon_asp.asp.ranking import Ranked
+from foon_asp.asp.user_rule_check import UserRuleCheck
 from foon_asp.hypergraph import NONE
 from foon_asp.problem import Objective, Problem
 from foon_asp.rules import rules as rules_of_questions
@@ -198,7 +198,7 @@ def test_the_rules_that_a_tree_breaks_are_named(seeds: range) -> None:
         given = tuple(given_constraint(rule.text) for rule in some if rule.text.count(":-") == 1)
         if not given:
             continue
-        breaking = Breaking(Settings(given))
+        breaking = UserRuleCheck(Settings(given))
         for tree in random.Random(seed).sample(every, min(len(every), 4)):
             expected = {rule.text for rule in some if not rule.keeps(tree.units)} & set(map(str, given))
             found = breaking.broken(problem, tree.units)

@@ -165,12 +165,14 @@ _Origin = FunctionalUnit | bool
 def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origin]:
     """Return the origins of the nodes that a tree needs, breadth first from the goals backwards."""
     problem = tree.problem
-    rule = problem.containers, problem.utensils, problem.network
-    needs: dict[object, tuple[ObjectNode, ...]] = {unit: needed_inputs(unit, *rule) for unit in tree}
+    container_rule = problem.containers, problem.utensils, problem.network
+    needs: dict[object, tuple[ObjectNode, ...]] = {
+        unit: needed_inputs(unit, *container_rule) for unit in tree
+    }
     makers = {
         node: unit
         for unit in reversed(tree.units)
-        for node in given_outputs(unit, *rule)
+        for node in given_outputs(unit, *container_rule)
         if node not in needs[unit]
     }
     origins: dict[ObjectNode, _Origin] = {}

@@ -17,7 +17,7 @@ from foon_asp.plans.built_for_plans import require_built_for_plans, require_rule
 from foon_asp.problem import Objective, Problem, levels, reach
 
 
-class Breaking:
+class UserRuleCheck:
     """Constraints, read once, to check executable trees with; or plans, where items are used up.
 
     ``local`` says that their truth for a tree does not depend on units outside it.
