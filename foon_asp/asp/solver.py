@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
     from foon_asp.encoding.run import Run
     from foon_asp.encoding.scales import Scales
 
-NOT_ASKED = (
+_NOT_ASKED = (
     "clingo has no statistics: the question was settled without its search; --reduce none leaves it to clingo"
 )
 _UNITS_ONLY: tuple[Objective, ...] = (Objective.UNITS,)
@@ -63,7 +63,7 @@ def solve(
     seconds = {"cut": time.perf_counter() - began}
     outcome = _Solver(prepared, objectives, listener, seconds, mattered=mattered).solve()
     if settings.asks_for_statistics and not listener.clingo_ran:
-        reporter.statistics(NOT_ASKED)
+        reporter.statistics(_NOT_ASKED)
     return outcome
 
 

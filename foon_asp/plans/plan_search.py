@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
-from foon_asp.asp.solver import NOT_ASKED
 from foon_asp.plans.conditions import Measure
 from foon_asp.plans.count_bound import BetterError
 from foon_asp.plans.counting import Counting
 from foon_asp.plans.plan_question import Plan, PlanQuestion
 from foon_asp.plans.whole_program import Stopped
 from foon_asp.problem import Objective, Problem, multiplies
+
+_CLINGO_NOT_ASKED = "clingo has no statistics: HiGHS and exact sums found the plan, and an order that runs was found without clingo"
 
 
 def solve_used_up(
@@ -40,7 +41,7 @@ def solve_question(question: PlanQuestion) -> Outcome:
         status = Status.UNKNOWN if question.best is None else Status.FEASIBLE
         outcome = question.outcome(status, None)
     if question.settings.asks_for_statistics and not question.searched:
-        question.reporter.statistics(NOT_ASKED)
+        question.reporter.statistics(_CLINGO_NOT_ASKED)
     return outcome
 
 

@@ -242,7 +242,10 @@ def test_a_measure_that_is_no_objective_is_warned_of(cli: Cli, tmp_path: Path) -
     assert slip.endswith('did you mean motion(U,"pour")?')
 
 
-@pytest.mark.parametrize("more", [["--rule", ':- use(U), motion(U,"crush").'], ["--items", "used-up"]])
+@pytest.mark.parametrize(
+    "more",
+    [["--rule", ':- use(U), motion(U,"crush").'], ["--items", "used-up", "--objective", "kitchen"]],
+)
 def test_statistics_of_clingo(cli: Cli, more: list[str]) -> None:
     ran = cli(*ICE, "--reduce", "none", *more, "--", "--stats")
     assert ran.code == 0
@@ -250,3 +253,9 @@ def test_statistics_of_clingo(cli: Cli, more: list[str]) -> None:
     settled = cli(*ICE, "--", "--stats")
     assert "clingo has no statistics: the question was settled without its search" in settled.err
     assert "statistics" not in cli(*ICE, "--reduce", "none").err
+
+
+def test_plans_that_need_no_clingo_have_no_statistics(cli: Cli) -> None:
+    ran = cli(*ICE, "--items", "used-up", "--", "--stats")
+    assert ran.code == 0
+    assert "clingo has no statistics: HiGHS and exact sums found the plan" in ran.err
