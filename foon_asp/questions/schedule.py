@@ -185,7 +185,7 @@ class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durat
 def _schedule_or_template(
     problem: Problem, plan: Tree, *, durations_template: Path | None = None, **options: Any
 ) -> Result:
-    """Schedule as ``foon-asp schedule`` does, or write which durations it needs."""
+    """Schedule as ``foon-asp schedule`` does, or write a file of durations to be filled in."""
     if durations_template is None:
         return schedule(problem, plan, **options)
     if durations_template.exists():
@@ -276,7 +276,7 @@ def schedule(
 ) -> Schedule:
     """Find the shortest schedule of a plan: when each step starts, who does it, and with which tools.
 
-    Which step takes which copy is as :func:`trace` shows it.
+    Each step takes the copies that :func:`trace` shows.
 
     Parameters:
         plan: The path of a file (FOON text, or an answer in JSON), or functional units in the order of
@@ -369,7 +369,7 @@ def _status(solution: BestSchedule) -> Status:
 def _in_order(tree: Tree) -> Tree:
     """Return a tree in an order that executes, or else in the listed order.
 
-    If items are used up, an order is required.
+    Raises :class:`NoTreeError` if items are used up and no order executes.
     """
     if tree.problem.items is None:
         simulation = simulate_for(tree.problem, tree)
