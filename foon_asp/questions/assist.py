@@ -213,7 +213,7 @@ def assist(
 
     Parameters:
         most: The greatest number of units that the person does.
-        reach: A success to reach with the fewest units done by the person. It is above 0 and at most 1.
+        reach: A success to reach with the fewest units done by the person. A number above 0, at most 1.
         person: A file with success rates of what the person can do; without it, everything, never failing. In
             Python, also rates by motion.
 

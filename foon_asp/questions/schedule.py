@@ -280,7 +280,7 @@ def schedule(
 
     Parameters:
         plan: The path of a file (FOON text, or an answer in JSON), or functional units in the order of
-            execution; it is put in an order that runs, if that one does not.
+            execution; the plan is put in an order that runs, if this order does not.
         durations: How long each motion takes: lines of a motion, a tab, a number of seconds (or 25 min,
             1.5 h), and behind another tab the word passive if nobody has to stand by. Or seconds by motion,
             or a :class:`Duration`.
@@ -418,7 +418,8 @@ def _known_durations(
 ) -> dict[str, Duration]:
     """Return the known durations by motion.
 
-    They are those stated, those of clips, or the default; warnings name the last two kinds.
+    A duration is stated, or the median of clips, or the default. Warnings name the motions with a median or
+    the default.
     """
     durations = stated_durations(stated)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
