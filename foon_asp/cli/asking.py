@@ -174,7 +174,7 @@ class _Command:
         return bool(self._data.get("measures"))
 
     def given(self, option: str) -> bool:
-        """Return whether an option is on the command line, so that its value is not the default."""
+        """Return whether the value of an option is from the command line, and no default."""
         return self._context.get_parameter_source(option) is ParameterSource.COMMANDLINE
 
     def add_sources(self, sources: Sequence[Path]) -> None:

@@ -162,7 +162,7 @@ def data_options(command: Command) -> Command:
 
 
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
-    """Add the options for the limits of a whole command, and call the command with its ``deadline``.
+    """Add the options for the limits of a whole command, which is then called with their ``deadline``.
 
     At a limit, a message says what to do.
     """

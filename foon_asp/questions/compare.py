@@ -200,7 +200,7 @@ def compare(
         trees: Show the trees of the searches too, step by step.
         all_makeable: Compare for every object that can be made, and print a summary.
         published: Show the published figures beside the measured ones. Only some goals have such figures.
-            With this, ``ids`` is run as published: it takes the first unit everywhere.
+            If true, ``ids`` is run as published: it takes the first unit everywhere.
         results: A file to which results are added, as JSON Lines; goals that it already has are not searched
             again.
 

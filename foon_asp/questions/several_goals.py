@@ -15,7 +15,7 @@ from foon_asp.results.values_of import node_of, nodes_of
 class GoalsApartTuning(NamedTuple):
     """When the goals of a tree are also solved one by one.
 
-    ``goals`` is the greatest number of goals for that, since each goal is one more search and one more line.
+    ``goals`` is the greatest number of such goals, since each goal is one more search and one more line.
     For more goals there is the option ``--all-goals``.
     """
 
