@@ -150,7 +150,7 @@ class _Command:
     def unnamed_goals(self) -> list[ObjectNode]:
         """Return the goals of a command without ``--goal``, which are answered one by one.
 
-        They are all listed goals of data that the command names, and otherwise the assumed ones.
+        If the command names data with several listed goals, these are all of them; else the assumed goals.
         """
         if self.names_data:
             listed = self.dataset.listed
@@ -174,7 +174,7 @@ class _Command:
         return bool(self._data.get("measures"))
 
     def given(self, option: str) -> bool:
-        """Return whether an option is on the command line, and has not its default value."""
+        """Return whether the value of an option is from the command line, and no default."""
         return self._context.get_parameter_source(option) is ParameterSource.COMMANDLINE
 
     def add_sources(self, sources: Sequence[Path]) -> None:

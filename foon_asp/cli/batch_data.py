@@ -56,7 +56,7 @@ class BatchData:
         return [str(names.node(goal)) for goal in goals]
 
     def items(self, question: BatchQuestion) -> str:
-        """Return whether items last, or are used up, as they are where the goals file has amounts."""
+        """Return ``used-up`` if the goals file has an amount for a goal of the question, else ``lasting``."""
         dataset = self._datasets[None]  # all kitchens have the same goals
         if not dataset.wanted:
             return ITEMS[0]
@@ -71,7 +71,7 @@ class BatchData:
         return self._datasets[None].problem((0,), "strict")
 
     def problem(self, question: BatchQuestion) -> Problem:
-        """Return the problem of a question; of a large store, the relevant part is read at its first use."""
+        """Return the problem of a question; the relevant part of a large store is read when first used."""
         dataset = self._dataset_with_kitchen(question.kitchen)
         files = question.stock, question.stays
         stock, stays = (None if file is None else NamedPath(file) for file in files)

@@ -45,7 +45,7 @@ def _constraint(text: str) -> Constraint:
 def _options_alone(
     context: click.Context, parameter: click.Parameter, value: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Split arguments: those before the first option are networks, and the others are for another program."""
+    """Return the arguments for another program, from the first option on; words before it are networks."""
     words = list(itertools.takewhile(lambda word: not word.startswith("-"), value))
     context.params["sources"] = tuple(map(NamedPath, words))
     return value[len(words) :]

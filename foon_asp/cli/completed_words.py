@@ -70,7 +70,7 @@ def _constants(context: click.Context, prefix: str) -> Iterable[str]:
 
 
 def _constants_of(constraint: str, context: click.Context, prefix: str) -> Iterable[str]:
-    """Return the constants of a ready-made constraint, or after ``=`` the values of one: motions, labels."""
+    """Return the constants of a ready-made constraint; after ``NAME=``, motions or labels as its values."""
     name, equals, value = prefix.partition("=")
     if not equals:
         parameters = {entry.name: entry.parameters for entry in library_constraints()}

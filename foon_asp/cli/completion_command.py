@@ -22,7 +22,7 @@ _LINE_VARIABLE = "FOON_ASP_LINE"  # in the environment: the line up to the curso
 
 
 class _Shell(ShellComplete):
-    """A shell that receives completions, one a line; without any, it completes names of files itself.
+    """A shell that receives completions, one on each line; without any, it completes file names itself.
 
     The scripts of click split completions at commas or blanks, which names of object nodes have.
     """

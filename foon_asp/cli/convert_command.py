@@ -134,7 +134,7 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
 
 
 def _suffix(file: Path, target: Dialect) -> str:
-    """Return the suffix of the converted file, which may be another one for a list of objects."""
+    """Return the suffix of a converted file; lists of objects, such as kitchens, may have their own."""
     text, format_ = read_plain_text(file), format_with(target)
     return format_.list_suffix if format_of(text, str(file)).lists_objects(text) else format_.suffix
 

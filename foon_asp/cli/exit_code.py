@@ -30,7 +30,7 @@ class ExitCode(IntEnum):
 
 
 def exit_code_of(ending: "Ending") -> ExitCode:
-    """Return the exit code of a question, which has the name of its ending."""
+    """Return the exit code of a question for its ending, which has the same name."""
     return ExitCode[ending.name]
 
 

@@ -25,8 +25,9 @@ class SafeStream:
     """A text stream that escapes characters which a terminal or a log would hide or execute.
 
     Characters that its encoding lacks are escaped as well. ``stream`` is ``None`` if it was closed from the
-    start. A failed write is an error, except of ``remarks``, since an answer is complete without them. A
-    ``styled`` stream allows the codes of colours; names must be escaped before. A ``quiet`` one drops text.
+    start. A failed write is an error, but is ignored if the stream is for ``remarks``: an answer is complete
+    without them. A ``styled`` stream keeps the codes of colours, so names must be escaped before. A
+    ``quiet`` stream drops text.
     """
 
     errors = "strict"
@@ -85,6 +86,7 @@ class SafeStream:
 
     @contextlib.contextmanager
     def _faults(self) -> Iterator[None]:
+        """Raise :class:`UserError` for a failed write; for ``remarks``, ignore the failure."""
         try:
             yield
         except BrokenPipeError:

@@ -21,7 +21,7 @@ def check_outputs(read: Iterable[Path] = (), written: Iterable[Path] | None = No
     """Raise :class:`UserError` if the current command would write a file that it reads, or one file twice.
 
     ``read`` are inputs that its parameters do not name, such as the files of a folder, and ``written`` its
-    outputs, if the parameters do not name them. It is called before the search, which may take an hour.
+    outputs, if the parameters do not name them. The check runs before a search, which may take an hour.
     """
     outputs = [*(_outputs() if written is None else written)]
     if not outputs:
@@ -86,7 +86,7 @@ def _paths(value: object) -> list[Path]:
 
 
 def _files(path: Path) -> Iterator[Path]:
-    """Return the files read for a path: of a folder, a file with its includes, or a ready-made constraint."""
+    """Yield the files read for a path: files of a folder, a file with includes, a ready-made constraint."""
     with contextlib.suppress(UserError, OSError):  # reported when it is read
         if path.is_dir():
             for encoding in path.glob("*.lp"):

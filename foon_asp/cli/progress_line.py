@@ -60,7 +60,7 @@ class Progress(Reporter):
             self._thread = DaemonThread(self._show)
 
     def _show(self) -> None:
-        """Show the line until the search has finished, unless that is soon."""
+        """Show the line until the search has finished; a short search shows no line."""
         with contextlib.suppress(Empty):
             self._finished.get(timeout=_DELAY_SECONDS)
             return

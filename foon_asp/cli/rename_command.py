@@ -98,7 +98,7 @@ def _byte_order_mark(file: Path) -> bytes:
 
 
 def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
-    """Return the kind of the old name; raises :class:`UserError` if it is no name, or of several kinds."""
+    """Return the kind of the old name; raises :class:`UserError` if there is none, or more than one."""
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():
         counts.update(

@@ -162,7 +162,7 @@ def data_options(command: Command) -> Command:
 
 
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
-    """Add the options of the limits of a whole command, which it gets as its ``deadline``.
+    """Add the options for the limits of a whole command, which is then called with their ``deadline``.
 
     At a limit, a message says what to do.
     """
@@ -186,7 +186,7 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:
     """Return the deadline of the current command.
 
-    It begins with the process if that runs no other command.
+    Time counts from the start of the process, if the process runs only this command.
     """
     context = click.get_current_context()
     began = context.obj if isinstance(context.obj, float) else None

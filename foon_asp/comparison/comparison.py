@@ -100,7 +100,7 @@ class SearchResult(Value, frozen=True):
         return self.obstacle is not None and self.obstacle.cycle
 
     def beats_the_optimum(self, objective: Objective) -> bool:
-        """Return whether a tree, which then does not execute, costs less than the proved optimum."""
+        """Return whether the tree costs less than the proved optimum, and therefore does not execute."""
         ratio = self.ratios.get(objective)
         return ratio is not None and (ratio > 1 if multiplies(objective) else ratio < 1)
 

@@ -28,10 +28,10 @@ def compare_goals(
 ) -> Iterator[Comparison]:
     """Compare the searches on each goal by itself; yield the comparisons in order of the goals.
 
-    With more than one job, processes share the goals; the comparisons are the same. Optima keep to the
+    With more than one job, processes share the goals; the results are those of one job. Optima keep to the
     ``rules``; ``time_limit`` is in seconds for each optimum.
 
-    Raises :class:`UserError` where a process dies, mostly for want of memory.
+    Raises :class:`UserError` where a process dies, usually because memory is full.
     """
     compare_goal = partial(_compare, problem.plain, tuple(searches), settings, time_limit, rules)
     if jobs == 1:

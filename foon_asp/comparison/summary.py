@@ -13,7 +13,7 @@ from foon_asp.problem import Objective, multiplies
 class Distance(NamedTuple):
     """Statistics of the ratio to the optimum, over the trees that execute and break no rule; 1 is optimal.
 
-    The ratio is cost over optimum, for ``success`` optimum over product, so that more is always worse.
+    The ratio is cost over optimum, but optimum over ``success``, so that a higher ratio is always worse.
     ``share`` is the fraction of trees that are optimal, ``worst_goal`` the goal of the worst ratio. The 90th
     percentile is the least ratio that at least nine tenths of the trees do not exceed.
     """
@@ -29,7 +29,8 @@ class Distance(NamedTuple):
 class Summary(NamedTuple):
     """The summary of one search over many goals that can all be made.
 
-    ``results`` are its results, goal by goal. ``distances`` are by objective; one without any tree is absent.
+    ``results`` are the results of the search, goal by goal. ``distances`` are by objective; an objective
+    without any ratio is absent.
     """
 
     search: str

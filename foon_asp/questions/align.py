@@ -91,7 +91,7 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
         return write_units(self.aligned_units, ["In the words of another network"])
 
     def show(self) -> Iterator[Block]:
-        """Return how many nodes are known, and those that are not, with the edits."""
+        """Return how many nodes are known, and a list of the other nodes with the edits."""
         yield (
             f"{counted(len(self.nodes), 'node')}: {self.in_network} known, {self.one_edit} one edit away, "
             f"{self.new} new"
@@ -186,7 +186,7 @@ def align(
 
 
 def _one_edit_away(node: ObjectNode, network: Network, table: StandInTable, prices: NodePrices) -> int | None:
-    """Return the cheapest node of a network that is one edit away, by id; ``None`` if known or new."""
+    """Return the id of the cheapest node one edit away from a node; ``None`` if none is, or it is known."""
     if network.object_id(node) is not None:
         return None
     priced = sorted((price, o) for o, price in prices.of_node(node).items())
@@ -196,7 +196,7 @@ def _one_edit_away(node: ObjectNode, network: Network, table: StandInTable, pric
 def _aligned(
     node: ObjectNode, nearest: int | None, recipe: Network, other: Network, table: StandInTable
 ) -> AlignedNode:
-    """Return how a node of a recipe matches the nearest node of another network, if it has any."""
+    """Return how a node of a recipe matches another network; ``nearest`` is the node one edit away, by id."""
     value = named_node(recipe, node)
     if nearest is None:
         match = Match.NEW if other.object_id(node) is None else Match.IN_NETWORK

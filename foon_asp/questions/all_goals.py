@@ -92,7 +92,7 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
 
 
 def _cells(answers: list[Answer], list_count: int, columns: Iterable[Objective]) -> Iterator[str | Cell]:
-    """Yield the cells of a row, after the goal: answers with equal status and costs."""
+    """Yield the cells of a row after the goal, for answers with equal status and costs."""
     first = answers[0]
     names = [" then ".join(answer.objectives) for answer in answers]
     leading = {answer.objectives[0] for answer in answers}
@@ -163,7 +163,10 @@ def solve_all_goals(
 
 
 def _in_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterator[tuple[int, Problem]]:
-    """Yield problems of one goal each with their index, parts of trees first once landmarks are shared."""
+    """Yield problems of one goal each with their index: first in order, then by ascending ``h_add``.
+
+    The order changes once landmarks are shared.
+    """
     remaining = [*range(len(problems))]
     while remaining and not solved.sharing:
         number = remaining.pop(0)
@@ -173,7 +176,7 @@ def _in_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterator[tupl
 
 
 def _each_goal(problem: Problem, settings: Settings) -> list[Problem]:
-    """Return a problem for each goal; a large store without rules is read as far as an answer takes."""
+    """Return a problem for each goal; without rules, only what an answer needs is read of a large store."""
     if isinstance(problem, NearbyProblem) and not settings.constraints and settings.replaced is None:
         return problem.each_goal()
     return for_each_goal(asked_with(problem, settings))

@@ -193,7 +193,11 @@ class _Listed(NamedTuple):
 
 
 class _Pool(NamedTuple):
-    """Trees in order of their costs; whether they are all trees; the number of last trees not proved next."""
+    """Trees in order of their costs.
+
+    ``complete`` says whether they are all trees. ``unproved`` is the number of last trees that are not proved
+    to be the next ones.
+    """
 
     trees: tuple[_Listed, ...]
     complete: bool
@@ -211,7 +215,7 @@ def alternatives_or_union(
     limit: int = 100,
     **options: Unpack[CommonOptions],
 ) -> Result:
-    """List trees as ``foon-asp alternatives`` does, or the units of every tree and of some."""
+    """List trees as ``foon-asp alternatives`` does; with ``union``, units of every or of some tree."""
     if not union:
         return alternatives(
             problem, objectives, best=best, different=different, within=within, limit=limit, **options
@@ -325,7 +329,7 @@ def _values(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) ->
 def _partings(problem: Problem, trees: Sequence[frozenset[int]]) -> Iterator[Parting]:
     """Yield the nodes where trees part, from the goals backwards.
 
-    First those of all trees, and then those of each group that agrees so far.
+    The nodes where all trees part come first, then those of each group of trees that agree so far.
     """
     groups = [tuple(range(len(trees)))]
     for group in groups:  # grows during the loop
@@ -341,7 +345,7 @@ def _ways(
 ) -> Iterator[tuple[int, dict[tuple[int, ...], list[int]]]]:
     """Yield the first object node, from the goals backwards, that trees make in different ways, if any.
 
-    It comes with the indices of the trees by the units that make it in them.
+    The node comes with a mapping from the units that make it to the indices of the trees with these units.
     """
     queue = list(problem.goals)
     for o in queue:  # grows during the loop

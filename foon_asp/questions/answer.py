@@ -352,7 +352,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         yield from (*self.goal_lines(), *self.findings(), *self.notes)
 
     def findings(self) -> Iterator[Block]:
-        """Return the claim and the steps."""
+        """Yield the claim, the remarks, and the steps; without a tree, the reasons."""
         yield from self.headlines()
         yield from self.remarks()
         if self.status is Status.FEASIBLE:
@@ -440,7 +440,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         return RobotPlan.of(self.problem, self.objectives, self.ids, self.durations, policy)
 
     def remark(self, format_: str) -> str:
-        """Return the claim where that is not the best tree, and the notes, which JSON needs not."""
+        """Return the claim, unless the tree is proved optimal, and the notes that the format lacks."""
         claim, *note = self.headlines()
         note += self.remarks()
         claimed = [] if self.status is Status.OPTIMAL and self.penalty is UNSET else [claim]
@@ -490,9 +490,9 @@ def answered_under(
 ) -> Answer:
     """Solve a problem under user rules, which may be about units that no goal needs.
 
-    In a store, the units nearest to the goals are read first, if :func:`near_goals` allows it; otherwise
-    the part that the goals can need, if no rule looks beyond a tree. A tree with a unit outside that part
-    has one unit more than its goals need: if that cannot improve the tree found, no more is read.
+    In a store, the units nearest to the goals are read first, if :func:`near_goals` allows it. Otherwise the
+    part that the goals can need is read, if no rule looks beyond a tree. A tree with a unit outside this part
+    has a unit more than its goals need. If such a tree cannot be better, no more is read.
     """
     nearby = near_goals(problem, objectives, settings)
     if nearby is not None:
@@ -521,7 +521,7 @@ def answered_under(
 def _answered_reading(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
 ) -> Answer:
-    """Solve over the part that the goals can need; if its optimum may be missed there, over all data."""
+    """Solve over the part that the goals can need, and over all data if a better tree may be outside it."""
     problem = read(problem)
     is_partial = problem.network.object_numbers and problem.items is None and settings.constraints
     if is_partial and settings.replaced is None and reach_of_rules(settings) is ReachOfRules.TREE:

@@ -112,7 +112,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
     def show(self) -> Iterator[Block]:
         """Return a table with a row for each number of helped units, and the success that was reached.
 
-        The tree of the last row is shown where it was asked for, and where it reaches what is wanted.
+        The tree of the last row follows if ``most`` was given, or if the tree reaches the wanted success.
         """
         yield from self.goal_lines()
         rule, last = self.problem.conditions, self.rows[-1]
@@ -213,7 +213,7 @@ def assist(
 
     Parameters:
         most: The greatest number of units that the person does.
-        reach: A success to reach with the fewest units done by the person. It is above 0 and at most 1.
+        reach: A success to reach with the fewest units done by the person. A number above 0, at most 1.
         person: A file with success rates of what the person can do; without it, everything, never failing. In
             Python, also rates by motion.
 

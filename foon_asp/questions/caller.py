@@ -22,8 +22,8 @@ class Caller(NamedTuple):
     """The caller of a question: Python or a command.
 
     ``reporter`` receives warnings and progress. ``deadline`` is the deadline of the command. ``read_seconds``
-    is the time of reading, if it is shown. ``lenient`` says that lines of trees that are not
-    understood are left out. ``form`` is the format of the result, if one is chosen.
+    is the time of reading in seconds; ``None`` if it is not shown. ``lenient`` says whether lines of a tree
+    that are not understood are skipped. ``form`` is the chosen format of the result, if any.
     """
 
     reporter: Reporter

@@ -103,7 +103,7 @@ def bound_text(content: Mapping[str, Any]) -> str:
 
 
 def _success(exponents: Mapping[str, str]) -> str:
-    """Return a product of powers of rates in a few digits; a bound above 1 says no more than 1."""
+    """Return a product of powers of rates in a few digits; a bound above 1 is shown as 1."""
     precise = Context(prec=50, traps=[])
     logarithm = Decimal(0)
     for name, e in exponents.items():

@@ -63,7 +63,7 @@ def certified(
 
 
 def _subject(problem: Problem) -> Subject | None:
-    """Return the subject of a certificate from the index of a store; ``None`` if the problem has it."""
+    """Return the subject of a certificate for a problem over a part of a store; ``None`` for others."""
     data = problem.origin
     if not problem.network.object_numbers or not isinstance(data, Dataset) or problem.own_rates:
         return None

@@ -173,7 +173,7 @@ def _simulated(tree: Tree) -> Simulation:
 
 
 def _posed(command: Command, tree: Path, **named: Any) -> tuple[Problem, Tree]:
-    """Pose what a tree is for; to be repaired, it is a part of the network, whatever names it uses."""
+    """Read a tree, and pose its problem; for ``--repair``, a tree without goals is one more network."""
     if command.given("repair") and not read_answer(tree).goals:
         command.add_sources([tree])
     return a_plan(command, tree=tree, **named)
@@ -258,7 +258,7 @@ def check(
         tree: The path of a file (FOON text, or an answer in JSON), or functional units in the order listed,
             such as a :class:`TaskTree`. Where items are used up, it is a plan, in which a unit may be listed
             several times.
-        certificate: Also prove the tree the best, and write the proof. It is the path of the file.
+        certificate: Also prove the tree the best, and write the proof. The argument is the path of the file.
 
     Returns:
         Whether the tree ``executes``, the tree ``in_order``, what stops it, the rules that it ``breaks``, and

@@ -192,20 +192,20 @@ def compare(
 ) -> Compared:
     """Run searches for each goal of a problem by itself, and prove the optimum beside them.
 
-    The limits are for each search and each optimum. Optima keep to constraints; of each tree of a search
-    that executes, it is said which of their rules it breaks.
+    The limits are for each search and each optimum. Optima keep to constraints. Searches ignore them: for
+    each tree that executes, the result lists the rules that the tree breaks.
 
     Parameters:
         searches: A search to run; by default all of them, including those of other packages.
         trees: Show the trees of the searches too, step by step.
         all_makeable: Compare for every object that can be made, and print a summary.
-        published: Show the published figures beside the measured ones. Where the goals have some; ``ids`` is
-            then run as published, and takes the first unit everywhere.
+        published: Show the published figures beside the measured ones. Only some goals have such figures.
+            If true, ``ids`` is run as published: it takes the first unit everywhere.
         results: A file to which results are added, as JSON Lines; goals that it already has are not searched
             again.
 
     Returns:
-        One of the ``comparisons`` for each goal, with figures for each search and the optimum.
+        The ``comparisons``, one for each goal, with figures for each search and the optimum.
 
     Raises:
         UserError: for a wrong argument, or a file of results that belongs to another question.
@@ -276,7 +276,7 @@ def _compared_goals(
     jobs: int,
     results: File | None,
 ) -> Iterator[Comparison]:
-    """Return the comparison of each goal, from the file of results where that has it."""
+    """Return the comparison of each goal; comparisons that the file of results has are not repeated."""
     goals = {str(node): goal for node, goal in zip(problem.goal_nodes, problem.goals, strict=True)}
     with contextlib.ExitStack() as stack:
         done: dict[object, Comparison] = {}

@@ -26,7 +26,7 @@ def cross_checked(
         engines: The engines to ask besides bare clingo.
 
     Raises:
-        BugError: where one disagrees; for a command, all that is needed to look into it is in a new file.
+        BugError: where an engine disagrees; a command writes what is needed to reproduce it to a new file.
     """
     penalty = answer.penalty if isinstance(answer.penalty, int) else None
     request = Asked(answer.outcome, settings, weights, penalty)

@@ -38,7 +38,7 @@ class End(NamedTuple):
 
 
 class Envelope:
-    """The upper envelope of the success of trees over one rate, as far as the best tree leads it.
+    """The part of the upper envelope of the success of trees over one rate where the best tree is on it.
 
     docs/dev/questions.md has the argument. ``motions`` are the motions that a tree for the goals may have.
     """
@@ -88,9 +88,10 @@ class Envelope:
             return End(None, None, proved=False)
 
     def _end_from(self, motion: str, degree: int, of: Fraction) -> End:
-        """Move from a distant rate towards the rate of a motion, from one better tree to another.
+        """Return the end of the interval, found from a distant rate towards the given rate of a motion.
 
-        At degree 0 all other rates are 1, so that the tree with the fewest units of the motion is found.
+        The distant rate is the root of ``of`` of this degree; each better tree gives the next rate to try. At
+        degree 0 all other rates are 1, so that the tree with the fewest units of the motion is found.
         """
         tree = self._seen(motion, self._tree)
         rate = Root(1, (self._problem.rates or {})[motion])
@@ -121,9 +122,9 @@ class Envelope:
     def _unmoved(self) -> set[str]:
         """Return motions whose rates may rise to 1 while the tree stays optimal; many are tested at once.
 
-        Test: units with one of the motions, outside the tree, never fail. If the tree stays optimal, it
-        does so if the rate of one of the motions rises, since other trees gain no more by that. Otherwise
-        the motions by which the better tree gains are removed, and the test is repeated.
+        In the test, units with one of the motions, outside the tree, never fail. If the tree stays optimal,
+        it also does when the rate of one motion alone rises, since no other tree gains more by that.
+        Otherwise the motions by which the better tree gains are removed, and the test is repeated.
         """
         network, own_rates = self._problem.network, self._problem.own_rates
         motions = set(self.motions)
@@ -160,7 +161,7 @@ class Envelope:
 
 
 def _at_rate(problem: Problem, motion: str, degree: int, of: Fraction) -> Problem:
-    """Return a problem with all rates raised to a degree, at which the varied rate, a root, is rational."""
+    """Return a problem with all rates raised to a degree; the varied rate, a root, becomes ``of``."""
     raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
     own_rates = {unit: rate**degree for unit, rate in problem.own_rates.items()}
     return replace(problem, rates=raised | {motion: of}, own_rates=own_rates, as_seen=problem)

@@ -79,7 +79,7 @@ class ExplainedRule(Value, frozen=True):
     def lines(self, similar: int) -> Iterator[str]:
         """Return lines on the place, text, effect and locality of a rule.
 
-        ``similar`` is the number of such facts.
+        ``similar`` is the number of further facts like this one, which are only counted.
         """
         yield str(Source(self.file, self.line))
         if self.constraint:

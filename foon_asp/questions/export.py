@@ -119,7 +119,7 @@ def _posed(
 
 
 def _merged(problem: Problem, items: str | None) -> bool:
-    """Return whether copies are merged; raises :class:`UserError` if the problem was posed otherwise."""
+    """Return whether copies are merged; raises :class:`UserError` if ``items`` contradict the problem."""
     if items not in {None, *_ITEM_RULES}:
         raise UserError(f"found items={items!r}, expected one of {', '.join(_ITEM_RULES)}")
     if items is not None and (items == "lasting") is not (problem.items is None):

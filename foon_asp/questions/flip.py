@@ -21,7 +21,7 @@ class Flip(NamedTuple):
 
     @property
     def inwards(self) -> Fraction:
-        """The rate of the flip, rounded to a decimal of four digits or more on the side of the given rate."""
+        """The rate of the flip, rounded towards the given rate to a decimal of four digits or more."""
         digits = 4
         if self.at.rational == self.rate:
             return self.rate
@@ -33,7 +33,7 @@ class Flip(NamedTuple):
 
     @property
     def percent(self) -> str:
-        """The relative change of the rate in percent, in three digits, rounded to 0."""
+        """The relative change of the rate in percent, in three digits, rounded towards 0."""
         digits = 4
         while True:
             low, high = self.change(digits)
@@ -46,9 +46,10 @@ class Flip(NamedTuple):
             digits *= 2
 
     def change(self, digits: int) -> tuple[Fraction, Fraction]:
-        """Return two numbers that enclose the relative change of the rate, to the digits that matter.
+        """Return two numbers that enclose the relative change of the rate.
 
-        They are one number where that is rational.
+        They are computed from the factor of the rate, enclosed in ``digits`` significant digits.
+        The numbers are equal if the change is rational.
         """
         factor = self.at.over(self.rate)
         exact = factor.rational
@@ -58,9 +59,10 @@ class Flip(NamedTuple):
     def __lt__(self, other: object) -> bool:
         """Compare relative changes exactly, by as many digits as it takes.
 
-        Changes that are equal and not rational are on one side, and factors of the rate that are equal: were
-        the factors on two sides, they would add up to 2. But positive roots none of which is a rational
-        multiple of another are linearly independent over the rational numbers (Besicovitch, 1940).
+        Equal factors of the rate are compared first. After that, two changes that are not rational cannot be
+        equal. On one side, their factors would be equal; on two sides, the factors would add up to 2. But
+        positive roots none of which is a rational multiple of another are linearly independent over the
+        rational numbers (Besicovitch, 1940).
         """
         assert isinstance(other, Flip)
         if self.at.over(self.rate) == other.at.over(other.rate):

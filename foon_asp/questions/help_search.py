@@ -115,7 +115,7 @@ class PricedHelp:
 class CountedHelp:
     """Trees whose helped units are counted: units that the person does better are in the network twice.
 
-    For rules and encodings that look at who does a unit.
+    This is for rules and encodings that look at who does a unit.
     """
 
     def __init__(
@@ -173,7 +173,7 @@ def helped_trees(
 ) -> HelpedTrees:
     """Find the best trees with help for 0, 1, 2, ... units.
 
-    They end with ``max_helped`` units, with the first tree that succeeds as often as ``wanted``, or where
+    The rows end with ``max_helped`` units, with the first tree that succeeds as often as ``wanted``, or where
     more help changes nothing. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     better = {
@@ -230,7 +230,7 @@ def _proved(tree: Outcome) -> Outcome:
 
 
 def _require_sound(max_helped: int, row: Outcome, before: Outcome, settings: Settings) -> None:
-    """Require that the person does few enough units, that the costs say so, and that help never hurts."""
+    """Require that at most ``max_helped`` units are helped, costs are right, and help never hurts."""
     if row.units is None:
         return
     holds = Postconditions(row.problem, _BEST, settings)

@@ -127,8 +127,8 @@ def merge(
         store: The store to write, for networks too large to read for each question. Of a single folder, it
             also keeps the kitchen, rates, utensils, goals and prices.
         unit_prices: The file with the prices of units, used when copies of a unit have different ones.
-        unit_amounts: The file that says how many of an object node units take and make; it precedes what
-            the networks state.
+        unit_amounts: The file that says how many of an object node units take and make; it overrides
+            what the networks state.
         lenient: Whether lines that are not understood are skipped instead of being errors.
 
     Returns:
@@ -153,7 +153,7 @@ def merge(
 
 
 def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Merged:
-    """Merge networks in memory, or with what stands beside them into a store."""
+    """Merge networks in memory; with a ``store``, merge all data files into the store."""
     network_files = tuple(dict.fromkeys(data_files.network))
     if store is not None:
         from foon_asp.store.import_files import import_files  # noqa: PLC0415 (slow to import)

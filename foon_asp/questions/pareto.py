@@ -122,7 +122,7 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
     def show(self) -> Iterator[Block]:
         """Return the points as a table, each with the differences of its tree from the tree above.
 
-        Where trees were asked for, the units of the first follow, and those that go and come with the others.
+        Where trees were asked for, the units of the first follow, then those that each point drops and adds.
         """
         yield from self.goal_lines()
         yield self._claim()
@@ -326,8 +326,8 @@ def _best_trees(
 ) -> Iterator[Outcome]:
     """Yield trees of the front, each better than all before by an objective other than the first.
 
-    One search more than there are points is run (lexicographic epsilon-constraint method). An outcome
-    without a proof is the last.
+    The method is the lexicographic epsilon-constraint method, with one search more than there are points. An
+    outcome without a proof is the last.
     """
     reporter = caller().reporter
     while True:

@@ -35,7 +35,7 @@ class Command(Protocol):
         """Return whether an option, by name, is on the command line itself."""
 
     def unnamed_goals(self) -> list[ObjectNode]:
-        """Return the goals that are answered one by one where none is named."""
+        """Return the goals that are answered one by one, for a command that names no goal."""
 
     def add_sources(self, sources: Sequence[Path]) -> None:
         """Add networks that are named without an option; the data are read anew."""
@@ -96,7 +96,7 @@ def the_data(command: Command) -> "tuple[Foon]":
 
 
 def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
-    """Return whether a picture is of a tree: goals are named, or only a recipe is, as for ``solve``.
+    """Return whether a picture is of a tree: goals are named, or a recipe is named without an option.
 
     Raises :class:`UserError` for a recipe with several goals, since a picture is of one tree.
     """

@@ -26,9 +26,9 @@ def a_plan(
     amounts: Sequence[int] = (),
     **named: Path,
 ) -> tuple[Problem, Tree]:
-    """Read a plan, and pose the problem that it is for; the command precedes what an answer says.
+    """Read a plan, and pose its problem; options of the command override the fields of an answer.
 
-    ``named`` is its file, under the name of the question's parameter.
+    ``named`` has one entry: the file of the plan, by the name of the question's parameter.
     """
     (plan,) = named.values()
     answer = read_answer(plan)
@@ -75,8 +75,8 @@ def listed_tree(
 ) -> Tree:
     """Return the tree that a file lists, for the named goals or the goals of an answer.
 
-    Without an answer and a goal it is for the only goal of the data, or for what the last step makes.
-    ``used_up`` says how items are used up for goals, by id; without it they last.
+    Without any of these goals, the tree is for the only goal of the data, or for what the last step makes.
+    ``used_up`` returns for goals, by id, how items are used up; without it, items last.
     """
     ordered = not answer.numbers
     listed = answer.with_units(file, lambda: dataset.whole_network).units or ()
@@ -99,7 +99,10 @@ def listed_tree(
 
 
 def settle_data(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
-    """Return the data for trees in files: the files themselves where :func:`own_networks` returns them."""
+    """Return the data for trees in files: those that the command names.
+
+    If it names none, they are the files of :func:`own_networks`; without any, the bundled kitchen.
+    """
     if not command.names_data:
         command.add_sources(own_networks(command.dataset.data.network, files))
     return command.dataset

@@ -118,7 +118,7 @@ def read_as(problem: Problem, items: str) -> Problem:
 
 
 def at_least(number: int, least: int, what: str) -> int:
-    """Raise :class:`UserError` for a number below a minimum."""
+    """Return a number; raises :class:`UserError` if it is below a minimum."""
     if number < least:
         raise UserError(f"found {what}={number}, expected a whole number from {least}")
     return number

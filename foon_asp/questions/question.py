@@ -57,15 +57,16 @@ class Role(Flag):
 class Option(NamedTuple):
     """An option of a question, for the command line and Python, as plain data.
 
-    In the annotation of a parameter (``Annotated[int, Option(...)]``) the parameter gives the name and the
-    default, and the first sentence of its entry in the docstring the help, where the option has none.
+    In the annotation of a parameter (``Annotated[int, Option(...)]``), an option without a name takes its
+    name and default from the parameter. Without ``help``, it takes the first sentence of the parameter's
+    entry in the docstring.
 
     ``name`` is the parameter. ``flags`` are the flags of the command line, by default ``--name`` with dashes
-    for underscores. A ``positional`` option has no flag and must be given, unless it is ``optional``, or
-    ``many``: then it may be repeated. ``help`` describes the option on the command line and in Python;
-    ``python`` adds what only Python accepts. ``choices`` are the values allowed, or a function that lists
-    them, if other packages may add some. ``least`` is the smallest number allowed, ``metavar`` the word for
-    the value in help, by default that of its type, and ``FILE`` for a file.
+    for underscores. A ``positional`` option has no flag and must be given, unless it is ``optional`` or
+    ``many``. An option that is ``many`` may be repeated. ``help`` describes the option on the command line
+    and in Python; ``python`` adds what only Python accepts. ``choices`` are the values allowed, or a function
+    that lists them, if other packages may add some. ``least`` is the smallest number allowed. ``metavar`` is
+    the word for the value in help, by default the word of its type, and ``FILE`` for a file.
     """
 
     name: str = ""
@@ -127,7 +128,7 @@ def question(
     """Return a decorator that describes a function for a command line, see :func:`question_of`.
 
     The options of the command are ``options``, and after them those in the annotations of the parameters. A
-    question supports items that are used up if it has an option for them, or states it with ``used_up``.
+    question supports items that are used up if it has an option for them, or if ``used_up`` says so.
     """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
@@ -229,7 +230,7 @@ def _for_lasting_items(ask: Callable[P, R]) -> Callable[P, R]:
 def not_built(name: str) -> UserError:
     """Return the error that a question does not support items that are used up.
 
-    Its verb or module names it.
+    ``name`` is the verb or the module of the question.
     """
     return UserError(f"{name.replace('_', '-')} is not built for items that are used up (--items used-up)")
 

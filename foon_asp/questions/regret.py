@@ -171,8 +171,8 @@ def regret(
     Parameters:
         units: A unit to ask about as well, by its id.
         motions: A motion to ask about as well, the optimum without all of its units.
-        pairs: Ask about pairs of kitchen items as well. Only those that the tree takes and that can be done
-            without alone.
+        pairs: Ask about pairs of kitchen items as well. The best tree takes both items
+            of a pair, and for each of them there is a tree without this item alone.
 
     Returns:
         The best tree as the ``answer``, and the ``regrets``, of which the greatest loss comes first.
@@ -204,6 +204,7 @@ def regret(
     holds = Postconditions(problem, levels(chosen), settings)
 
     def without(leave_out: Callable[[], Problem], **parts: Any) -> Regret:
+        """Solve without some parts, and append the regret."""
         try:
             with settings.begun.watched("leaving out a part"):  # which takes a while in a large network
                 fewer = leave_out()
@@ -298,6 +299,7 @@ def _units_of(problem: Problem, motion: str) -> list[int]:
 def _worst_first(
     regret: Regret, objectives: tuple[Objective, ...]
 ) -> tuple[bool, tuple[int | Fraction, ...], Removal]:
+    """Return a sort key: first the parts without which there is no tree, then the greatest loss."""
     costs = regret.costs
     key = () if costs is None else tuple(-figure for figure in costs.key(objectives))
     return costs is not None, key, regret.part

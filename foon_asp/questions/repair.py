@@ -229,7 +229,7 @@ def _certified(needed: Repair, outcome: Outcome, settings: Settings) -> tuple[Ou
 
 
 def _is_in_kitchen(problem: Problem) -> Callable[[ObjectNode], bool]:
-    """Return whether a node that the network lacks is one that the kitchen file lists."""
+    """Return a function that says whether the kitchen file lists a node that the network lacks."""
     data = problem.origin.data if isinstance(problem.origin, Dataset) else None
     items = () if data is None else data.kitchen_items
     return lambda node: any(item.pattern.matches(node) for item in items)

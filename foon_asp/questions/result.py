@@ -41,7 +41,7 @@ class NothingToDrawError(UserError):
 
 
 class NoTreeError(UserError):
-    """There is no tree to go on with; ``ending`` says how it ended where one was looked for."""
+    """There is no tree to go on with; ``ending`` says how the search for a tree ended, if there was one."""
 
     def __init__(self, message: str, ending: Ending = Ending.NEGATIVE) -> None:
         super().__init__(message)

@@ -15,8 +15,8 @@ from foon_asp.results.values_of import costed_tree
 def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unpack[CommonOptions]) -> Answer:
     """Return an answer with the policy of greatest chance over its tree and the best trees by success.
 
-    The other trees are those that :func:`alternatives` finds. An answer without a tree has no policy, nor has
-    one for which a limit came first.
+    The other trees are those that :func:`alternatives` finds. The policy is ``None`` if the answer has no
+    tree, or if a limit came first.
 
     Parameters:
         answer: The answer.

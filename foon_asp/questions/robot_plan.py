@@ -77,7 +77,7 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
 
 
 def _clips(problem: Problem, plans: Iterable[Collection[int]]) -> Iterator[ListedClips]:
-    """Return the annotated clips from the files of some plans that still exist, where they are understood."""
+    """Yield the annotated clips in the files of plans; missing files and unclear lines are skipped."""
     places = (source for plan in plans for unit in plan for source in problem.network.sources[unit])
     files = dict.fromkeys(Path(source.file) for source in places)
     return listed_clips((file for file in files if file.is_file()), lenient=True)

@@ -185,7 +185,7 @@ class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durat
 def _schedule_or_template(
     problem: Problem, plan: Tree, *, durations_template: Path | None = None, **options: Any
 ) -> Result:
-    """Schedule as ``foon-asp schedule`` does, or write which durations it needs."""
+    """Schedule as ``foon-asp schedule`` does, or write a file of durations to be filled in."""
     if durations_template is None:
         return schedule(problem, plan, **options)
     if durations_template.exists():
@@ -276,11 +276,11 @@ def schedule(
 ) -> Schedule:
     """Find the shortest schedule of a plan: when each step starts, who does it, and with which tools.
 
-    Which step takes which copy is as :func:`trace` shows it.
+    Each step takes the copies that :func:`trace` shows.
 
     Parameters:
         plan: The path of a file (FOON text, or an answer in JSON), or functional units in the order of
-            execution; it is put in an order that runs, if that one does not.
+            execution; the plan is put in an order that runs, if this order does not.
         durations: How long each motion takes: lines of a motion, a tab, a number of seconds (or 25 min,
             1.5 h), and behind another tab the word passive if nobody has to stand by. Or seconds by motion,
             or a :class:`Duration`.
@@ -369,7 +369,7 @@ def _status(solution: BestSchedule) -> Status:
 def _in_order(tree: Tree) -> Tree:
     """Return a tree in an order that executes, or else in the listed order.
 
-    If items are used up, an order is required.
+    Raises :class:`NoTreeError` if items are used up and no order executes.
     """
     if tree.problem.items is None:
         simulation = simulate_for(tree.problem, tree)
@@ -418,7 +418,8 @@ def _known_durations(
 ) -> dict[str, Duration]:
     """Return the known durations by motion.
 
-    They are those stated, those of clips, or the default; warnings name the last two kinds.
+    A duration is stated, or the median of clips, or the default. Warnings name the motions with a median or
+    the default.
     """
     durations = stated_durations(stated)
     motions = dict.fromkeys(unit.motion for unit in tree.units)

@@ -119,7 +119,7 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
 
     @property
     def ending(self) -> Ending:
-        """Done when the tree executes."""
+        """``DONE`` if the tree executes, ``LIMIT`` if the search was stopped."""
         if self.ended is Searched.UNKNOWN:
             return Ending.LIMIT
         return Ending.DONE if self.executes else Ending.NEGATIVE
@@ -177,8 +177,8 @@ def search(
     """Retrieve a task tree with a published search, and find out whether it executes.
 
     ``bfs``, ``dfs``, ``greedy-success`` and ``greedy-inputs`` choose one unit for each object and never look
-    back; ``ids`` backtracks, and returns a tree of least depth that executes or says that none does. They
-    know nothing of items that are used up: their tree then executes if it runs as a plan, in some order.
+    back; ``ids`` backtracks, and returns a tree of least depth that executes or says that none does. The
+    searches ignore that items are used up. If they are, a tree executes if it runs as a plan in some order.
 
     Parameters:
         search: ``bfs``, ``dfs``, ``ids``, ``greedy-success``, ``greedy-inputs``, or the name of a search

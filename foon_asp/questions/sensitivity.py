@@ -209,7 +209,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
     the whole question.
 
     Returns:
-        The best tree as the ``answer``, and an interval for each motion, that with the nearest end first.
+        The best tree as the ``answer``, and an interval for each motion, the one with the nearest end first.
 
     Raises:
         UserError: for a wrong argument or constraint, for rates not given, or for rules about ``risk/2``.

@@ -15,17 +15,17 @@ from foon_asp.results.values_of import node_of, nodes_of
 class GoalsApartTuning(NamedTuple):
     """When the goals of a tree are also solved one by one.
 
-    ``goals``: goals, at most; with more, what each costs by itself is a question of its own (--all-goals),
-    since every goal is one more search and one more line.
+    ``goals`` is the greatest number of such goals, since each goal is one more search and one more line.
+    For more goals there is the option ``--all-goals``.
     """
 
     goals: int = 8
 
 
 def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answer:
-    """Return an answer for several goals with the goals of each unit, and for few also with their own optima.
+    """Return an answer with the goals that each unit serves and, for few goals, the optimum of each goal.
 
-    ``posed`` is the problem as it was posed, of which a large store reads what each goal needs.
+    ``posed`` is the problem as it was posed. Of a large store, only what each goal needs is read.
     """
     problem, network = answer.problem, answer.problem.network
     serves = tuple(

@@ -424,8 +424,8 @@ def _listed(prices: File | Mapping[str, Number]) -> list[Row[str | ObjectNode, F
 def _priced(problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]]) -> dict[int, Fraction]:
     """Return the prices by object id of the nodes in a price list that are not in the kitchen.
 
-    An entry that matches no node is warned of. A label alone stands for all of its nodes that would be for
-    sale without prices.
+    Each entry that matches no node causes a warning. A label alone stands for all of its nodes that would
+    be for sale without prices.
     """
     network, shop = problem.network, Shop(problem)
     prices: dict[int, Fraction] = {}
@@ -473,9 +473,10 @@ def _lists(
 
 
 class _Shopper:
-    """A search for lists as trees that buy: a search tree of wares that are left out (Reiter 1987).
+    """A search for the cheapest lists by a hitting-set tree of wares that are left out (Reiter 1987).
 
-    The next list is the best one that lacks an item of every earlier list.
+    A list is what an optimal tree or plan without some wares buys. The next list is the best one that lacks
+    an item of every earlier list.
     """
 
     def __init__(
@@ -486,7 +487,7 @@ class _Shopper:
         objectives: tuple[Objective, ...],
         wares: Mapping[int, Fraction],
     ) -> None:
-        """Search for lists with what ``purchases`` offers without some wares, by id."""
+        """Prepare the search; ``purchases`` returns the purchases possible without some wares, by id."""
         self._problem, self._settings, self._wares = problem, settings, wares
         self._purchases, self._objectives = purchases, objectives
         self._waiting: list[tuple[tuple[int | Fraction, ...], int, frozenset[int], _PricedList]] = []

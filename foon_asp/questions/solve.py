@@ -144,10 +144,10 @@ def solve(
         reductions: What reduces the network before the search: ``all``, ``none``, ``safe`` (all that keep
             every optimal tree), or names of reductions separated by commas.
         certificate: The path of a file to write a certificate to: a proof of the answer that
-            :func:`foon_asp.verify` checks without a solver. It is about the whole network. Of a store, no
-            more is read than the proof touches where no rule is given: then it names the digests that the
-            store states. Where items are used up, it says what every plan costs at least, and has a plan of
-            that cost, or of more: then it claims a ``bound``.
+            :func:`foon_asp.verify` checks without a solver. It is about the whole network. Without
+            rules, only the part that the proof touches is read of a store; the certificate then names the
+            digests that the store states. Where items are used up, the certificate has a lower bound on the
+            cost of every plan, and a plan. If the plan costs more, it claims only a ``bound``.
         cross_check: Also ask other engines: bare clingo, HiGHS, Fast Downward and those of packages, if
             installed. Each has its part of what is left of the ``time_limit``, or a minute without one.
         skip_unreachable: Leave out goals that cannot be made from the kitchen, and list each with its cause.
@@ -161,9 +161,9 @@ def solve(
             constraint is a :class:`FoonWarning`.
 
     Returns:
-        The answer, with its ``status``, ``costs``, ``units`` and ``tree``; under ``soft`` constraints it has
-        the ``penalty`` and the number of ways in which each is broken, too. Its ``certificate`` is ``None``
-        unless one was requested and found.
+        The answer, with its ``status``, ``costs``, ``units`` and ``tree``; under ``soft`` constraints also
+        with the ``penalty`` and the number of ways in which each constraint is broken. Its ``certificate`` is
+        ``None`` unless one was requested and found.
 
     Raises:
         BugError: if a built-in engine finds a different optimum.

@@ -284,10 +284,10 @@ def stats(
     Parameters:
         foon: The data, or the path of a recipe, a folder or a store.
         stays: What stays (``True``) or is used up (``False``), by label or object node; or the path of a
-            file. Units are listed then.
+            file. If given, units are listed.
 
     Returns:
-        The counts; or the units, which say of their inputs whether they stay.
+        The counts; or the units, and for each input whether it stays.
 
     Raises:
         UserError: for a file that cannot be read, or a unit that the network does not have; for a name in

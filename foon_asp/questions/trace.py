@@ -112,7 +112,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
     def kitchen_text(self, after: int) -> str:
         """Return the kitchen after a step as FOON text: each available object node, with its amount.
 
-        What never runs out has none.
+        Items that never run out have no amount.
 
         Parameters:
             after: The number of steps that were done, from 0.
@@ -291,8 +291,8 @@ def trace(
         failed: The step that failed, of which nothing was done.
 
     Returns:
-        What came and went at each step, the kitchen and the stock after it, and if a step ``failed`` the new
-        ``answer``.
+        The copies made and used up by each step, the kitchen and the stock after the step, and the new
+        ``answer`` if a step ``failed``.
 
     Raises:
         UserError: if the file cannot be read or contains no plan, or the plan does not run up to the step

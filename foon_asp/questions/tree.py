@@ -30,9 +30,9 @@ OTHER_READING = "if what is there can be used again: --items lasting"
 class Tree(TaskTree):
     """Functional units in a listed order, and the ``problem`` that they are for.
 
-    ``units`` are values (``motion``, ``inputs``, ``outputs``), ``places`` where each was read. ``claim`` is
-    a text about what is proved of the tree, or empty. As a string it is FOON text. Two trees are equal if
-    they list the same units in the same order.
+    ``units`` are values (``motion``, ``inputs``, ``outputs``); ``places`` has the place where each was read.
+    ``claim`` is a text about what is proved of the tree, or empty. As a string, a tree is FOON text. Two
+    trees are equal if they list the same units in the same order.
 
     Example:
         >>> foon_asp.solve(foon_asp.load().problem("ice")).tree
@@ -73,7 +73,7 @@ class Tree(TaskTree):
         Parameters:
             problem: The problem that the tree is for.
             units: The units, in the order of the tree.
-            places: Where each unit was read; without it, where the network has it, or no file.
+            places: Where each unit was read; by default its place in the network, if it has one.
         """
         units = tuple(unit_at_level(unit, problem.network.level) for unit in units)
         about = problem.about(units)
@@ -134,7 +134,7 @@ class Tree(TaskTree):
         return Tree(tuple(self.units[index] for index in order), self.problem, places)
 
     def step_unit(self, position: int) -> Unit:
-        """Return the unit of a step as a value, which the network of the problem may have or not.
+        """Return the unit of a step as a value, whether or not the network has the unit.
 
         Parameters:
             position: The number of the step, from 1.
@@ -196,7 +196,7 @@ def posed_tree(problem: Problem, tree: str | PathLike[str] | Iterable[Functional
 def read_listed(
     file: Path, network: Callable[[], Network]
 ) -> tuple[Sequence[tuple[FunctionalUnit, Source]], Sequence[ObjectNode]]:
-    """Read the units of a tree in the order listed, with their places, and the goals, which an answer has.
+    """Return the units of a tree in the order listed, with their places, and the goals if an answer has them.
 
     ``network`` is called if the file has ids, and returns the network that the ids refer to. Assumptions are
     warnings to the caller. Raises :class:`UserError` as :meth:`Tree.read`.
@@ -206,7 +206,7 @@ def read_listed(
 
 
 def read_answer(file: Path) -> ListedTree:
-    """Read the units as :func:`read_listed` does, and the other fields of an answer."""
+    """Read the units of a tree as :func:`read_listed` does, and the other fields of an answer."""
     who = caller()
     reader = FoonReader(who.lenient)
     listed = read_listed_tree(file, reader)

@@ -74,7 +74,7 @@ class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-uni
         return self.answer.ending if self.complete else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Return the cost of the best tree, and the units under a heading each."""
+        """Return the cost of the best tree, and the units under headings: of every tree, of some trees."""
         yield from (*self.goal_lines(), *self.answer.headlines())
         if self.answer.costs is None:
             return
@@ -106,7 +106,7 @@ def unit_union(
             best, or 0.9 times the best success.
 
     Returns:
-        The ``units``, each with ``trees``; ``complete`` tells whether all of it is proved.
+        The ``units``, each with ``trees``; ``complete`` tells whether everything is proved.
 
     Raises:
         UserError: for a wrong argument or constraint, or for constraints together with ``within``.

@@ -23,7 +23,7 @@ def without_unreachable(problem: Problem) -> tuple[Problem, tuple[SkippedGoal, .
 
 
 def _skipped(problem: Problem, goal: int) -> SkippedGoal:
-    """Return a goal with the first cause on the path to it that lacks the fewest nodes."""
+    """Return a goal with the first cause on the easiest path to it, the path that lacks the fewest nodes."""
     root = dead_ends(replace(problem, goals=(goal,))).roots[0]
     cycle = root.cycle.nodes if root.cause is Cause.CYCLE and root.cycle else ()
     network = problem.network

@@ -10,10 +10,10 @@ from foon_asp.proof.used_up_run import used_up_run
 
 
 def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
-    """Return one line where items last, and the tree would not run if each were used once, or none.
+    """Return one line if items last and the tree would not run with each item used once, else no line.
 
-    Nor is there one where what is missing never was there. Where units, the kitchen or the goals have
-    amounts that matter for the tree, the line says that they are not counted.
+    There is no line either if no step used up the copy that is missing. If units, the kitchen or the goals
+    have amounts that matter for the tree, the line says that amounts are not counted.
     """
     units = tuple(tree)
     if problem.items is not None:
@@ -30,7 +30,7 @@ def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
 
 
 def _counted(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
-    """Return what has an amount that a tree does not count: a unit, a kitchen item or a goal; or nothing."""
+    """Return in words an amount that a tree does not count, of a unit, an item or a goal; empty if none."""
     if problem.amounts:
         for unit in units:
             if problem.amounts.get(unit):

@@ -415,9 +415,9 @@ def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:
 
 
 def _other_part(content: Any, subject: proof.Subject) -> str | None:
-    """Return the part of the data whose digest the certificate does not match, by name.
+    """Return the name of the first part of the data with another digest than in the certificate.
 
-    The first of several. It is ``task`` for a certificate about a planning task.
+    It is ``task`` for a certificate about a planning task, and ``None`` if no such part is found.
     """
     with suppress(RecursionError, KeyError, TypeError, AttributeError):  # the content is no certificate
         if content["seal"] == proof.seal(content):
@@ -441,7 +441,7 @@ def _goal_ids(content: Any) -> list[int]:
 
 
 def _step_ids(content: Any) -> list[int]:
-    """Return the steps of the tree that a certificate is about a repair of, likewise."""
+    """Return the unit ids of the tree whose repair a certificate is about; empty for other certificates."""
     rules = content.get("rules") if isinstance(content, dict) else None
     if not isinstance(rules, list) or len(rules) != 1 or not isinstance(rules[0], dict):
         return []

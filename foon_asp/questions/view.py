@@ -93,12 +93,12 @@ _SUFFIXES = {
 class View(Result, frozen=True):
     """A page about an ``answer``, and the picture of its tree; :meth:`write` writes either into a file.
 
-    Beside the answer the page shows what is not empty here: the trees of ``searches``, the certificate that
-    is ``certified``, the answer ``without_rules``, ``alternatives``, the ``front``; where there is no tree,
-    ``why_not`` and the ``shopping_list`` that would help; and the whole ``network`` of a problem. Beside a
-    plan it shows the answer where items are ``lasting``, which no plan is better than, and the certificate is
-    about that one. A page about a network alone has no ``answer``. Of a given tree and of some units there
-    is only a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large, or
+    Beside the answer, the page shows each of these fields that is not empty: the trees of ``searches``, the
+    certificate of the ``certified`` answer, the answer ``without_rules``, ``alternatives``, the ``front``,
+    and the whole ``network`` of a problem. If there is no tree, it shows ``why_not`` and a ``shopping_list``.
+    Beside a plan it shows the answer for ``lasting`` items, which no plan is better than; the certificate
+    is about this answer. A page about a network alone has no ``answer``. A given tree, or some units, have
+    only a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large, or
     if the packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError` if
     there is no tree.
 
@@ -325,8 +325,8 @@ def view(
 ) -> View:
     """Solve a problem, and show what was found on a page or as a picture; or show what is given.
 
-    A given tree, some units or a whole network are shown without solving, and there are no ``objectives``,
-    rules and limits for them. The limits are for all of it.
+    A given tree, some units or a whole network are shown without solving; for these, there are no
+    ``objectives``, rules and limits. The limits are for the whole question.
 
     Parameters:
         about: A problem, whose goals are marked; data that were loaded, whose whole network is shown; or an
@@ -427,8 +427,8 @@ def pages(
     """Yield a growing page about a tree: first with its answer, then each time with one more part.
 
     ``rules`` are the rules of the settings, as questions take them. A plan, in which items are used up, costs
-    no less than the best tree, in which items last; so the proof is about that tree, except by ``kitchen``,
-    and under rules, which may count how often units are executed.
+    no less than the best tree, in which items last; so the proof beside a plan is about that tree. There is
+    no such proof by ``kitchen``, nor under rules, which may count how often units are executed.
     """
     deadline = settings.begun
     settings = settings._replace(deadline=deadline)
@@ -485,9 +485,9 @@ def pages(
 
 
 def _against(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
-    """Return the objectives of a front, two or more, from one list of objectives.
+    """Return the objectives of a front: a list of objectives, and one more.
 
-    The second objective is units; for units it is success, or inputs if no rates are known.
+    The additional objective is units. If the list has units, it is success, or inputs without rates.
     """
     if Objective.UNITS not in chosen:
         return (*chosen, Objective.UNITS)

@@ -1,4 +1,4 @@
-"""From a state: which units lead to the goals, and what lacks."""
+"""From a state: which units lead to the goals, and what is missing."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -59,13 +59,13 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
 
     @property
     def ending(self) -> Ending:
-        """The ending of the best tree; ``NEGATIVE`` if something lacks."""
+        """The ending of the best tree; ``NEGATIVE`` if something is missing."""
         if self.lacks:
             return Ending.NEGATIVE
         return Ending.NEGATIVE if self.answer is None else self.answer.ending
 
     def show(self) -> Iterator[Block]:
-        """Return what lacks, the units that can run now, those that cannot yet, and the best tree."""
+        """Return what is missing, the units that can run now, those that cannot yet, and the best tree."""
         yield from self.goal_lines()
         if self.reached:
             yield "the state has it: nothing to do"
@@ -96,7 +96,7 @@ def ways_on(
     objectives: Objectives = "units",
     **options: Unpack[Posed],
 ) -> WaysOn:
-    """Find the units that lead from a state to the goals, and what lacks.
+    """Find the units that lead from a state to the goals, and what is missing.
 
     Whatever is in the state can be used again and again. A verifier of plans that a language model proposes
     asks this after each step (as in arXiv 2503.21564).

@@ -36,9 +36,10 @@ if TYPE_CHECKING:  # takes clingo along, which only rules need
 class _MaxShown(NamedTuple):
     """How much of an explanation is shown as text; JSON has all of it.
 
-    ``roots``: causes that are explained. ``dead_ends`` that are opened up. ``other_units`` that could make a
-    node, beside the first. ``steps`` of a cycle. ``units`` in one line. ``fix_items``: nodes to add to the
-    kitchen. ``alike``: nodes with the same label as a missing one.
+    The fields are maximal counts. ``roots``: causes that are explained. ``dead_ends``: dead ends that are
+    expanded. ``other_units``: achievers of a node, beside the first. ``steps``: steps of a cycle. ``units``:
+    units in one line. ``fix_items``: nodes to add to the kitchen. ``alike``: nodes with the same label as a
+    missing one.
     """
 
     roots: int = 8
@@ -233,7 +234,7 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
         return Ending.DONE if self.clash is None else self.clash.ending
 
     def show(self) -> Iterator[Block]:
-        """Return the dead ends as a tree, the easiest way first and every part once, and their roots."""
+        """Return the dead ends as a tree, each expanded once, and their roots; or the rules that clash."""
         yield from self.goal_lines()
         if self.clash is not None:
             yield from self.clash.lines(self.conditions)
@@ -304,7 +305,7 @@ def why_not(
 
     The time grows about linearly with the network, and all of a store is read. If every goal can be made and
     there are ``constraints`` or ``encodings``, those that clash are found. At a limit, or when interrupted,
-    names that are near and what would help are left out.
+    similar names and the items that would help are left out.
 
     Parameters:
         weights: What it costs to drop a constraint of a file, 1 if not given.
@@ -378,7 +379,7 @@ def _stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn, ...] | 
 
 
 def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]) -> Iterator[Root]:
-    """Yield roots; a missing node comes with names one edit away, and nodes of the same label."""
+    """Yield the roots; a missing node gets names one edit away, and nodes of the same label."""
     network, kitchen, data = problem.network, problem.kitchen, problem.origin
     had = {network.objects[o]: o for o, is_available in enumerate(analysis.available) if is_available}
     items = data.data.kitchen_items if isinstance(data, Dataset) else ()
@@ -409,8 +410,9 @@ def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]
 def _tree(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str]:
     """Return the dead ends as lines of a tree.
 
-    Below a node are its first achiever and the inputs it lacks. A node is expanded once. ``numbers`` are
-    the numbers of the roots. Of the other dead ends, those nearest to the goals are expanded.
+    Below a node are its first achiever and the inputs that this unit lacks. A node is expanded once. Roots
+    are not expanded, and have their ``numbers``. Of the other dead ends, those nearest to the goals are
+    expanded.
     """
     makers = {end.object: end.makers for end in explanation.dead_ends}
     opened: set[Node] = set()

@@ -20,7 +20,8 @@ _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 def finding_lines(findings: Sequence[Finding], max_in_full: int = 3, max_lines: int = 12) -> Iterator[Block]:
     """Yield sorted findings with their lines.
 
-    Of one kind in a file, ``max_in_full`` are shown; of the others, up to ``max_lines`` line numbers are.
+    For each kind of finding in a file, the first ``max_in_full`` are shown. The others are counted, with at
+    most ``max_lines`` of their line numbers.
     """
     kinds: dict[tuple[str, str], list[Finding]] = {}
     for finding in findings:
@@ -89,9 +90,9 @@ def _property(text: str) -> str:
 
 
 def sarif(findings: Sequence[Finding], version: str) -> Json:
-    """Return SARIF 2.1.0: one run with every finding, and with the rules that they name.
+    """Return SARIF 2.1.0: one run with every finding, and with the rules of the findings.
 
-    Code hosts and editors show it beside the files. Columns count code points.
+    Code hosts and editors show findings beside the files. Columns count code points.
     """
     codes = [code for code in CATALOG if any(finding.code == code for finding in findings)]
     rules = [

@@ -120,7 +120,7 @@ class AboutGoals(Document, frozen=True, kw_only=True):
         return text if self.items == "lasting" else f"{text}, items used up"
 
     def goal_lines(self, shown: int = 5) -> Iterator[str]:
-        """Return a line for each goal; below level 3 with level-3 nodes that it stands for."""
+        """Yield a line for each goal; below level 3 also the level-3 nodes that the goal stands for."""
         for goal in self.goals:
             yield f"goal: {goal}" if goal.wanted is UNSET else f"goal: {goal.wanted} x {goal}"
             if isinstance(goal.stands_for, tuple):

@@ -42,7 +42,7 @@ def costs_plain(costs: Costs) -> Json:
 def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
     """Return the costs of a tree by the name of the objective, as exact numbers; ``None`` if unknown.
 
-    Without stand-ins, there is no dissimilarity.
+    Costs without stand-ins have no dissimilarity.
     """
     usual = (objective for objective in Objective if objective.row.needs is not Known.STAND_INS)
     measures = {**dict.fromkeys(usual), **costs.measures}
@@ -66,9 +66,9 @@ def exact_measures(
 def read_plain(kind: type[T], value: Json) -> T:
     """Return the value of a kind from its plain form, the inverse of :func:`plain`.
 
-    Keys of dictionaries stay texts. Raises :class:`msgspec.ValidationError`, which is a
-    :class:`ValueError`, or :class:`KeyError`, :class:`TypeError`, :class:`AttributeError` or
-    :class:`ArithmeticError` for others.
+    Keys of dictionaries stay texts. For a value of another form, raises :class:`msgspec.ValidationError`,
+    which is a :class:`ValueError`, or :class:`KeyError`, :class:`TypeError`, :class:`AttributeError` or
+    :class:`ArithmeticError`.
     """
     return msgspec.convert(value, kind, dec_hook=_exact)
 
@@ -83,7 +83,7 @@ def _exact(kind: type, value: Any) -> Objective | Fraction | int:
 
 
 def fraction_text(value: Fraction) -> str:
-    """Return an exact number as a text, of however many digits."""
+    """Return an exact number as a text, without a limit on its digits."""
     # through Decimal: products of long rates have more digits than Python turns into text at once
     parts = [str(Decimal(n)) for n in (value.numerator, value.denominator)]
     return "/".join(parts) if value.denominator != 1 else parts[0]

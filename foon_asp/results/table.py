@@ -21,7 +21,7 @@ class Cell(NamedTuple):
 class Table(NamedTuple):
     """Rows under headings; columns of figures are aligned to the right.
 
-    A row that is one text is a line of its own, over the rows that follow it.
+    A row that is a single text is a line of its own, over the rows that follow it.
     ``left_aligned`` are the indices of columns aligned to the left; the last of them is folded if it is too
     long. ``indent`` is the number of spaces before the table. ``headed`` says whether a wide terminal
     shows headings; a narrow one shows a block for each row, a line ``heading: cell`` for each cell.
@@ -42,7 +42,7 @@ def rendered(parts: Iterable[Block], width: int | None = None, coloured: bool = 
     """Return lines and tables as text.
 
     Parameters:
-        parts: The lines, each one line whatever is named in it, and tables, from top to bottom.
+        parts: The lines and tables, from top to bottom; a line end within a line is escaped.
         width: The columns of the terminal; lines that are longer are folded between words, and tables are
             stacked below 75. Without it, lines are as long as they are.
         coloured: Whether cells are coloured.

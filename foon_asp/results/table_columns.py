@@ -63,7 +63,7 @@ def table(
 ) -> tuple[Sequence[str], list[list[Any]]]:
     """Return flat rows as columns by name and a list for each row, ``None`` where a row has no value.
 
-    A whole number of a column that has fractions too is exact by itself.
+    In a column that also has fractions, the exact value of a whole number is the number itself.
     """
     rows = list(rows)
     if columns is None:
@@ -83,7 +83,7 @@ def _cell(row: Json, name: str) -> Any:
 def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
     """Return flat rows as CSV, with a line of headings, and true and false as pandas reads them.
 
-    ``names`` are the columns; without them, those that the rows have.
+    ``names`` are the columns; without them, the columns are all names in the rows.
     """
     columns, cells = table(rows, names)
     file = io.StringIO()
@@ -95,7 +95,7 @@ def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
 
 
 def safe_cell(text: str) -> str:
-    """Return the text of a cell; an apostrophe before a text that a spreadsheet would take for a formula."""
+    """Return the text of a cell, behind an apostrophe if a spreadsheet would take it for a formula."""
     text = escaped(text)  # of what begins a formula, tabs and line ends
     return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _WRITTEN_NUMBER.fullmatch(text) else text
 
@@ -103,7 +103,7 @@ def safe_cell(text: str) -> str:
 def markdown_text(rows: Iterable[Json]) -> str:
     """Return flat rows as a Markdown table for people.
 
-    It has no empty columns and no exact numbers; numbers have six digits.
+    The table has no empty columns and no exact numbers; other numbers have six digits.
     """
     columns, cells = table(rows)
     lists = [
@@ -129,7 +129,7 @@ def _rounded(value: Any) -> str:
 
 
 def _text(value: Any, words: tuple[str, str] = ("no", "yes")) -> str:
-    """Return a cell as text; ``words`` are those for false and true."""
+    """Return a cell as text; ``words`` are the words for false and true."""
     if isinstance(value, list):
         return " + ".join(map(_text, value))
     if isinstance(value, bool):

@@ -43,7 +43,7 @@ _KITCHEN, _BOUGHT, _IMPLIED, _MISSING = (
 
 
 class Head(TypedDict):
-    """The question, as every document about goals begins."""
+    """The fields of the question, with which every document about goals begins."""
 
     goals: tuple[Node, ...]
     containers: ContainerRule
@@ -69,9 +69,9 @@ def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
 def goals_of(
     network: Network, goals: Iterable[int], wanted: Mapping[ObjectNode, int] = MappingProxyType({})
 ) -> tuple[Node, ...]:
-    """Return goals, with their amounts where not one is ``wanted``.
+    """Return goals as nodes, with the amounts that ``wanted`` has.
 
-    Below level 3 each has the level-3 nodes that it stands for.
+    Below level 3, each goal has the level-3 nodes that it stands for, and no amount.
     """
     detailed = network.detailed
     if detailed is None:
@@ -133,7 +133,7 @@ def unit_as(kind: type[U], network: Network, unit: int, **fields: Any) -> U:
 
 
 def listed_unit(network: Network, unit: FunctionalUnit, source: Source) -> Unit:
-    """Return a unit that was listed at a place as a value, whether or not the network has it."""
+    """Return a listed unit as a value with its place; the network need not have the unit."""
     number = network.unit_id(unit)
     inputs, outputs = (
         tuple(named_node(network, node) for node in nodes) for nodes in (unit.inputs, unit.outputs)
@@ -163,9 +163,9 @@ def steps_of(
 ) -> tuple[Step, ...]:
     """Return units as the steps of a tree or plan: where each input comes from, and which outputs are made.
 
-    ``bought`` are the items of the kitchen, by id, that were not there before, with the number of their
-    copies, and ``helped`` the units that a person does, where one helps. In a list that does not execute as
-    it is, a needed input may be made by a later step only, or by none.
+    ``bought`` has the number of copies that were bought of kitchen items, by id. ``helped`` are the units
+    that a person does; ``None`` without a person. If the listed order does not execute, an input may come
+    from a later step, or be missing.
     """
     network, steps = problem.network, []
     for number, (unit, times, origins) in enumerate(_origins(problem, units, bought), 1):

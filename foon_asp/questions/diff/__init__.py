@@ -70,7 +70,10 @@ def _of_files(
 
 
 def _data_of(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
-    """Return the data of trees in files, if none are named in Python: the bundled kitchen, or the files."""
+    """Return the data of trees in files, where Python names no data.
+
+    They are the files of :func:`own_networks`; without any, the bundled kitchen.
+    """
     kitchen = load(level=level)
     network_files = own_networks(kitchen.network, files)
     return load(network_files, level=level).dataset if network_files else kitchen.dataset
@@ -82,7 +85,7 @@ def _read(file: Path) -> ListedTree | Foon:
 
 
 def _named_network(name: str, read: ListedTree | Tree | Foon) -> Named:
-    """Return data, or a list of units, as a network with its name; a tree stays one."""
+    """Return data, or a list of units, as a network with its name; a tree is not converted."""
     if isinstance(read, Tree):
         return Named(name, read)
     if isinstance(read, Foon):
@@ -151,18 +154,20 @@ def diff(
 ) -> TreeDifference | NetworkDifference:
     """Compare two task trees or two networks: the units of both, of only one, and those that nearly agree.
 
-    Trees are also compared by what they cost, and by where they part. A file is compared as a tree with an
-    answer or a tree; two files are, where one of them says that it is a tree or a ``goal`` is given.
+    Trees are also compared by what they cost, and by where they part. A file is read as a tree if the other
+    argument is an answer or a tree. Two files are read as trees if one of them says that it is a tree, or
+    if a ``goal`` is given.
 
     Parameters:
         a: An answer, a tree, data that were loaded, or a path.
-        b: The same.
+        b: The value to compare with, of the same types.
         level: The level of detail at which units of files and networks are compared, 1 to 3.
-        goal: A goal or several of trees in files; without it, that of an answer, or what the last step makes.
+        goal: A goal, or several, of trees in files; by default, the goal of an answer, or what the last step
+            makes.
         containers: The container rule of trees in files.
 
     Returns:
-        The units, and of trees their costs and where they part, of networks how much they agree.
+        The units. For trees also the costs, and where the trees part; for networks how much they agree.
 
     Raises:
         UserError: for a path without a tree or network, an answer without a tree, a tree and a network, and

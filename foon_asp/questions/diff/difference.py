@@ -83,7 +83,7 @@ class Difference(Result, frozen=True, kw_only=True):
 def difference_fields(a: Mapping[FunctionalUnit, Unit], b: Mapping[FunctionalUnit, Unit]) -> dict[str, Any]:
     """Return the fields of a :class:`Difference` by name, for the units of two trees or networks.
 
-    ``a`` and ``b`` have the value of each unit in the result.
+    ``a`` and ``b`` map each unit to its value in the result.
     """
     pairs = nearest_units([unit for unit in a if unit not in b], [unit for unit in b if unit not in a])
     paired = {unit for unit_a, unit_b, _ in pairs for unit in (unit_a, unit_b)}
