@@ -97,7 +97,7 @@ def _shortage_as_listed(
 def _overdrawn(
     steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
-    """Return the first copy that is missing in every order, as more are used up than there ever are."""
+    """Return the first copy that is missing in every order, because more are used up than there ever are."""
     copies = dict(stock)
     for step in steps:
         for node, amount in step.adds.items():
@@ -166,7 +166,7 @@ class _OrderSearch:
         return None
 
     def _ready(self, dead: set[int]) -> Iterator[int]:
-        """Yield the steps that can be next; the last is the first that takes no copy from a waiting step."""
+        """Yield the steps that can be next, up to one that leaves enough copies for all waiting steps."""
         end = len(self._steps)
         step = end if self._done in dead else self._next[end]
         while step != end and self.looks_left > 0:
