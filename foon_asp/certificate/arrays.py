@@ -71,7 +71,7 @@ class Arrays:
 
     @cached_property
     def multiples(self) -> list[Fraction]:
-        """For each coordinate the greatest common divisor of all costs; 0 where it is not used."""
+        """For each coordinate the greatest common divisor of all costs; 0 for rates and measures."""
         multiples: list[Fraction] = []
         all_costs = set(self.costs)
         for objective in self.objectives:
