@@ -193,7 +193,7 @@ class _Optimum:
         return self._values[state]
 
     def _choices(self, state: State) -> list[int]:
-        """Return the units that can be executed and add something; one that is necessary is the only one."""
+        """Return the units that can be executed and add something; a necessary unit is returned alone."""
         world = self._world
         useful = [unit for unit in self._units if not world.makes(unit) <= state]
         ready = [unit for unit in useful if world.needs(unit) <= state]

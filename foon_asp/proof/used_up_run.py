@@ -18,9 +18,9 @@ from foon_asp.proof.replay import Shortage
 class UsedUpRun(NamedTuple):
     """The result of a search for an order of a tree with consumable items.
 
-    ``order`` has positions in the tree, from 0, in an order that runs, the listed one where that runs. It is
-    ``None`` where no order runs, which is then ``proved``, or where the search was given up. ``shortage`` is
-    the copy that is missing then.
+    ``order`` has positions in the tree, from 0, in an order that runs: the listed order, if it runs. ``None``
+    where no order runs, which is then ``proved``, or where the search was given up. ``shortage`` is then the
+    copy that is missing.
     """
 
     order: tuple[int, ...] | None

@@ -111,8 +111,8 @@ Conjunct = Literal | Test | Conditional | Aggregate | Strange
 class Clause(NamedTuple):
     """A rule without pools, taken apart.
 
-    ``head`` has the atom of a plain rule, is ``None`` where there is no head, and ``others`` has the atoms of
-    a head that leaves a choice, each with its condition: a choice, a disjunction or a negated head. ``ast``
+    ``head`` is the atom of a ``plain`` rule, ``None`` for a constraint. Any other rule has a choice, a
+    disjunction or a negated head: ``others`` has its atoms, each with its condition. ``ast``
     is the rule without pools, with a node for each conjunct of ``body``.
     """
 

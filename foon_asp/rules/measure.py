@@ -51,7 +51,7 @@ class Measure:
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[Cost]:
         """Return the cost of each unit of a problem, by id; evaluated once for a network, up to a deadline.
 
-        Raises :class:`InputError` for rules that give a unit two costs, or one that is no number from 0.
+        Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0.
         """
         from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 

@@ -141,7 +141,7 @@ def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> Re
 def _values(
     uses: Sequence[tuple[str, Mapping[str, str]]], shared: Mapping[str, str]
 ) -> tuple[Sequence[Rule], Mapping[str, str]] | None:
-    """Return constraints with their values, and all constants as terms; ``None`` where one is not plain."""
+    """Return constraints with their values, and all constants as terms; ``None`` if a value is not plain."""
     facts: dict[str, set[str]] = {name: set() for name in LISTED}
     constants: dict[str, str] = {}
     used_names: set[str] = set()
