@@ -111,8 +111,8 @@ _CANCEL: ContextVar[Cancel | None] = ContextVar("cancel", default=None)
 def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterator["Deadline"]:
     """Limit the time of a ``with`` block, and cancel it by a token, which deadlines made in it obey as well.
 
-    Code that checks its deadline may end with its incumbent; then the block is interrupted, and
-    :class:`StoppedError` is raised. ``doing`` describes the work, as in "while reading".
+    At a limit, code that checks its deadline has time to end with its incumbent. After this time, the block
+    is interrupted, and :class:`StoppedError` is raised. ``doing`` describes the work, as in "while reading".
     """
     if token is not None and token.cancelled:
         raise StoppedError("cancelled")

@@ -21,7 +21,7 @@ _COMMAND = r"(?m)^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))"
 
 
 def escaped(name: str) -> str:
-    """Return a name as it is shown within a line, whose end and tabs are escaped too."""
+    """Return a name as it is shown within a line; line ends and tabs are escaped, too."""
     return re.sub(_IN_A_LINE, _escape, name)
 
 

@@ -71,7 +71,8 @@ def load(
         utensils: The file with the labels of utensils, instead of that of the folder.
         goals: The file with goals, instead of that of the folder.
         unit_prices: The file with the prices of units, instead of that of the folder.
-        unit_amounts: The file that says how many of an object node units take and make, likewise.
+        unit_amounts: The file with the numbers of copies that units take and make, instead of that of
+            the folder.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
         stand_ins: Whether available nodes may be used in place of those that cannot be made, by the usual
             table of prices, with the changes of ``stand_ins.txt`` in the folder, or by another table.

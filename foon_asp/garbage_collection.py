@@ -1,4 +1,4 @@
-"""Suspension of Python's garbage collection while many objects are made that stay: it would free none."""
+"""Suspension of Python's garbage collection, which would free nothing while many lasting objects are made."""
 
 import gc
 from collections.abc import Iterator

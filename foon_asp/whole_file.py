@@ -21,11 +21,11 @@ _PARTIAL = re.compile(r"\.foon-asp\.[0-9a-f]{16}")
 
 
 def write_whole(file: Path, content: bytes) -> None:
-    """Write to a file beside it and rename; the old file stays until then, and after a failure.
+    """Write a new file beside the old one and rename it; after a failure, the old file is unchanged.
 
     A file that is replaced passes on its permissions, and its owner where that is allowed; one that is
     write-protected is not replaced. A link stays, and the file that it names is written. Of a file with
-    several names (hard links) only this one becomes the new file, of which is warned. A pipe or
+    several names (hard links) only this one becomes the new file, with a warning. A pipe or
     device is written to as it is. Raises :class:`UserError` when it cannot be written.
     """
     try:
@@ -43,8 +43,8 @@ def write_whole(file: Path, content: bytes) -> None:
 def write_all_whole(contents: Mapping[Path, bytes]) -> None:
     """Replace several files: all is written beside them before the first is replaced.
 
-    Raises :class:`UserError` when one of them cannot be written; all of them are then as they were, as they
-    are after ctrl-C. Where the process is killed in the middle, each file is the old one or the new one.
+    Raises :class:`UserError` when one of them cannot be written; all of them are then unchanged, as
+    after ctrl-C. Where the process is killed in the middle, each file is the old one or the new one.
     """
     replaced: dict[Path, bytes] = {}
     try:
@@ -90,7 +90,7 @@ def _replace(target: Path, content: bytes) -> None:
 
 @contextlib.contextmanager
 def _staged(target: Path, content: bytes) -> Iterator[Path]:
-    """Write beside a file what will replace it, if it may be replaced; if it has not, it is removed."""
+    """Write a new file beside the target, if that may be replaced; if it is not renamed, it is removed."""
     old = None
     if target.exists():
         with target.open("ab"):  # may it be written? Renaming asks the folder alone
@@ -115,7 +115,7 @@ def _staged(target: Path, content: bytes) -> Iterator[Path]:
 
 
 def _own_file(folder: Path) -> tuple[Path, BinaryIO]:
-    """Make a file with a name that nobody has, and open it; it is locked as long as it is open."""
+    """Create and open a file with an unused name; it is locked as long as it is open."""
     while True:
         partial = folder / f".foon-asp.{os.urandom(8).hex()}"
         written = partial.open("xb")
@@ -126,7 +126,7 @@ def _own_file(folder: Path) -> tuple[Path, BinaryIO]:
 
 @functools.cache  # once for each folder: fmt writes many files
 def _clear(folder: Path) -> None:
-    """Remove what writes that were killed left in a folder: temporary files that nobody has locked."""
+    """Remove temporary files that killed processes left in a folder: those that no process has locked."""
     with contextlib.suppress(OSError):
         for name in filter(_PARTIAL.fullmatch, os.listdir(folder)):
             with contextlib.suppress(OSError):
@@ -144,7 +144,7 @@ def _remove_unlocked(file: Path) -> None:
 
 
 def _locked(number: int, otherwise: bool) -> bool:
-    """Lock an open file, and say whether that went well; ``otherwise`` where files cannot be locked."""
+    """Lock an open file; return whether it is locked, or ``otherwise`` where files cannot be locked."""
     if fcntl is None:
         return otherwise
     try:

@@ -48,7 +48,7 @@ def columns(objectives: Iterable[Objective]) -> Iterator[tuple[str, Any]]:
 def check_table(file: Path, rows: Path) -> None:
     """Raise :class:`UserError` where a table cannot be written, or would replace another file.
 
-    Another file is one that is no table of answers.
+    An existing file counts as a table of answers only where ``rows``, which it was made from, exists.
     """
     if file.suffix == ".parquet":
         try:

@@ -15,7 +15,7 @@ from foon_asp.proof import ruled, verifier
 
 
 class Arrays:
-    """A question about trees in numbers: units are actions, and taking a kitchen item may be one.
+    """A question about trees in numbers: units are actions, and taking a kitchen item may be an action.
 
     Where ``kitchen`` is an objective, no node is initial, and each item has an achiever of its own without
     preconditions and of cost 1: the action's number is ``items[k]`` for item ``k``. Elsewhere ``items`` is
@@ -71,7 +71,7 @@ class Arrays:
 
     @cached_property
     def multiples(self) -> list[Fraction]:
-        """For each coordinate the greatest common divisor of all costs; 0 where it is not used."""
+        """For each coordinate the greatest common divisor of all costs; 0 for rates and measures."""
         multiples: list[Fraction] = []
         all_costs = set(self.costs)
         for objective in self.objectives:

@@ -68,7 +68,7 @@ def certify(
     subject: verifier.Subject | None = None,
     cases: Cases = None,
 ) -> Certificate | None:
-    """Return a certificate that a tree is optimal by the first objectives, as many as are proved, or a bound.
+    """Certify that a tree is optimal, by as many of the first objectives as are proved, or certify a bound.
 
     Parameters:
         problem: The problem; its network may be a part of a larger one (see ``subject``).
@@ -187,6 +187,7 @@ def _write(
         return len(covered.rules) + of_own.setdefault(index, len(of_own)) if index in own else index
 
     def packed(packing: Packing) -> dict[str, object]:
+        """Return the JSON of a cost partition."""
         weights = sorted((number(cut), arrays.stated(weight)) for cut, weight in packing.weights)
         limits = sorted((limit(row), arrays.stated(weight)) for row, weight in packing.limits)
         content: dict[str, object] = {"weights": [list(pair) for pair in weights]}
@@ -197,6 +198,7 @@ def _write(
         return content
 
     def stated(proof: Proof) -> dict[str, object]:
+        """Return the JSON of a proof, with its branches."""
         if isinstance(proof, Hopeless):
             return {"hopeless": number(proof.cut)}
         if isinstance(proof, Packing):

@@ -1,4 +1,4 @@
-"""From the solver's answer to one that a certificate proves."""
+"""Certification of the solver's answers."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -25,11 +25,11 @@ def certify_outcome(
 ) -> tuple[Outcome, Certificate | None]:
     """Return an answer marked as certified, and the certificate; ``None`` where no certificate is found.
 
-    The status ``certificate`` needs a certificate of the whole claim; a plan found at a limit becomes
-    optimal with one. A certificate of only the first objectives marks these. The answer stays unchanged
-    where more than a bound is proved only with trusted claims about user rules. Raises :class:`BugError`
-    when a tree that the solver called optimal is not, and when answer and certificate cannot both be true.
-    ``subject`` is the whole network, of which that of the answer is a part, as for
+    With a certificate of the whole claim, the proof of the answer is ``certificate``, and a plan that was
+    found at a limit becomes optimal. A certificate of only the first objectives marks these as certified. The
+    answer stays unchanged where only a bound is proved, or where user rules are taken on trust. Raises
+    :class:`BugError` when a tree that the solver called optimal is not, and when answer and certificate
+    cannot both be true. ``subject`` is the whole network, of which that of the answer is a part, as for
     :func:`~foon_asp.certificate.certify`.
     """
     began = time.perf_counter()

@@ -64,8 +64,8 @@ def coverage(settings: Settings) -> Coverage:
     """Return the constraints of a question, divided into those that a certificate covers and the others.
 
     Ready-made constraints are covered, with the values that were set. Other rules only exclude trees, so a
-    bound without them still holds; a replaced encoding may do anything, and is named, too. With a replaced
-    encoding, only rules that remove units are covered.
+    bound without them still holds; a replaced encoding may do anything, and is named as not covered. With it,
+    only rules that remove units are covered.
     """
     constants = dict(setting.partition("=")[::2] for setting in settings.constants)
     uses: list[tuple[str, Mapping[str, str]]] = []
@@ -153,7 +153,7 @@ def _digest(content: bytes) -> str:
 def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()) -> tuple[Rule, ...]:
     """Return the coverage with only those claims of user rules that a proof uses.
 
-    A claim that removes units is kept if all of them are ``members`` of cuts; the others are kept, too.
+    A claim that units are removed is kept if all of them are ``members`` of cuts. Other claims are kept.
     ``limits`` are the limits that the proof uses.
     """
     kept, stated = set(members), [_stated(*limit) for limit in limits]

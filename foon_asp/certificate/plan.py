@@ -57,7 +57,7 @@ def certify_plan(
     covered: Coverage = NOTHING,
     expired: Callable[[], bool] = lambda: False,
 ) -> Certificate | None:
-    """Return a certificate that a plan is optimal by the first objectives, as many as are proved, or a bound.
+    """Certify that a plan is optimal, by as many of the first objectives as are proved, or certify a bound.
 
     ``plan`` lists units in the order of execution. ``None`` where nothing is proved before time is up, and
     for objectives that need rates where a rate is 0 or is not that of a motion.
@@ -128,8 +128,8 @@ class _Question:
     def prove(self, objective: Objective, before: Sequence[Objective]) -> tuple[Any, Vector | None] | None:
         """Return a proof that no plan as good by earlier objectives costs less than the incumbent.
 
-        Also returns the bound, where only a smaller bound is proved by the first objective. ``None``
-        without a proof.
+        The second value is the bound, where only a smaller bound is proved (for the first objective), and
+        otherwise ``None``. Return ``None`` without a proof.
         """
         kept = [self._level(earlier) for earlier in before]
         if any(level is None for level in kept):
@@ -169,6 +169,7 @@ class _Question:
         return None if proved is None else _Stated(self, None, (), (), proved[2]).proof(proved[0])
 
     def _prover(self, derivation: Sequence[int]) -> PlanProver:
+        """Return a prover of the question, with the limits and required sets of rules."""
         flows: Flows = flows_of(self._problem, self._units)
         limits = [limit for _, limit, _ in self._limits]
         prover = PlanProver(flows, (), limits, derivation, expired=self._expired)

@@ -19,7 +19,7 @@ class Field(NamedTuple):
     """A field of a line: a name, which may be empty, from letter ``start`` to before ``end``.
 
     ``kinds`` are the kinds that the name may have. ``letter`` and ``id`` are the head of the line; ``id`` is
-    ``None`` where it is the id of another name.
+    ``None`` where the id of the line belongs to another name.
     """
 
     kinds: tuple[NameKind, ...]

@@ -2,8 +2,8 @@
 
 clingo reads constraints, soft files, constants and encodings unchanged. The problem is not reduced, nothing
 is reused from earlier questions, and clingo does not know our answer while it searches, with other options
-than ours. Its answer is compared with ours in exact numbers: the costs that it adds up with those of its
-units, its tree with the simulation, our tree with its rules.
+than ours. The answers are compared in exact numbers: the costs that clingo adds up have to be those of its
+units, its tree has to execute in our simulation, and our tree has to keep to the rules in clingo.
 
 Objectives with fractions, such as ``success``, have rounded weights in the facts, so that clingo's optimum
 need not be the true one. Every tree at least as good as ours has a rounded weight below a bound that is
@@ -89,7 +89,7 @@ class Clingo:
         return answers[-1]
 
     def all_kinds(self, extra_facts: str, bounds: Sequence[int]) -> list[ClingoAnswer]:
-        """Return one answer for each distinct count of equal units; only answers up to ``bounds``."""
+        """Return one answer for each distinct count of equal units, with costs up to ``bounds``."""
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
         options = (mode, f"--models={MAX_KINDS + 1}", "--project=project")
         result, exhausted, answers = self._run(extra_facts, options, True)

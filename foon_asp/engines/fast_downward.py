@@ -2,7 +2,7 @@
 
 It comes with the extra ``cross-check`` (GPL, so it is never installed otherwise) and runs as a program of
 its own. The task is written in its translator's format: a binary variable for each node that would have to be
-made, an operator for each unit, and one for taking each kitchen item where items have the costs.
+made, an operator for each unit, and an operator that takes each kitchen item, if the objective counts items.
 """
 
 import importlib.util

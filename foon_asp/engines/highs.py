@@ -1,9 +1,9 @@
 """HiGHS as a second engine: the question as a mixed integer program.
 
-A binary variable for every unit says that it is used; another one for every unit and node that it makes says
-that the unit is the achiever of this node; and a continuous one is the level of every node that has to be
-made. Each precondition of a used unit has an achiever, and an achieved node is on a higher level than the
-preconditions of its achiever, so that no node supports itself.
+A binary variable for every unit says that it is used. A binary variable for every unit and each node that it
+makes says that the unit is the achiever of this node. A continuous variable is the level of every node that
+has to be made. Each precondition of a used unit has an achiever, and an achieved node is on a higher level
+than the preconditions of its achiever, so that no node supports itself.
 """
 
 import time

@@ -1,7 +1,7 @@
 r"""A drawing in DOT, Graphviz' language.
 
 Labels are plain text, since HTML-like labels are not in every build of Graphviz. The class of a node is its
-role and the number of head lines in its label, by which a style sheet makes these bold.
+role and the number of head lines in its label; a style sheet makes these lines bold.
 """
 
 from collections import Counter

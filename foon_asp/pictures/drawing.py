@@ -77,10 +77,10 @@ def draw_tree(
     Units are numbered in the order of ``units``. ``add_effects`` are the outputs that each unit makes under
     the container rule; all, if ``None``.
 
-    A kitchen item is a box of its own at every use, and so is every by-product: an output that is no goal and
-    no input of a unit, that the kitchen has, that an earlier step has made, or that the container rule does
-    not count as made. One shared box of the knife, or of the tap that runs all the time, would connect
-    everything.
+    A kitchen item is a separate box at every use, since one shared box of the knife would connect everything.
+    A by-product is a separate box, too. By-products are outputs that are neither a goal nor an input of a
+    unit, that the kitchen has, that an earlier step has made, or that the container rule does not count as
+    made.
     """
     achievers: dict[ObjectNode, int] = {}
     if add_effects is None:

@@ -48,10 +48,10 @@ def action_costs(
 ) -> ActionCosts:
     """Scalarize a lexicographic list of objectives: return one cost for each action.
 
-    A tree executes each of the ``units`` at most once, and takes each of the ``items`` at most once: an
-    objective is weighted by more than all less important ones can add up to. ``tree`` is a feasible tree, and
-    plans are assumed to cost at most ``repeats`` times as much. Fractions that planners cannot add up exactly
-    are rounded.
+    A tree executes each of the ``units`` at most once, and takes each of the ``items`` at most once. So the
+    weight of an objective is more than all less important ones can add up to. ``tree`` is a feasible tree,
+    and plans are assumed to cost at most ``repeats`` times as much. Fractions that planners cannot add up
+    exactly are rounded.
 
     Raises :class:`UserError` where rounded costs are too large as well, and for a success rate of 0.
     """

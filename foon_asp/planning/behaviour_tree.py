@@ -1,10 +1,10 @@
 """A plan as a behaviour tree: XML of BehaviorTree.CPP 4, which Groot2 reads.
 
-Where items last, the tree is a reactive sequence with, for each step, a fallback of the condition that what
-the step makes is there, and the action. So a step starts only after what it needs was made, a step that
+Where items last, the tree is a reactive sequence with a fallback for each step: first the condition that the
+outputs of the step are there, then its action. So a step starts only after its inputs were made, a step that
 failed is tried again at the next tick, and nothing is copied: the tree has three nodes for each step. Where
-items are used up, what a step made may be gone later, so the tree is a sequence in which each action is
-repeated until it succeeds, behind the condition that its inputs are there.
+items are used up, an output may be gone later. So the tree is a sequence in which each action is repeated
+until it succeeds, behind the condition that its inputs are there.
 """
 
 from collections.abc import Iterable, Sequence

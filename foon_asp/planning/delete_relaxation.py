@@ -129,7 +129,7 @@ class _Relaxation:
             yield StripsAction(operator.name, preconditions, list(effects), cost, operator.source)
 
     def _negations(self, defaults: set[int]) -> Iterator[StripsAction]:
-        """Return actions that derive default values: of every axiom for the fact, a condition fails (Clark).
+        """Yield actions that derive a default value if each axiom for it has a condition that fails (Clark).
 
         Raises :class:`UserError` where such a derivation is cyclic.
         """

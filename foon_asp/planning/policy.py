@@ -19,10 +19,10 @@ from foon_asp.problem import Problem
 
 
 class PolicyLimits(NamedTuple):
-    """How long the best policy is looked for.
+    """Limits of the search for the best policy.
 
-    ``states`` of the dynamic program, some seconds; thirteen bundled goals need fewer than 3,000.
-    ``units``: each call of the dynamic program adds one, and Python limits the depth of calls.
+    ``states`` of the dynamic program: so many take some seconds; thirteen bundled goals need fewer than
+    3,000. ``units``: each call of the dynamic program adds one, and Python limits the depth of calls.
     ``policies`` that are compared; each is evaluated exactly.
     """
 
@@ -98,7 +98,7 @@ def _candidates(trees: Sequence[tuple[int, ...]], failures: int) -> Iterator[tup
 
 
 class _World:
-    """What units of a problem need, make and risk."""
+    """The preconditions, add effects and rates of units of a problem, without kitchen items."""
 
     def __init__(self, problem: Problem) -> None:
         self.kitchen, self.goals = problem.kitchen, frozenset(problem.goals) - problem.kitchen
@@ -193,7 +193,7 @@ class _Optimum:
         return self._values[state]
 
     def _choices(self, state: State) -> list[int]:
-        """Return the units that can be executed and add something; one that is necessary is the only one."""
+        """Return the units that can be executed and add something; a necessary unit is returned alone."""
         world = self._world
         useful = [unit for unit in self._units if not world.makes(unit) <= state]
         ready = [unit for unit in useful if world.needs(unit) <= state]
@@ -201,7 +201,7 @@ class _Optimum:
 
 
 def _bound(problem: Problem, units: Sequence[int], retries: int) -> Fraction:
-    """Return the chance that the units which every way needs fail no more often than is allowed."""
+    """Return an upper bound on the chance: that necessary units fail at most ``retries`` times."""
     world = _World(problem)
     chances = [Fraction(1)] + [Fraction(0)] * retries  # by the number of failures so far
     for unit in units:

@@ -86,13 +86,13 @@ def schedule_task(
 
 
 def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
-    """Return the uses of tools, each followed from step to step by the copies of a tool and its contents."""
+    """Return the uses of tools; a use goes on with each step that takes a copy made in it."""
     names: list[ToolName] = []
     steps: list[list[int]] = []
     use_of: dict[tuple[Copy, str], int] = {}  # the use of a tool with this label that a made copy belongs to
 
     def assign(number: int, label: str, node: ObjectNode | None, copy: Copy | None) -> int:
-        """Assign a step to the use of a tool, one that continues or a new one, and return this use."""
+        """Assign a step to a use of a tool that goes on, or to a new one; return the number of the use."""
         use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:
             names.append(label if node is None or not problem.at_hand(node) else means.name(node, label))

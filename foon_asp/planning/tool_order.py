@@ -1,6 +1,6 @@
 """Order of the uses of tools, such that the steps can be done one after the other with the available tools.
 
-A schedule exists if and only if such an order does: the steps in order of their starts are one, since a tool
+A schedule exists if and only if such an order exists. In a schedule, the order of starts is one, since a tool
 that is in use between the starts of two steps is in use when the second one starts.
 """
 

@@ -38,7 +38,7 @@ def write(pipe: RawIOBase, content: bytes) -> None:
 
 
 def write_if_open(pipe: RawIOBase, content: bytes) -> None:
-    """Write bytes completely, or nothing where the other end is closed; a reader of answers notices that."""
+    """Write bytes completely, or nothing where the other end is closed; the reader of answers notices."""
     with contextlib.suppress(OSError, ValueError):
         write(pipe, content)
 

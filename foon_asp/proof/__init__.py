@@ -1,1 +1,1 @@
-"""What every answer is checked with: does a tree execute, and is a certificate right?"""
+"""Checks of every answer: whether a tree executes, and whether a certificate is right."""

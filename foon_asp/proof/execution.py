@@ -1,4 +1,4 @@
-"""What happens to copies of object nodes when a unit runs and items are used up, by docs/plans.md."""
+"""Executions of units where items are used up (docs/plans.md): copies needed, used up and added."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping
@@ -12,10 +12,10 @@ _NO_AMOUNTS = UnitAmounts()
 
 
 class Execution(NamedTuple):
-    """What running a unit once does with copies of object nodes, each with a number of copies.
+    """One execution of a unit: the numbers of copies of object nodes that it needs, uses up and adds.
 
-    It needs ``preconditions``, uses up those of them that it ``consumes``, and ``adds`` outputs; of an output
-    that is an input as well, what is more than the input.
+    ``consumes`` are the ``preconditions`` that are used up. ``adds`` are outputs; of an output that is an
+    input as well, only the surplus over the input.
     """
 
     preconditions: Mapping[ObjectNode, int]
@@ -24,10 +24,10 @@ class Execution(NamedTuple):
 
 
 class Executions:
-    """How units run from the kitchen of a problem.
+    """Executions of units from the kitchen of a problem.
 
-    Items are used up as the problem says, or, where they last in it, by the rule of docs/plans.md, and then
-    every amount is 1.
+    Items are used up as the problem says. Where they last in the problem, the rule of docs/plans.md decides,
+    and every amount is 1.
     """
 
     def __init__(self, problem: Problem) -> None:

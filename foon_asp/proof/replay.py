@@ -24,7 +24,7 @@ class Copy(NamedTuple):
 class Shortage(NamedTuple):
     """The copies that are missing: of ``node``, at the position ``step`` (from 0), or at the end if ``None``.
 
-    ``consumers`` are the positions of the steps that used up the copies, in order; where it is empty, none
+    ``consumers`` are the positions of the steps that used up the copies, in order; empty if no step
     did. ``amount`` is how many are needed.
     """
 
@@ -46,8 +46,8 @@ class Step(NamedTuple):
 class Replay(NamedTuple):
     """The result of a replay: the ``steps`` that ran, and the ``shortage`` that stopped it, if one did.
 
-    ``left`` are the copies after the last step: those that were made, and those remaining of the stock, but
-    not of nodes that are not consumable. ``stock`` maps each node with a finite stock to the number of copies
+    ``left`` are the copies after the last step that were made or remain of the stock; nodes that are not
+    consumable are omitted. ``stock`` maps each node with a finite stock to the number of copies
     that the plan needs.
     """
 
@@ -76,8 +76,8 @@ def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
 def waits(replay: Replay) -> Iterator[set[int]]:
     """Yield for each step, in order, the positions of the steps that have to be done before it.
 
-    These steps made the copies that it takes, or read a copy that it uses up. Nodes that are not consumable
-    always have another copy.
+    An earlier step has to be done before if it made a copy that the step needs, or read a copy that the step
+    uses up. Nodes that are not consumable always have another copy.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
     spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
@@ -95,8 +95,8 @@ def waits(replay: Replay) -> Iterator[set[int]]:
 def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
     """Return, for each copy that several steps need and do not use up, the positions of the steps.
 
-    A copy is made by a step or in the stock: nodes that are not consumable, and labels that ``is_free``
-    accepts, always have another copy.
+    Only copies that a step made, or that are in the stock, count: of other nodes, and of labels that
+    ``is_free`` accepts, there is always another copy.
     """
     reading: dict[tuple[Copy, int], list[int]] = {}
     spent: Counter[Copy] = Counter()  # as in waits
@@ -109,7 +109,7 @@ def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, .
 
 
 def _read(step: Step, spent: Counter[Copy]) -> Iterator[tuple[Copy, int]]:
-    """Yield the copies that a step reads, each with how many like it were used up before."""
+    """Yield the copies that a step reads, each with the number of equal copies used up before."""
     before = spent + Counter(step.gone)
     for copy in step.stayed:
         yield copy, before[copy]
@@ -146,7 +146,7 @@ class _Kitchen:
         return Replay(tuple(steps), shortage, remaining, self._least)
 
     def _step(self, position: int, unit: FunctionalUnit) -> Step:
-        """Execute a unit, which lacks nothing; the oldest copies are taken first."""
+        """Execute a unit whose preconditions are there; the oldest copies are taken first."""
         preconditions, consumes, adds = self._executions.of(unit)
         gone, stayed, came = list[Copy](), list[Copy](), list[Copy]()
         for node, amount in preconditions.items():
@@ -175,7 +175,7 @@ class _Kitchen:
         return len(self._copies.get(node, ())) >= amount
 
     def _take(self, node: ObjectNode, amount: int, position: int) -> list[Copy]:
-        """Remove and return the oldest copies of a node; of an endless one, nothing is removed."""
+        """Remove and return the oldest copies of a node; copies that are not consumable stay."""
         endless = self._endless(node)
         if endless:
             return [endless] * amount

@@ -1,6 +1,6 @@
 """The meanings of the ready-made constraints, computed from the plain network.
 
-This is what a certificate is checked by, so nothing of clingo is here: each constraint of
+Certificates are checked by these meanings, so nothing here uses clingo: each constraint of
 ``encodings/constraints`` is a few lines of Python, and :data:`LIBRARY` lists them. docs/dev/certificates.md
 says how their meanings enter a proof.
 """
@@ -66,13 +66,14 @@ class Meaning(NamedTuple):
     """The meaning of a constraint: conditions that a tree has to satisfy, all of them together.
 
     Attributes:
-        removed: Units that the tree has not.
-        wanted: Each entry lists alternatives, and of one alternative the tree has a unit of each set.
+        removed: Units that the tree does not have.
+        wanted: Each entry lists alternatives, which are lists of sets. For one alternative of each entry, the
+            tree has a unit of each set.
         things: Sets of units, each with an amount from 0; the tree uses a thing if it has one of its units.
         max_sum: The amounts of the things that the tree uses add up to this at most.
         never: No tree satisfies the constraint.
-        barred: Returns, for two sets of units, the units that a tree with all of the first set and none of
-            the second has not.
+        barred: A function of two sets of units. It returns units that are in no tree with all of the first
+            set and none of the second.
         limits: Each entry has amounts of units, from 0, and the greatest sum that a tree may have.
     """
 
@@ -86,10 +87,10 @@ class Meaning(NamedTuple):
 
 
 class Constraint(NamedTuple):
-    """A ready-made constraint: what its values are (by name; ``list`` is one of texts), and its meaning.
+    """A ready-made constraint: the types of its values by name (``list`` is of texts), and its meaning.
 
-    ``removes`` says that it does no more than to remove units. ``places`` gives what it looks at of the
-    places where a unit was read, if it does.
+    ``removes`` says that it only removes units. ``places`` returns what the constraint reads of the sources
+    of a unit; ``None`` where it reads no sources.
     """
 
     values: Mapping[str, type]
@@ -254,6 +255,7 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
     later = question.with_motion(later_motion) - first
 
     def early(used: Units) -> set[int | None]:
+        """Return the nodes that ``used`` units can make without the earlier motion."""
         available: set[int | None] = set(question.kitchen)
         waiting = used - first
         while runs := {unit for unit in waiting if needs(unit) <= available}:

@@ -21,13 +21,15 @@ class Limit(NamedTuple):
 class Ruled:
     """Constraints as nodes, steps and limits, numbered after the nodes and the units of a network.
 
+    Units make the nodes in ``gives``, and need those in ``needs``, in addition to their own. A step makes its
+    node once all nodes that it needs are there, and costs nothing; ``steps`` maps it to its needs and its
+    node. It is used where a unit needs its node, or the node is a goal. ``makers`` are the units and steps
+    that make each node.
+
     A tree that keeps to the constraints has no unit of ``removed``, reaches the nodes ``goals``, and stays
-    within each of the ``limits`` (by the place of their constraint; those of which one has several come
-    after all constraints), when units make the nodes in ``gives``
-    and need those in ``needs`` as well. A step (``steps`` maps it to its needs and its node) gives its node
-    once all that it needs is there, and costs nothing; it is used where a unit needs its node, or the node is
-    a goal. ``makers`` are the units and steps that give each node. Where ``never`` is not empty, there is no
-    such tree. ``barred`` tells what else no tree has (:class:`Meaning`).
+    within each of the ``limits``. Where ``never`` is not empty, there is no such tree. ``barred`` tells
+    further units that no tree has (:class:`Meaning`). A limit has the number of its constraint; limits of
+    constraints that may have several are numbered after all constraints.
     """
 
     def __init__(self, meanings: Sequence[Meaning], first_node: int, first_step: int) -> None:

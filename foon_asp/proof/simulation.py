@@ -26,10 +26,10 @@ class Obstacle(NamedTuple):
     """Why a tree does not execute: the position of a unit in the tree (from 0) and an input it lacks.
 
     ``unit`` is ``None`` when every unit runs and a goal is still missing; ``missing`` is then the goal.
-    ``cycle`` lists positions of units each of which waits for what the next makes, and the last for what the
-    first makes, where ``unit`` waits for such a cycle; otherwise it is empty, and ``unit`` needs, perhaps
-    through other units, an input that no unit of the tree makes. ``used_up_by`` are the positions of the
-    steps of a plan that use up the copies there are, and ``amount`` is how many copies are needed.
+    ``cycle`` has the positions of a cycle of units that ``unit`` waits for: each of them waits for an output
+    of the next, and the last for one of the first. If it is empty, ``unit`` needs, perhaps through other
+    units, an input that no unit of the tree makes. ``used_up_by`` are the positions of the steps of a plan
+    that use up the copies there are, and ``amount`` is how many copies are needed.
     """
 
     unit: int | None

@@ -1,7 +1,7 @@
-"""Are the stand-ins of a network those of its table? Worked out from the table alone, for certificates.
+"""Check, for certificates, that the stand-ins of a network are those of its table.
 
-docs/stand-ins.md has the definition, and the argument why no other stand-in can be in a best tree. Nothing of
-what makes stand-ins is used here: the prices are computed once more.
+docs/stand-ins.md has the definition, and the argument why no other stand-in can be in a best tree. The code
+that makes stand-ins is not used here: the prices are computed anew.
 """
 
 from collections import Counter, deque
@@ -80,9 +80,10 @@ def stand_in_fault(
 ) -> str | None:
     """Return what is wrong with the stand-ins of a network; ``None`` if they are those of its table.
 
-    Each has to have a price, and to serve a node that cannot be made without stand-ins. None may be missing,
-    except, where ``claim`` is by dissimilarity, those that cost more than a free node in the same place, or
-    lead to more than ``claim.bound``. ``goals`` are all nodes that every tree makes or takes.
+    Each stand-in has to have a price, and to serve a node that cannot be made without stand-ins. No stand-in
+    may be missing, with two exceptions where ``claim`` is by dissimilarity: those that cost more than a free
+    node in the same place, and those that lead to more than ``claim.bound``. ``goals`` are all nodes that
+    every tree makes or takes.
     """
     objects = network.objects
     listed: set[tuple[int, int]] = set()

@@ -18,9 +18,9 @@ from foon_asp.proof.replay import Shortage
 class UsedUpRun(NamedTuple):
     """The result of a search for an order of a tree with consumable items.
 
-    ``order`` has positions in the tree, from 0, in an order that runs, the listed one where that runs. It is
-    ``None`` where no order runs, which is then ``proved``, or where the search was given up. ``shortage`` is
-    the copy that is missing then.
+    ``order`` has positions in the tree, from 0, in an order that runs: the listed order, if it runs. ``None``
+    where no order runs, which is then ``proved``, or where the search was given up. ``shortage`` is then the
+    copy that is missing.
     """
 
     order: tuple[int, ...] | None
@@ -97,7 +97,7 @@ def _shortage_as_listed(
 def _overdrawn(
     steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
-    """Return the first copy that is missing in every order, as more are used up than there ever are."""
+    """Return the first copy that is missing in every order, because more are used up than there ever are."""
     copies = dict(stock)
     for step in steps:
         for node, amount in step.adds.items():
@@ -166,7 +166,7 @@ class _OrderSearch:
         return None
 
     def _ready(self, dead: set[int]) -> Iterator[int]:
-        """Yield the steps that can be next; the last is the first that takes no copy from a waiting step."""
+        """Yield the steps that can be next, up to one that leaves enough copies for all waiting steps."""
         end = len(self._steps)
         step = end if self._done in dead else self._next[end]
         while step != end and self.looks_left > 0:

@@ -116,7 +116,7 @@ class Subject(NamedTuple):
     stand_ins: StandInTable | None = None
 
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
-        """Return the SHA-256 digests that a certificate of it names; ids mean nothing without the network's.
+        """Return the SHA-256 digests of the data, by name, as a certificate states them.
 
         Digests in ``stated`` are not computed. The digest of sources covers only the places that the rules
         look at.
@@ -134,6 +134,7 @@ class Subject(NamedTuple):
         return canonical({**values, "goals": [(goal, str(self.network.objects[goal])) for goal in goals]})
 
     def _described(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
+        """Return the name of each digest, with a function that returns the data of the digest."""
         network, rates, prices = self.network, self.rates, self.prices
         places = [looked for rule in rules if (looked := looked_at(rule, network)) is not None]
         table = self.stand_ins
@@ -196,10 +197,10 @@ class Verified(NamedTuple):
 
     ``claim`` is ``optimal``: no tree is better than ``tree`` by the ``objectives``, most important first;
     ``bound``: no tree costs less than the certificate's bound; or ``infeasible``: there is no tree.
-    All trees are meant that keep to the ``rules``: ready-made constraints, each by its name (``rule``) and
-    its values. ``costs`` are those of the tree, one for each objective. ``trusted`` is what the claim rests
-    on that the data do not say. Where items are used up, a plan is meant in place of a tree, and ``used_up``
-    is what the claim says of items.
+    The claim is about the trees that keep to the ``rules``: ready-made constraints, each by its name
+    (``rule``) and its values. ``costs`` are those of the tree, one for each objective. ``trusted`` are the
+    statements that the claim rests on and that are not in the data. Where items are used up, the claim is
+    about plans in place of trees, and ``used_up`` are its statements about items.
     """
 
     claim: str
@@ -271,9 +272,9 @@ def refusing_depth() -> Iterator[None]:
 def verify(certificate: Any, subject: Subject) -> Verified:
     """Check a certificate of a tree against the data it speaks about.
 
-    Takes time linear in cuts times network, and where that is a few seconds more than the digest of the
-    network takes, raises :class:`LimitError`. Raises :class:`RefusedError` with the first fault that is
-    found.
+    The time is linear in the number of cuts times the size of the network. Raises :class:`LimitError` where
+    it would be more than a few seconds longer than that of the digest of the network. Raises
+    :class:`RefusedError` with the first fault that is found.
     """
     rules = read_frame(certificate, TREE_FORM, subject)
     return Check(certificate, rules, subject).claim()
@@ -683,8 +684,8 @@ class Check:
     def _rounded(self, amount: Amount, stated: Any) -> Amount:
         """Round up a bound to a stated common divisor of all costs.
 
-        It is rounded at the first objective with a stated multiple that the bound is not a multiple of. A
-        tree that costs as much as the bound by the objectives before it costs at least 0 by those after it.
+        It is rounded at the first objective whose stated divisor does not divide it. The parts after this
+        objective become 0, since no cost is below 0.
         """
         multiples = {name: read_rational(multiple) for name, multiple in read_object(stated).items()}
         require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
@@ -884,7 +885,7 @@ class Check:
             yield name, weight
 
     def read_named(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
-        """Read what is stated under a key: of what is named by its first numbers, in order, a value."""
+        """Yield the rows under a key, in order: the first ``numbers`` entries of a row, and its value."""
         rows = [read_list(row) for row in read_list(stated)]
         names = [row[:numbers] for row in rows]
         require(
@@ -920,9 +921,9 @@ class Check:
     def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> Fraction | int:
         """Return a number with the sign of the sum of ``e * -log(rate)``: is the product below or above 1?
 
-        Bounds of the logarithms decide where they can. Otherwise, with the exponents over one denominator,
-        the product of ``rate ** e`` is below 1 exactly when its power by that denominator is, and that one is
-        a quotient of whole numbers. A rate of 0 costs more than any weight.
+        Bounds of the logarithms decide where they can. Otherwise the product of ``rate ** e`` is raised to
+        the common denominator of the exponents. The power is a quotient of whole numbers, and below 1 exactly
+        when the product is. A rate of 0 costs more than any weight.
         """
         if never := exponents.get(Fraction(0)):
             return never
@@ -950,8 +951,8 @@ class Check:
         """Return bounds of ``-log(rate)`` from below and above.
 
         Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
-        Those of the denominator and of the numerator of a rate next to 1 share their first digits, and more
-        are computed (one for three bits).
+        For a rate near 1, the logarithms of denominator and numerator share their first digits. So more are
+        computed: one for each three bits that are shared.
         """
         shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
         precise = Context(prec=50 + min(shared, 400))

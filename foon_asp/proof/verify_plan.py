@@ -234,7 +234,7 @@ class PlanCheck(Check):
         return changes, self.wanted(o) if o in self.goals else 0
 
     def _read_rounded(self) -> list[Row]:
-        """Read the rounded sums, each of balances, limits of rules and earlier ones with weights from 0."""
+        """Read the rounded sums: of balances, limits and earlier rounded sums, with positive weights."""
         rows: list[Row] = []
         for stated in read_list(self.certificate["rounded"]):
             require(
@@ -254,7 +254,7 @@ class PlanCheck(Check):
         return rows
 
     def _of_counts(self, key: str, number: int, earlier: Sequence[Row]) -> Row:
-        """Return a condition on counts alone: the coefficients of units, and the least of their sum."""
+        """Return a condition on counts alone: the coefficients of units, and a lower bound on their sum."""
         if key == "rounded":
             return earlier[read_number(number, range(len(earlier)), "the number of an earlier rounded sum")]
         if key == "limits":
@@ -311,7 +311,7 @@ class PlanCheck(Check):
     # --- the proof
 
     def _prove(self, proof: Any, least: Amount | None) -> None:
-        """Check a proof for each objective that plans as good by those before cost at least ``least``.
+        """Check for each objective that plans as good by earlier objectives cost at least ``least``.
 
         ``None`` claims that there is no plan: all costs are 0 then, and bounds have to be above 0.
         """
@@ -543,9 +543,9 @@ class _Conditions:
             self._bring(self.executed, unit, weight, -change)
 
     def _supply(self, o: int, supplied: int, weight: Amount) -> None:
-        """Add the supply of a unit: before it is executed, there are the copies of a node that it asks for.
+        """Add the supply of a unit: before it is executed, there are the copies of a node that it needs.
 
-        They are initial, or others add them, since none are added before its first execution by itself.
+        These copies are initial, or other units add them: the unit adds none before its first execution.
         """
         check, network = self.check, self.check.network
         read_number(o, range(len(network.objects)), "the id of a node in a supply")

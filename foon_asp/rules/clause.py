@@ -44,7 +44,7 @@ _NUMBERS = {AggregateFunction.Count, AggregateFunction.Sum, AggregateFunction.Su
 class Literal(NamedTuple):
     """An atom in a body: as it is, negated once (``not p``) or twice (``not not p``).
 
-    The name of an atom with ``-`` begins with a minus.
+    The name of a classically negated atom (``-p``) begins with a minus.
     """
 
     signature: Signature
@@ -75,7 +75,7 @@ class Conditional(NamedTuple):
 
 
 class Element(NamedTuple):
-    """One element of an aggregate: the terms that it adds, and when."""
+    """An element of an aggregate: the terms that it adds where its condition holds."""
 
     terms: tuple[AST, ...]
     condition: "tuple[Conjunct, ...]"
@@ -111,8 +111,8 @@ Conjunct = Literal | Test | Conditional | Aggregate | Strange
 class Clause(NamedTuple):
     """A rule without pools, taken apart.
 
-    ``head`` has the atom of a plain rule, is ``None`` where there is no head, and ``others`` has the atoms of
-    a head that leaves a choice, each with its condition: a choice, a disjunction or a negated head. ``ast``
+    ``head`` is the atom of a ``plain`` rule, ``None`` for a constraint. Any other rule has a choice, a
+    disjunction or a negated head: ``others`` has its atoms, each with its condition. ``ast``
     is the rule without pools, with a node for each conjunct of ``body``.
     """
 
@@ -163,7 +163,7 @@ def source_of(statement: AST) -> Source:
 
 
 def written(statement: AST, rules: Loaded | None = None) -> str:
-    """Return a statement on one line, as it is written in its file or in these rules."""
+    """Return a statement on one line, as it is written in its file or in the text of ``rules``."""
     begin, end = statement.location.begin, statement.location.end
     if isinstance(rules, Stated) and begin.filename == rules.place:
         content = rules.text.encode("utf-8")

@@ -17,8 +17,8 @@ class Subject(StrEnum):
 class Subjects(NamedTuple):
     """The arguments of a fact, by position: its subjects, and the subjects that it leads to.
 
-    If the subjects are in the tree, so are those that it leads to. Other arguments are names and numbers;
-    the positions in ``numbers`` are never negative.
+    If its subjects are in the tree, so are the subjects that it leads to. Other arguments are names and
+    numbers; the positions in ``numbers`` are never negative.
     """
 
     about: dict[int, Subject]

@@ -98,8 +98,8 @@ def misplaced(columns: Columns, values: Mapping[int, Value]) -> int | None:
 class FactValues:
     """Facts about the whole network of a question, not only about the part that goals can need.
 
-    Of a store, the part in memory is searched first, and then all others of its units and nodes, one by one,
-    up to ``max_read``; beyond these, a name counts as known.
+    Of a store, the part in memory is searched first, and then the other units and nodes, one by one. After
+    ``max_read`` of them, the search ends, and a name that was not found counts as known.
     """
 
     max_read: ClassVar[int] = 200_000
@@ -131,7 +131,7 @@ class FactValues:
     def nearest(self, name: str, columns: Columns, words: Mapping[int, str]) -> dict[int, str] | None:
         """Return the texts of the fact, by position, whose spelling is most similar to some words.
 
-        ``None`` where no text is similar, and once twenty suggestions were sought.
+        ``None`` where no text is similar, and for each call after the twentieth.
         """
         self._lookups_left -= 1
         if self._lookups_left < 0:

@@ -81,7 +81,7 @@ class Locality:
         return leads
 
     def _find_abouts(self, program: Sequence[Clause]) -> None:
-        """Find the subjects that arguments of auxiliary predicates need for their rules to be local."""
+        """Find which arguments of auxiliary predicates have to be in the tree for their rules to be local."""
         changed = True
         while changed:
             changed = False
@@ -124,6 +124,7 @@ class Locality:
         return changed
 
     def _mark_nonlocal(self, signature: Signature, nonlocality: Nonlocality) -> bool:
+        """Record why rules for a predicate are not local; return whether that is new."""
         if signature in self._nonlocal:
             return False
         self._nonlocal[signature] = nonlocality
@@ -162,7 +163,7 @@ class Locality:
     def _lacking(
         self, conjuncts: Iterable[Conjunct], tree_terms: _TreeTerms, source: Source
     ) -> "_Lacking | None":
-        """Return the first term that has to be in the tree but may not be, ``None`` where all are."""
+        """Return the first term that has to be in the tree but may be outside it; ``None`` without one."""
         for conjunct in conjuncts:
             lacking = self._lacking_in(conjunct, tree_terms, source)
             if lacking:
@@ -170,7 +171,7 @@ class Locality:
         return None
 
     def _lacking_in(self, conjunct: Conjunct, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
-        """Return what one conjunct lacks to be local, ``None`` where it is."""
+        """Return the reason why a conjunct is not local, with its term; ``None`` for a local conjunct."""
         if isinstance(conjunct, Literal):
             return self._lacking_of(conjunct, tree_terms, source)
         if isinstance(conjunct, Conditional):
@@ -195,7 +196,7 @@ class Locality:
         return None
 
     def _lacking_of(self, literal: Literal, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
-        """Return what one literal lacks to be local, ``None`` where it is."""
+        """Return the reason why a literal is not local, with its term; ``None`` for a local literal."""
         signature = literal.signature
         if signature in self._nonlocal:
             return _Lacking("", Subject.UNIT, self._nonlocal[signature])

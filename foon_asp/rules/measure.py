@@ -51,7 +51,7 @@ class Measure:
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[Cost]:
         """Return the cost of each unit of a problem, by id; evaluated once for a network, up to a deadline.
 
-        Raises :class:`InputError` for rules that give a unit two costs, or one that is no number from 0.
+        Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0.
         """
         from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
@@ -274,11 +274,11 @@ def _text(value: "Value") -> str:
 
 
 def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) -> dict[str, Measure]:
-    """Read measures by name, from files and from texts; one or several.
+    """Read measures from one or several files or texts of rules; return them by name.
 
-    A text that has ``:-``, or ends in a full stop, is rules, unless it is an existing path; a path is always
-    a path; an empty text is neither. Raises :class:`UserError` for faults in them, and for a name that two of
-    them have.
+    A text that has ``:-``, or ends in a full stop, is rules, unless it is an existing path. Any other text is
+    the path of a file. Raises :class:`UserError` for an empty text, for faults in rules, and for a measure
+    that is defined twice.
     """
     rules = [rules] if isinstance(rules, str | PathLike) else list(rules)
     if not rules:

@@ -102,6 +102,8 @@ def read_rules(text: str, origin: str) -> MeasureRules:
 
 
 class _Reader:
+    """Checker of the rules of measures, and their translator for clingo."""
+
     def __init__(self, statements: Sequence[AST], stated: Stated) -> None:
         self._stated = stated
         self._errors: list[Diagnostic] = []
@@ -167,6 +169,7 @@ class _Reader:
         yield from (writer.written(rule, source) for rule, source in rules)
 
     def _check_head(self, rule: AST, atoms: "_Atoms", names: dict[str, Source]) -> None:
+        """Refuse a head other than one atom of a permitted predicate; record the measure that it names."""
         head = rule.head
         if head.ast_type is not ASTType.Literal or head.sign != Sign.NoSign:
             self._error(
@@ -189,6 +192,7 @@ class _Reader:
                 self._error("owned-predicate", f"found a rule for {name}/{arity}: give it another name", atom)
 
     def _check_atoms(self, atoms: "_Atoms") -> None:
+        """Refuse negated, reserved and undefined atoms, and those that are not about one unit."""
         for minus in atoms.negated:
             self._error("negation", "found an atom with a minus before it, expected one without", minus)
         for atom in (*atoms.heads, *atoms.used):
@@ -248,6 +252,7 @@ class _Reader:
             self._error("loop", message, atom)
 
     def _read(self) -> Iterator[Signature]:
+        """Yield the predicates of facts that the rules read."""
         derived = {_signature(atom) for other in self._atoms for atom in other.heads}
         for atoms in self._atoms:
             for signature in map(_signature, atoms.used):
@@ -266,6 +271,7 @@ class _Reader:
         return frozenset(dependent)
 
     def _is_plain(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
+        """Return whether the grounding of a rule cannot be large."""
         tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
         return (
             not (atoms.has_interval or atoms.divides)

@@ -45,7 +45,7 @@ class LibraryUse(NamedTuple):
 
     @property
     def constants(self) -> dict[str, str]:
-        """The constants with their values as written; raises :class:`UserError` for other texts."""
+        """The constants with their values as written; raises :class:`UserError` for wrong syntax."""
         name, _, remaining = self.written.partition(":")
         values: dict[str, str] = {}
         while True:
@@ -78,7 +78,7 @@ Constraint = Path | RuleText | LibraryUse
 
 
 def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint:
-    """Return a constraint of a Python argument, which may be one already.
+    """Return the constraint that a Python argument stands for.
 
     A text that has ``:-``, or ends in a full stop, is a rule, unless it is an existing path or the name of a
     ready-made constraint; a path is always a path. Raises :class:`UserError` for an empty text.
@@ -113,9 +113,9 @@ def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
 
 
 def find_constraint(constraint: Constraint) -> Constraint:
-    """Return a constraint with the path of its file, that of a ready-made one for its name.
+    """Return a constraint, in which the name of a ready-made one is replaced by the path of its file.
 
-    Raises :class:`UserError` where neither exists.
+    Raises :class:`UserError` where there is no such file and no ready-made constraint of this name.
     """
     if not isinstance(constraint, Path):
         return constraint

@@ -42,7 +42,7 @@ class ReadyMade:
     """Ready-made constraints of one question, with the meaning that certificates use.
 
     They are local, and require redundant units only as members of required sets. ``unsettled`` says that
-    some do more than to remove and require units; those are antimonotone. ``shrinking`` says that all
+    some constraints, all antimonotone, do more than to remove and require units. ``shrinking`` says that all
     constraints are antimonotone: every subtree of a tree that keeps to them does, too. ``constants`` are
     their constants, as terms, and ``files`` their files.
     """
@@ -59,14 +59,14 @@ class ReadyMade:
 
     @property
     def looked_at(self) -> frozenset[tuple[str, int]]:
-        """The predicates that they read, in addition to those of the built-in encodings."""
+        """The predicates that the constraints read, in addition to those of the built-in encodings."""
         return READ | {_PRICE} if "max_price" in self.constants else READ
 
     def fit(self, problem: Problem) -> bool:
-        """Whether they mean the same for a problem as under clingo.
+        """Whether the constraints have the same meaning for a problem here as in clingo.
 
-        They may not where unsettled constraints do not see all available object nodes, and for prices that
-        clingo refuses.
+        False where unsettled constraints do not see all available object nodes, and for prices that clingo
+        refuses.
         """
         if self.unsettled and problem.kitchen_seen != problem.kitchen:
             return False
@@ -78,7 +78,7 @@ class ReadyMade:
         return True
 
     def leave_to_search(self, problem: Problem) -> bool:
-        """Whether the search enforces them; never."""
+        """Whether the search enforces the constraints; never."""
         return False
 
     def applied(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction:
@@ -103,7 +103,7 @@ class ReadyMade:
                 yield LinearRow(amounts, int(rule_meaning.max_sum))
 
     def keeps(self, problem: Problem, units: Collection[int]) -> bool:
-        """Whether a tree keeps to all of them."""
+        """Whether a tree keeps to all constraints."""
         _, ruled = self._meanings(problem)
         tree = frozenset(units)
         return ruled.fault(tree, frozenset(range(len(problem.network))) - tree) is None
@@ -141,7 +141,7 @@ def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> Re
 def _values(
     uses: Sequence[tuple[str, Mapping[str, str]]], shared: Mapping[str, str]
 ) -> tuple[Sequence[Rule], Mapping[str, str]] | None:
-    """Return constraints with their values, and all constants as terms; ``None`` where one is not plain."""
+    """Return constraints with their values, and all constants as terms; ``None`` if a value is not plain."""
     facts: dict[str, set[str]] = {name: set() for name in LISTED}
     constants: dict[str, str] = {}
     used_names: set[str] = set()

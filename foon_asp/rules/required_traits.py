@@ -29,7 +29,7 @@ class TraitReader:
         self._fresh = count()
 
     def rows(self, conjuncts: Iterable[Conjunct]) -> list[list[Trait]]:
-        """Return for each disjunct traits that a unit has of which the disjunct holds."""
+        """Return, for each disjunct, traits of every unit for which the disjunct holds."""
         return [list(_traits(atoms)) for atoms in self._disjuncts(conjuncts, {}, ())]
 
     def _disjuncts(
@@ -46,6 +46,7 @@ class TraitReader:
     def _unfolded(
         self, literal: Literal, terms: tuple[_Term, ...], above: tuple[Signature, ...]
     ) -> list[list[_Atom]]:
+        """Return the disjuncts of a literal, with auxiliary predicates replaced by the bodies of rules."""
         signature = literal.signature
         if literal.negations or signature in SUBJECTS or signature in {USE, TIMES} or signature in above:
             return [[(signature, literal.negations, terms)]]

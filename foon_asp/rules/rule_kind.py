@@ -102,10 +102,10 @@ class Rule(NamedTuple):
 class Analysis:
     """The rules of one question as clauses, each with its kind.
 
-    ``rules`` are in the order of the files, ``live`` the clauses that can have an effect: clauses with a
-    condition that never holds are excluded. By the index of a rule in ``rules``, ``of_rule`` has its live
-    clauses, ``removals`` and ``at_least_ones`` what it states and nothing else, and ``rows`` the row that it
-    states. ``translator`` wrote the programs of these; ``constant_texts`` define constants for them.
+    ``rules`` are in the order of the files. ``live`` are the clauses that can have an effect: a clause with a
+    condition that never holds is excluded. ``of_rule`` has the live clauses of each rule, by its index in
+    ``rules``. By the same index, ``removals``, ``at_least_ones`` and ``rows`` have the translations of rules
+    by ``translator``. ``constant_texts`` define the constants in these.
     """
 
     def __init__(
@@ -233,7 +233,7 @@ class Analysis:
         )
 
     def _understood(self, number: int, rule: Rule) -> Rule:
-        """Find what a rule says of single units; return it with the kind that follows."""
+        """Record the translations of a rule; return the rule with the kind that follows from them."""
         live = self.of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
             return rule

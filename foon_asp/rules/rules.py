@@ -200,9 +200,10 @@ class Rules:
     ) -> Restriction | Contradiction | None:
         """Return the restriction of a problem by the rules that remove units or require one of a set.
 
-        A tree keeps to these if and only if it has no removed unit, and a unit of each required set; of
-        ``units``, by default those that can execute. ``None`` where clingo refuses a rule. Raises
-        :class:`UserError` for prices that rules read and that are no whole numbers of hundredths.
+        A tree keeps to these rules if and only if it has no removed unit, and a unit of each required set.
+        Only ``units`` are considered, by default those that can execute. ``None`` where clingo refuses a
+        rule. Raises :class:`UserError` for prices that rules read and that are no whole numbers of
+        hundredths.
         """
         answers = self._answers(problem, deadline, units)
         return None if answers is None else answers.restriction
@@ -215,6 +216,7 @@ class Rules:
     def _answers(
         self, problem: Problem, deadline: Deadline, units: Collection[int] | None = None
     ) -> UnitAnswers | None:
+        """Return the evaluation of the rules on single units; ``None`` where clingo refuses a rule."""
         analysis = self._analysis
         if self._last is None or self._last[0] is not problem or self._last[1] is not units:
             stated: list[Understood] = [*analysis.removals.values(), *self._at_least_ones]

@@ -1,10 +1,10 @@
-"""Numbers that steer the stages of this room; none of them decides what is answered, only how fast."""
+"""Thresholds for the evaluation of rules; they change only its time, never an answer."""
 
 from typing import NamedTuple
 
 
 class RuleTuning(NamedTuple):
-    """When rules are evaluated before the search, and measures without a process of their own.
+    """Thresholds for evaluating rules before the search, and measures without another process.
 
     ``evaluated_units``: units of a network; in a larger one, rules that only remove units are left to the
     search, which looks at the units near the goals alone (benchmarks/rules.py at 100,000 units: 0.15 s

@@ -1,11 +1,12 @@
-"""The kinds of rules: what a rule that is understood says of single units.
+"""Translation of rules into programs about single units, which clingo evaluates.
 
-A rule *removes* the units that break it by themselves, asks for *at least one* of the units that keep to it
-by themselves, or is a *row* over weights of units. Each kind is a program for clingo, which derives
-``_of_unit(NUMBER,WHAT,OF,W)`` in a world ``W`` for each unit, where no other unit is used, and in the world
-``NOTHING``, where none is. Any other rule is a *check*: it is asked of clingo on whole trees, never dropped.
+A translated rule *removes* the units that break it by themselves, requires *at least one* of the units that
+keep to it by themselves, or is a *row*, which bounds a sum of weights of units. Each kind is a program for
+clingo, which derives ``_of_unit(NUMBER,WHAT,OF,W)`` in a world ``W`` for each unit, where no other unit is
+used, and in the world ``NOTHING``, where none is. Any other rule is a *check*: clingo evaluates it on whole
+trees.
 
-A rule is of one of these kinds if, by its syntax, each of its derivations looks at one unit of the tree, and
+A rule can be translated if, by its syntax, each of its derivations looks at one unit of the tree, and
 if it calculates nothing: then no number can overflow, and grounding ends.
 """
 
@@ -47,13 +48,13 @@ _ONE_EXECUTION = {USE, TIMES}
 
 
 class Removes(NamedTuple):
-    """No tree has a unit of a world in which ``breaks`` is derived; in ``NOTHING``, there is no tree."""
+    """No tree has a unit in whose world ``breaks`` is derived; if it is in ``NOTHING``, there is no tree."""
 
     program: tuple[str, ...]
 
 
 class AtLeastOne(NamedTuple):
-    """Wherever ``asks`` is derived, a tree has a unit of a world in which ``meets`` is derived of the same.
+    """For each term with ``asks``, a tree has a unit in whose world ``meets`` is derived of this term.
 
     ``wanted`` are traits of these units.
     """
@@ -63,10 +64,10 @@ class AtLeastOne(NamedTuple):
 
 
 class Row(NamedTuple):
-    """The weights of units that ``weighs`` states sum up to at most ``bound``, or ``at_least``.
+    """The weights of units, in atoms ``weighs``, add up to at most ``bound``; with ``at_least``, at least.
 
-    The weights have the ``number`` of the row. Different weights of a unit add up, and count for each
-    execution, with ``used`` once. With ``per_unit``, the bound holds for each unit by itself.
+    These atoms have the ``number`` of the row. Different weights of a unit add up. They count for each
+    execution; with ``used``, only once. With ``per_unit``, the bound holds for each unit by itself.
     """
 
     number: int
@@ -178,6 +179,7 @@ class Translator:
         return [*rules, *programs], facts
 
     def _sum(self, aggregate: Aggregate, elements: Sequence[AST]) -> Row | None:
+        """Return the row that bounds a sum or count with one guard; ``None`` for other aggregates."""
         is_sum = aggregate.function is AggregateFunction.Sum
         sizes = {len(element.terms) for element in aggregate.elements}
         if aggregate.negations or len(aggregate.guards) != 1 or sizes != {1 + is_sum}:
@@ -197,9 +199,9 @@ class Translator:
         return Row(self._numbers, program, allowed[1], allowed[0], used == {USE})
 
     def _weights(self, element: Element, condition: Sequence[AST]) -> tuple[str, Signature] | None:
-        """Return the rule of the weights for one execution, and the predicate that stands for executions.
+        """Return the rule of the weights for one execution, and the predicate that states executions.
 
-        The weight of several executions is a multiple of it, since nothing else reads their number.
+        The weight of several executions is a multiple of this weight, since nothing else reads their number.
         """
         executions = _executions(element.condition)
         if executions is None or not self._is_plain(element.condition):
@@ -227,7 +229,7 @@ class Translator:
         return f"{self._head('weighs', weight, unit)} :- {'; '.join(body)}.", signature.signature
 
     def _allowed(self, comparison: int, term: AST) -> tuple[bool, int] | None:
-        """Return the bound that forbids a comparison: whether it is a lower one, and its number."""
+        """Return the bound that forbids a comparison: whether it is a lower bound, and its number."""
         number, allowed = value(term, self._constants), _ALLOWED.get(ComparisonOperator(comparison))
         if number is None or number.type is not SymbolType.Number or allowed is None:
             return None
@@ -271,7 +273,7 @@ class Translator:
         return f'{ANSWER[0]}({self._numbers},"{what}",{of},{world})'
 
     def _stated(self, head: str, clause: Clause) -> str:
-        """Return a rule in each world where it depends on the tree, else in the world without units."""
+        """Return a rule for each world if it depends on the tree, else for the world without units."""
         body = [str(self._worlds.visit(node)) for node in clause.ast.body]
         if self._world in head:
             where = (
@@ -293,6 +295,7 @@ class Translator:
         return min(looks, 2)
 
     def _looks_of_atom(self, signature: Signature) -> int:
+        """Return at how many units of the tree an atom looks; 2 stands for more than one."""
         if signature in {USE, AVAILABLE}:
             return 1
         if signature not in self._looks:

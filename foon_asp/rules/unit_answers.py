@@ -1,4 +1,4 @@
-"""What single units do to the rules of one question, as clingo derives it."""
+"""Evaluation of the rules of one question on single units, by clingo."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
@@ -28,11 +28,11 @@ def ask_units(
     read: Collection[Signature],
     deadline: Deadline | None,
 ) -> UnitAnswers | None:
-    """Evaluate the programs of rules over units; in another process, up to a deadline, where there is one.
+    """Evaluate the programs of rules over units; with a ``deadline``, in another process.
 
-    ``read`` are the predicates of facts that they read. ``None`` where clingo refuses a rule: then it says so
-    where it searches. Raises :class:`UserError` for prices that rules read and that are no whole numbers of
-    hundredths.
+    ``read`` are the predicates of facts that the rules read. ``None`` where clingo refuses a rule: then the
+    search reports its message. Raises :class:`UserError` for prices that rules read and that are no whole
+    numbers of hundredths.
     """
     try:
         facts = write_facts_read(problem, sorted(units), read)
@@ -68,6 +68,7 @@ def candidates(network: Network, wanted: Iterable[Wanted]) -> set[int] | None:
 
 
 def _read(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAnswers:
+    """Return the removed units, required sets and weights in the atoms that clingo derived."""
     removed: set[int] = set()
     required: dict[tuple[Value, Value], set[int] | None] = {}  # None where a set is not needed
     weights: dict[int, dict[int, int]] = {}

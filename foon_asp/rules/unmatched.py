@@ -105,7 +105,7 @@ class _Search:
     def _rows(self, literal: Literal, conjuncts: Iterable[Conjunct]) -> Sequence[Mapping[int, Symbol]]:
         """Return the combinations of values that a literal over a fact requires, by position.
 
-        Of more than 10,000, none: then the literal counts as matched.
+        Empty where there are more than 10,000: then the literal counts as matched.
         """
         max_combinations = 10_000
         values_by_position = (
@@ -125,7 +125,7 @@ class _Search:
         return self._values.matches(literal.signature[0], COLUMNS[literal.signature], wanted)
 
     def _arguments(self, literal: Literal, bound: _Values) -> dict[int, Sequence[Symbol]]:
-        """Return the possible values of arguments, by position; no unknown or unset ones."""
+        """Return the possible values of arguments, by position, without arguments of unknown values."""
         values_by_position: dict[int, Sequence[Symbol]] = {}
         for position, argument in enumerate(literal.arguments):
             if argument.ast_type == ASTType.Variable:

@@ -21,6 +21,7 @@ class Worlds(Transformer):
         return atom.update(symbol=self._changed(atom.symbol))
 
     def _changed(self, symbol: AST) -> AST:
+        """Return a symbol with a world, if its predicate differs from world to world."""
         if symbol.ast_type is ASTType.Pool:
             return symbol.update(arguments=[self._changed(one) for one in symbol.arguments])
         if symbol.ast_type is ASTType.UnaryOperation:
