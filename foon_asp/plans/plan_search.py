@@ -13,7 +13,9 @@ from foon_asp.plans.plan_question import Plan, PlanQuestion
 from foon_asp.plans.whole_program import Stopped
 from foon_asp.problem import Objective, Problem, multiplies
 
-_CLINGO_NOT_ASKED = "clingo has no statistics: HiGHS and exact sums found the plan, and an order that runs was found without clingo"
+_CLINGO_NOT_ASKED = (
+    "clingo has no statistics: the plan and its order were found and proved without its search"
+)
 
 
 def solve_used_up(
