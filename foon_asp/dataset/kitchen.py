@@ -7,7 +7,7 @@ from functools import cached_property
 class Kitchen(Collection[int]):
     """The available object nodes, by id in the whole network: a ``base`` with nodes added and removed.
 
-    The base of a store is read on access.
+    The base of a kitchen in a store is read on access.
     """
 
     def __init__(self, base: Collection[int], added: Iterable[int] = (), removed: Iterable[int] = ()) -> None:
