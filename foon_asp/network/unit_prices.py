@@ -17,7 +17,8 @@ class UnitPrices(NamedTuple):
     def of_units(self, network: Network) -> tuple[Fraction | None, ...]:
         """Return the price of every unit of a network, ``None`` where it has none.
 
-        Below level 3 it is the least price of the units that a unit stands for, all of which need a price.
+        Below level 3, the price is the least price of the units that a unit stands for, and ``None`` unless
+        all of these have a price.
         """
         if network.detailed is None:
             return self._at_own_level(network)
