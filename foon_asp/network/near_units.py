@@ -126,8 +126,8 @@ def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit
 def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
     """Return the pairs of units in one list that have a single difference, which may be a slip.
 
-    The difference is in the motion, a state or a relation, or in a name that is spelt almost like the other.
-    Units with other labels are different units.
+    The difference is in the motion, a state or a relation, or it is between two names that are spelt almost
+    alike. Units that differ in other labels are not meant to be one.
     """
     listed = list(units)
     pairs = []

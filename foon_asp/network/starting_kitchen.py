@@ -85,7 +85,7 @@ class StartingKitchen(ABC, Generic[File]):
 
     @abstractmethod
     def granting_files(self, o: int) -> Iterable[File]:
-        """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
+        """Return the files whose starting kitchen grants a node although a unit of the file makes it."""
 
     @abstractmethod
     def files_of(self, units: Iterable[int]) -> Iterable[File]:
@@ -160,7 +160,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         return [unit for unit in self._network.producers[o] if o not in inputs[unit]]
 
     def granting_files(self, o: int) -> Sequence[str]:
-        """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
+        """Return the files whose starting kitchen grants a node although a unit of the file makes it."""
         return self._granting.get(o, ())
 
     def files_of(self, units: Iterable[int]) -> Iterator[str]:

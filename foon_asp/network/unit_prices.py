@@ -9,7 +9,7 @@ from foon_asp.network.network import Network
 
 
 class UnitPrices(NamedTuple):
-    """Exact prices, none below 0: of ``units`` of level 3, and of all others by their motion."""
+    """Exact prices, none below 0: of single ``units`` of level 3, and by motion for all other units."""
 
     motions: Mapping[str, Fraction]
     units: Mapping[FunctionalUnit, Fraction]

@@ -67,7 +67,7 @@ class Converter:
                 self._numbering.learn(line)
 
     def convert(self, text: str, file: str) -> Converted:
-        """Convert a text; its functional units or listed objects stay the same.
+        """Return a converted text, which has the same functional units or listed objects.
 
         Raises :class:`InputError` with the places of all parts that cannot be understood, or whose meaning
         the target cannot hold.

@@ -79,7 +79,7 @@ class Format(Protocol):
         """Yield the parts of a text that can be understood as lines of FOON text."""
 
     def normalised(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return a text in canonical form, which means the same.
+        """Return a text in canonical form, with the same meaning.
 
         Raises :class:`InputError` with all faults; with ``lenient``, lines that cannot be understood stay.
         """

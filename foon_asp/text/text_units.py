@@ -312,9 +312,10 @@ class TextUnits:
 class _Section:
     """The lines between two separators, while they are read one by one; positions are indices of lines.
 
-    ``block`` is that of the current object line, ``None`` before the first; ``lost`` says that this
-    object line cannot be read, so that the states under it are left out. ``blamed`` says that an error among
-    the lines may be the reason for a missing motion or object. ``left_out`` is the count before the section.
+    ``block`` is the block of the current object line, ``None`` before the first one. ``lost`` is true if the
+    current object line cannot be read; then the states under it are left out. ``blamed`` is true if an error
+    in a line may be the reason for a missing motion or object. ``left_out`` is the count of lines left out
+    before the section.
     """
 
     def __init__(self, end: int, closed: bool, left_out: int) -> None:
