@@ -1,4 +1,4 @@
-"""Data that was named and read, from text or from a store, and the problems that are posed of it."""
+"""Datasets: data read from text or from a store, and the problems that are posed of a dataset."""
 
 from foon_asp.dataset.dataset import Dataset as Dataset
 from foon_asp.dataset.dataset import ask as ask

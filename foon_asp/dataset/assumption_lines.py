@@ -11,7 +11,7 @@ from foon_asp.text.assumed_goals import MARKED
 def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) -> Iterator[str]:
     """Yield one line on the starting kitchen, with the number of items that the goals can use.
 
-    It also names items that units make too. ``verbose`` adds a line for each item.
+    The line also names the items that some unit makes. ``verbose`` adds a line for each item.
     """
     used = {
         problem.network.object_number(o): problem.network.objects[o]

@@ -29,10 +29,11 @@ if TYPE_CHECKING:  # text does without SQLite
 class Source:
     """A network in memory; the subclass :class:`~foon_asp.dataset.store_source.StoreSource` is a store.
 
-    Ids are those of the whole network. ``names`` has its nodes and units, ``unit_count`` counts these.
-    ``seconds`` are those that reading took so far, ``left_out`` counts lines that were not understood.
-    ``repeated`` are nodes that a unit lists twice, and ``amounts`` those of units. A store has the
-    ``kitchen`` and the ``prices`` that were imported, and states ``digests`` of them and of the network.
+    Ids are those of the whole network. ``names`` looks up nodes and units, ``unit_count`` is the number of
+    units. ``seconds`` is the time that reading took so far, ``left_out`` counts lines that were not
+    understood. ``repeated`` are nodes that a unit lists twice, ``amounts`` the amounts of units. A store has
+    the ``kitchen`` and the ``prices`` that were imported, and states ``digests`` of the network, the kitchen
+    and the prices.
     """
 
     kitchen: Collection[int] | None = None
@@ -72,7 +73,7 @@ class Source:
         return self._network.different_motions
 
     def motion_places(self) -> Iterable[tuple[str, Place]]:
-        """Return motions with sources of their units, among them the first source of each motion."""
+        """Return motions with places of their units; the first place of each motion is among these."""
         return first_places(self._network)
 
     def whole(self) -> Network:
@@ -116,7 +117,7 @@ class Source:
         return {}
 
     def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
-        """Return the prices that a store has of single units of a network; ``None`` where it has none."""
+        """Return the prices of single units of a network in a store; ``None`` without a store or prices."""
         return None
 
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:

@@ -84,14 +84,14 @@ class Dataset:
     """Data read from a ``source``: text, or a store, of which each problem reads only its part.
 
     :attr:`data` is all of it. Ids are those of the whole network. ``listed`` are the entries of the goals
-    file, ``rates`` the success rates of motions, ``None`` without such a file, and ``utensils`` the labels
-    that count for the container rule ``implied``. ``kitchen_items`` are the entries of the kitchen file,
-    ``None`` for those in the store. ``starting`` says that the kitchen is the starting kitchen, with or
-    without changes. ``goals_from`` says what the entries were assumed from if no file lists goals.
+    file, ``rates`` the success rates of motions, ``None`` without a file of rates. ``utensils`` are the
+    labels of utensils for the container rule ``implied``. ``kitchen_items`` are the entries of the kitchen
+    file, ``None`` if these are in the store. ``starting`` is true if the kitchen is the starting kitchen,
+    with or without changes. If no file lists goals, ``goals_from`` is the origin of the assumed goals.
     ``remarks`` are the assumptions made while reading, in words, and ``brief`` is a summary of them;
-    ``has_kitchen`` says that a kitchen was given, even an empty one. ``measures`` are user measures, by name.
-    ``stand_ins`` is the table of stand-ins, ``None`` where there are none. ``stock`` are the amounts that the
-    kitchen states; other items never run out.
+    ``has_kitchen`` is true if a kitchen was given, even an empty one. ``measures`` are user measures, by
+    name. ``stand_ins`` is the table of stand-ins, ``None`` where there are none. ``stock`` are the amounts
+    that the kitchen states; other items never run out.
     """
 
     source: Source
@@ -197,7 +197,7 @@ class Dataset:
 
     @property
     def unit_prices(self) -> UnitPrices | None:
-        """The prices of units, ``None`` where none are known; all of them are read."""
+        """The prices of units, all read; ``None`` where no prices are known."""
         return self.data.unit_prices
 
     @property
@@ -249,7 +249,7 @@ class Dataset:
         return tuple(dict.fromkeys(self.each_goal(names)))
 
     def assumed_goals(self) -> list[ObjectNode]:
-        """Return the goals that were assumed because no file lists any; empty where one does."""
+        """Return the goals that were assumed because no file lists goals; empty if a file does."""
         return self.listed_goals() if self.goals_from else []
 
     def listed_goals(self) -> list[ObjectNode]:
@@ -312,7 +312,8 @@ class Dataset:
     def with_stand_in_table(self, table: StandInTable | None) -> "Dataset":
         """Return the same data with stand-ins by a table, ``None`` for none.
 
-        With stand-ins, the goals assumed are those of the first file: the others are what helps it.
+        With stand-ins, only the goals assumed from the first file stay goals; the other files help to make
+        these.
         """
         goals = self.listed
         if table is not None and self.goals_from and len(goals) > 1:
@@ -328,7 +329,7 @@ class Dataset:
     ) -> "Dataset":
         """Return the same data with a changed kitchen: object nodes, by id, are added and removed.
 
-        ``only``, unless ``None``, replaces the whole kitchen first. What is added never runs out.
+        ``only``, unless ``None``, replaces the whole kitchen first. Added nodes never run out.
         """
         if only is not None:
             kitchen = Kitchen(only, added, removed)
@@ -407,10 +408,9 @@ class Dataset:
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
         """Return the subject of a certificate: all data, or a store that is read on access.
 
-        The subject of a store has the digests that the store states. Unless ``everything`` is false, the
-        kitchen is not a starting kitchen and the prices are those of the store, all data are read, and
-        :class:`UserError` is raised if a stated digest is not true. A starting kitchen is the one for
-        ``goals``.
+        A store is read on access only if ``everything`` is false, the kitchen is no starting kitchen, and the
+        prices are those of the store. Otherwise all data are read, and :class:`UserError` is raised if a
+        digest that the store states is not true. A starting kitchen is the one for ``goals``.
         """
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
@@ -446,7 +446,7 @@ class Dataset:
     ) -> "Subject":
         """Return the subject of a certificate about a network with the stand-ins for goals.
 
-        With ``steps``, by id, they are those for the repair of a tree that has these units.
+        With ``steps``, the ids of the units of a tree, the stand-ins are those for the repair of this tree.
         """
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
@@ -491,7 +491,7 @@ class Dataset:
     ) -> tuple[frozenset[int], frozenset[int]]:
         """Return the nodes that a problem posed of this data adds to its kitchen, and those that it lacks.
 
-        Ids are those of the whole network, those of its ``goals`` too.
+        All ids, also those of the ``goals`` of the problem, are ids of the whole network.
         """
         kitchen, network = self.for_goals(goals).kitchen, problem.network
         if not network.object_numbers:
@@ -518,8 +518,8 @@ class Dataset:
     ) -> Problem:
         """Return the problem of goals, in the same order, under a container rule.
 
-        With ``everything``, its network also has units that no goal needs. ``items`` says how items are
-        used up; ``None``: items last.
+        With ``everything``, its network also has units that no goal needs. ``items`` says how items are used
+        up; ``None`` if items last.
         """
         dataset = self.for_goals(goals)
         if self.stand_ins is not None:
@@ -539,7 +539,7 @@ class Dataset:
     def nearby(
         self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = 1000
     ) -> Problem:
-        """Return the problem of goals; of a store, only about ``first`` units near the goals are read now.
+        """Return the problem of goals; a store is read only up to about ``first`` units near the goals.
 
         Further units are read on access. Without a given kitchen, all units that the goals can need are
         read, since the items of the starting kitchen are listed.

@@ -31,8 +31,8 @@ def items_for(
     """Return how items are used up for goals, by id; ``None`` if they last.
 
     ``amounts`` has how many copies are wanted of each goal; without it, the amounts of the goals file count.
-    Without ``items``, items are used up where amounts are wanted. Raises :class:`UserError` as
-    :func:`items_of` does, and for amounts that do not fit the goals or items that last.
+    Without ``items``, items are used up if amounts are wanted. Raises :class:`UserError` as :func:`items_of`
+    does, for amounts that do not fit the goals, and for amounts where items last.
     """
     if not amounts:
         listed = dataset.wanted
@@ -48,7 +48,7 @@ def items_for(
 def _wanted(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) -> dict[ObjectNode, int]:
     """Return how many copies of goals are wanted; ``amounts`` has one for each.
 
-    Raises :class:`UserError` where there are more or fewer, and for one that is out of range.
+    Raises :class:`UserError` for another number of amounts than of goals, and for an amount out of range.
     """
     if len(amounts) != len(goals):
         numbers = f"{counted(len(amounts), 'amount')} for {counted(len(goals), 'goal')}"
@@ -69,9 +69,9 @@ def items_of(
 ) -> UsedUp | None:
     """Return how items are used up; ``None`` if they last. A stock precedes the amounts of the kitchen.
 
-    ``wanted`` has the numbers of copies of goals. Raises :class:`UserError` for another word, a stock or an
-    exception where items last, a node that the kitchen does not have, a name that the network does not have,
-    and below level 3.
+    ``wanted`` has the numbers of copies of goals. Raises :class:`UserError` for an unknown word ``items``,
+    for a stock or exceptions where items last, for a node that the kitchen does not have, for a name that the
+    network does not have, and below level 3.
     """
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")

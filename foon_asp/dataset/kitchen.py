@@ -7,7 +7,7 @@ from functools import cached_property
 class Kitchen(Collection[int]):
     """The available object nodes, by id in the whole network: a ``base`` with nodes added and removed.
 
-    The base of a store is read on access.
+    The base of a kitchen in a store is read on access.
     """
 
     def __init__(self, base: Collection[int], added: Iterable[int] = (), removed: Iterable[int] = ()) -> None:
@@ -18,7 +18,7 @@ class Kitchen(Collection[int]):
         return Kitchen(self, added, removed) if added or removed else self
 
     def is_all_of(self, base: Collection[int] | None) -> bool:
-        """Whether the kitchen is exactly this base, without changes."""
+        """Whether the kitchen has exactly this base and no changes."""
         return self._base is base and not self._added and not self._removed
 
     def __contains__(self, o: object) -> bool:

@@ -1,4 +1,4 @@
-"""A question to a large store, of which only the units near the goals are read, and more as needed."""
+"""A question to a large store: the units near its goals are read first, and others only as needed."""
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import fields, replace
@@ -84,12 +84,12 @@ class Nearby:
     def relaxed(self) -> Problem:
         """The relaxation of the question in which all open nodes are available.
 
-        Of any tree of the whole network, the units read are a tree of the relaxation: their inputs are
-        available, made by another of the units, or open. So the optimum of the relaxation is a lower bound
-        on that of the whole network, for objectives that only units add to.
+        In any tree of the whole network, the units that were read are a tree of the relaxation: each of their
+        inputs is available, made by another of these units, or open. So the optimum of the relaxation is a
+        lower bound on the optimum of the whole network, for objectives that are sums over units.
 
-        User rules see the kitchen without the open nodes. So they hold of units here as in the whole network,
-        if they do not depend on what is available.
+        User rules see the kitchen without the open nodes. So a rule that does not depend on the available
+        nodes holds for the same units here as in the whole network.
         """
         if self._relaxed is None:
             problem, open_nodes = self.problem, self._cone.open
@@ -101,8 +101,8 @@ class Nearby:
     def lacking(self, units: Iterable[int]) -> list[int]:
         """Return the open nodes that a tree of the relaxation uses without making them.
 
-        ``units`` are in an order that executes there; the ids returned are those of the whole network. A tree
-        that lacks nothing is a tree of the question.
+        ``units`` are in an order that executes in the relaxation; the ids returned are those of the whole
+        network. A tree that lacks no node is a tree of the question.
         """
         problem = self.problem
         available, lacking = set(problem.kitchen), set[int]()
@@ -148,10 +148,10 @@ class _ReadLater:
 
 
 class NearbyProblem(Problem):
-    """A question to a large store, of which all that its goals can need is read on first access.
+    """A question to a large store; all units that its goals can need are read on first access.
 
-    :meth:`nearby` is the question over the units near the goals, for searches that need no more. A problem
-    made of another with changes has its own values.
+    :meth:`nearby` is the question over the units near the goals, for searches that need no more units. A
+    problem made from another one with changes has its own values.
     """
 
     network: Network = _ReadLater()  # type: ignore[assignment]
@@ -165,7 +165,7 @@ class NearbyProblem(Problem):
 
     @classmethod
     def of(cls, start: Nearby, units_at_first: int) -> "NearbyProblem":
-        """Make the problem of the question over units near its goals, about ``units_at_first`` units."""
+        """Make the problem of a question of which about ``units_at_first`` units near the goals were read."""
         problem = cls(**{field.name: getattr(start.problem, field.name) for field in fields(Problem)})
         for name, value in (("start", start), ("units_at_first", units_at_first)):
             object.__setattr__(problem, name, value)
@@ -187,7 +187,7 @@ class NearbyProblem(Problem):
         return None if self.start is None or "read" in vars(self) else self.start.copied()
 
     def each_goal(self) -> list[Problem]:
-        """Return the question for each goal by itself, with as many units read as for this one."""
+        """Return the question for each goal by itself, with as many units read as for this question."""
         start = self.start
         if start is None or "read" in vars(self):
             return [replace(self, goals=(goal,)) for goal in self.goals]

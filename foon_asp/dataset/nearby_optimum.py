@@ -1,4 +1,4 @@
-"""Optimal trees for a question to a large store, of which only the units that a proof needs are read."""
+"""Optimal trees for a question to a large store, reading only the units that a proof needs."""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -20,11 +20,11 @@ if TYPE_CHECKING:  # plain answers do not need it
 class RefinementTuning(NamedTuple):
     """How many units of a store are read in each round, and when rounds do without a proof.
 
-    ``proved_units``: units read, from which on trees without a proof lead to more units: a proof among fewer
-    is quick, and reads fewest. With twice as many, the hardest questions take twice as long
-    (``benchmarks/store.py``, family ``deep``).
-    ``narrow_step``: for so many units that were read, a round reads one more. ``wide_step``: likewise, where
-    rounds are long, and what was read before matters less.
+    ``proved_units``: above this number of units read, trees without a proof choose the units to read next.
+    Below, each round proves its tree, which is quick and reads the fewest units. With twice as many, the
+    hardest questions take twice as long (``benchmarks/store.py``, family ``deep``).
+    ``narrow_step``: a round reads one more unit for each ``narrow_step`` units that were read.
+    ``wide_step``: the same for long rounds, where it matters less to read few units.
     """
 
     proved_units: int = 1_500
@@ -53,8 +53,8 @@ def solve_nearby(
     it is optimal in the whole network too; else more units that lead to these nodes are read. In the end all
     are read. User rules have to hold for parts of trees. Units of the optimal tree without rules are read
     first, then those of the smallest tree that keeps the rules, then more in each round. ``None`` where there
-    is no tree, unless rules alone are the reason: the explanation needs all units that could lead to the
-    goals.
+    is no tree, unless only the rules exclude all trees: to explain this, all units that could lead to the
+    goals are needed.
     """
     reporter = reporter or Reporter()
     if settings.constraints:

@@ -28,8 +28,9 @@ from foon_asp.store.unit_distances import UnitDistances, greatest_cost
 class NearbyTuning(NamedTuple):
     """How much of a large store is read one by one.
 
-    ``max_units``; for more, reading the whole store is faster. ``widths``: in turn, the units of a kind among
-    which a first tree is looked for, and their steps of distance beyond the nearest one.
+    ``max_units``: for more units, reading the whole store is faster. ``widths``: pairs that are tried in
+    order for a first tree. Each pair is a maximum number of units of a kind, and of their steps of distance
+    beyond the nearest unit.
     """
 
     max_units: int = 30_000
@@ -123,10 +124,10 @@ class _Search:
     def _some_tree(
         self, distances: UnitDistances, kinds: Sequence[Mask], is_required: Sequence[bool]
     ) -> Outcome:
-        """Find a tree that keeps the rules among the tree without rules and the nearest units of each kind.
+        """Find a tree that keeps the rules, in the optimum without rules and the nearest units of each kind.
 
-        Without a tree, its status is ``infeasible`` if a required kind has no unit that can execute, else
-        ``unknown``.
+        Without a tree, the status of the outcome is ``infeasible`` if a required kind has no unit that can
+        execute, else ``unknown``.
         """
         tree = _numbers(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
@@ -163,7 +164,7 @@ class _Search:
     def _read_near_units(self, costs: Costs) -> set[int] | None:
         """Read all units of trees for the goals that cost no more than ``costs``, and maybe more units.
 
-        Returns them by number, ``None`` if they are too many.
+        Returns the numbers of these units, ``None`` if they are too many.
         """
         nearby, deadline = self._nearby, self._settings.begun
         while nearby.units <= NEARBY.max_units:
@@ -195,7 +196,7 @@ class _Search:
         return next(extra for extra in count() if key <= least_with_more(least_costs, order, extra + 1))
 
     def _proved(self, outcome: Outcome) -> Outcome:
-        """Return the outcome with the proof of both searches, without cuts, which are those of a part."""
+        """Return the outcome with the proof of both searches and without cuts, which hold for a part only."""
         assert outcome.costs is not None
         self._reporter.tree(outcome.costs)
         proofs = self._unconstrained.proof, outcome.proof

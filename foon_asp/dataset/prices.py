@@ -1,4 +1,4 @@
-"""The prices of units as data have them, beside those that a store has of single units."""
+"""The prices of units in data, by motion and of single units; others may be in a store."""
 
 from collections.abc import Mapping
 from fractions import Fraction
@@ -10,8 +10,8 @@ from foon_asp.network import FunctionalUnit, UnitPrices
 class DataPrices(NamedTuple):
     """The prices of units by motion, ``None`` where no file lists any, and of single units.
 
-    The prices of single units in a store count where ``units`` have none: those of the file that was imported
-    with it too, if ``from_file``.
+    For a single unit without a price in ``units``, its price in the store counts: if ``from_file``, the price
+    in the imported file, and otherwise or without such a price the price that networks state.
     """
 
     motions: Mapping[str, Fraction] | None = None

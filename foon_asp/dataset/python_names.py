@@ -36,7 +36,7 @@ class NamesAndUnits(NodeNames, Protocol):
 
 
 def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
-    """Find an object node by name, by id in the whole network; ``what`` it is: ``goal``, ``kitchen item``.
+    """Return the id of a named node in the whole network; ``what`` is its noun, such as ``kitchen item``.
 
     Raises :class:`UserError` with candidates for a name that means no object node, or several.
     """
@@ -53,16 +53,17 @@ def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
 
 
 def node_ids(dataset: Named, names: Names, what: str) -> list[int]:
-    """Find object nodes by name, as :func:`node_id` does each."""
+    """Return the ids of named object nodes, each found as by :func:`node_id`."""
     return [node_id(dataset, name, what) for name in listed(names)]
 
 
 def stated_copies(
     dataset: Named, amounts: Mapping[Any, int | None], what: str, least: int = 1
 ) -> dict[ObjectNode, int]:
-    """Return amounts by object node, from amounts by name; ``None`` where no amount is stated.
+    """Return amounts by object node, from amounts by name; names with the amount ``None`` are left out.
 
-    Raises :class:`UserError` as :func:`node_id` does, and for what is no amount from ``least`` on.
+    Raises :class:`UserError` as :func:`node_id` does, and for an amount that is no whole number from
+    ``least`` on.
     """
     copies: dict[ObjectNode, int] = {}
     for name, amount in amounts.items():
@@ -78,9 +79,9 @@ def stated_copies(
 
 
 def item_id(dataset: Named, name: str | ObjectNode) -> int:
-    """Find a kitchen item by name: a label means the node that is only that, or the one item that has it.
+    """Return the id of a kitchen item; a label means the node with nothing else, or the only item with it.
 
-    Raises :class:`UserError` with candidates for a label that several items have.
+    Raises :class:`UserError` for a name that is no item, and with candidates for a label of several items.
     """
     names = dataset.names
     label = None if isinstance(name, ObjectNode) else _label(name)

@@ -29,7 +29,7 @@ from foon_asp.text.unit_price_list import read_unit_prices
 def read_stored(files: DataFiles, level: int) -> Dataset:
     """Open the store that is named in place of networks; other files replace the data imported with it.
 
-    Below level 3 it is read whole, since its nodes are merged there.
+    Below level 3 the whole store is read, since nodes are merged at such a level.
     """
     if len(files.network) > 1:
         raise UserError(
@@ -80,6 +80,7 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
 
 
 def _at_level(data: Data, level: int) -> Data:
+    """Return data at a level, with the kitchen and the goals matched at that level."""
     network = network_at_level(data.network, level)
     goals = tuple(entry._replace(pattern=pattern_at_level(entry.pattern, level)) for entry in data.goals)
     kitchen = starting_kitchen(network).nodes if data.starting else kitchen_nodes(network, data.kitchen_items)

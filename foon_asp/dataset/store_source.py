@@ -1,4 +1,4 @@
-"""A store as a source of data, of which each question reads its part."""
+"""A store as a source of data: each question reads only the part that it needs."""
 
 import time
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
@@ -28,7 +28,7 @@ if TYPE_CHECKING:  # few answers need numpy
 
 
 class StoreSource(Source):
-    """A store; all variants of a dataset share what was read of it."""
+    """A store as a source; all variants of a dataset share the parts that were read."""
 
     names: Store
     kitchen: StoredIds

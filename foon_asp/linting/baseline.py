@@ -38,9 +38,10 @@ class Baseline(Struct, frozen=True, tag_field="schema", tag=schema_name("lint-ba
         return cls(tuple(KnownFinding(*key, count) for key, count in sorted(counts.items())))
 
     def compared(self, file: Path, findings: Iterable[Diagnostic]) -> tuple[list[Diagnostic], int]:
-        """Return the findings that a file's baseline does not list, and the number of listed ones gone.
+        """Return the new findings, and the number of findings in the baseline that no longer occur.
 
-        Where a line has more findings of a code than are listed, the last ones are new.
+        ``file`` is the file of the baseline. If a line has more findings of a code than the baseline lists,
+        the last of them are new.
         """
         remaining = Counter[tuple[str, str, str]]()
         for known_finding in self.known:

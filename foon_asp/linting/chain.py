@@ -1,4 +1,4 @@
-"""Chains: the units of one file in order, and which of them make and take each object node."""
+"""Chains: the units of one file in order, with the units that make and need each object node."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ _SHORT_DISTANCE, _MIDDLE_DISTANCE, MAX_DISTANCE = 2, 8, 25  # units from making 
 
 
 class Chain:
-    """The units of one sheet in order of their first copies; positions are those in this order.
+    """The units of one sheet in order of their first copies; a position is an index in this order.
 
     ``producers`` and ``consumers`` have by node the positions of the units that make it and that need it,
     in order. ``made`` has by position the nodes that a unit makes.
@@ -46,9 +46,9 @@ class Chain:
         return {self.objects[node].label for node in nodes_by_side[side][self.units[position]]}
 
     def nearest(self, node: int, consumer: int) -> tuple[int, int] | None:
-        """Return the position of the last unit before ``consumer`` that makes a similar node, and that node.
+        """Return the last unit before ``consumer`` that makes a similar node, by position, and this node.
 
-        ``None`` where no unit makes a node that may be meant.
+        ``None`` if no unit makes a similar node that may be meant.
         """
         wanted = self.objects[node]
         for distance in range(1, min(consumer, MAX_DISTANCE) + 1):
@@ -64,7 +64,7 @@ class Chain:
         return None
 
     def _may_be_one(self, node: int, consumer: int, other: int, producer: int) -> bool:
-        """Whether a needed node and a made node may be meant as one; not with different, listed locations."""
+        """Whether a needed and a made node may be one; not if their locations are listed and differ."""
         needed, made = self.objects[node], self.objects[other]
         return _differ_little(needed, made, consumer - producer) and (
             needed.relations == made.relations
@@ -75,7 +75,7 @@ class Chain:
         )
 
     def _locations_listed(self, node: ObjectNode, position: int, side: int) -> bool:
-        """Whether all objects that a node is in or on are on a side of the unit, too."""
+        """Whether a side of a unit also lists all objects that a node is in or on."""
         return self.labels(position, side).issuperset(related for _, related in node.relations)
 
 

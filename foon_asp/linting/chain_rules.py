@@ -78,7 +78,8 @@ def left_out(context: Context) -> Iterator[Diagnostic]:
 def _producer_without(chain: Chain, node: int, consumer: int) -> tuple[int, int] | None:
     """Return the position of a unit that makes only a companion of a node, and the companion.
 
-    A companion is a container that has the node in it, or an object in the node. ``None`` if no unit does so.
+    A companion is a container that has the node in it, or an object in the node. ``None`` if no unit makes
+    one.
     """
     unmade_node = chain.objects[node]
     for companion in chain.network.inputs[chain.units[consumer]]:

@@ -10,7 +10,7 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 def _is_seldom(often: int, of: int) -> bool:
-    """Whether a change is no habit of a motion: ``often`` is at most an eighth ``of`` three units or more."""
+    """Whether at most an eighth of a motion's units have a change; false for fewer than three units."""
     return of >= 3 and 8 * often <= of
 
 

@@ -100,7 +100,7 @@ class Context:
         return sheet.where(self.node_line(copy, side, node), sheet)
 
     def node_line(self, copy: Copy, side: int, node: ObjectNode) -> int:
-        """Return the index of the object line of a node of a copy of a unit; without one, its first line."""
+        """Return the index of a node's object line in a copy of a unit, else of the copy's first line."""
         blocks = self.node_lines(copy)[side]
         return next((index for index, listed_node in blocks if listed_node == node), copy.at)
 

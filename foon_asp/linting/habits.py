@@ -71,7 +71,7 @@ class Habits:
         return [self.changes(unit) for unit in range(len(self.network))]
 
     def changes(self, unit: int) -> Changes:
-        """Return the changes of a unit."""
+        """Return the changes that a unit makes to objects and contents."""
         objects = self.network.objects
         inputs = {node: objects[node] for node in self.network.inputs[unit]}
         outputs = {node: objects[node] for node in self.network.outputs[unit]}
@@ -125,7 +125,7 @@ class Habits:
         return Changes(lost, gained, unrelated, [], bool(kept))
 
     def of_units(self) -> Iterator[tuple[str, Habit]]:
-        """Yield the motion of each unit, and the habit that this unit by itself shows."""
+        """Yield for each unit its motion, and the habit counted from this unit alone."""
         for motion, changes in zip(self.network.motions, self.units, strict=True):
             changed = changes.keeps, changes.lost, changes.gained, changes.new, changes.gone
             yield motion, Habit(1, *(int(bool(names)) for names in changed))

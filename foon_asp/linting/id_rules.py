@@ -14,7 +14,7 @@ _KINDS = {"O": "object", "S": "state", "M": "motion"}
 
 
 class _Use(NamedTuple):
-    """A name used with an id, or an id used with a name, with their count and the index of the first line."""
+    """A name with an id, or an id with a name; how often they occur together, and the first line's index."""
 
     text: str
     often: int

@@ -23,9 +23,10 @@ _WORD = re.compile(r"""#[^\n]*|\"{3}.*?\"{3}|'{3}.*?'{3}|"(?:[^"\\\n]|\\.)*"|'[^
 class LintSettings:
     """The settings of linting: the findings that are reported, and their severities.
 
-    ``select`` are the codes that are reported, empty for all; ``ignore`` those that are left out,
-    and ``per_file`` those that are left out in files under ``folder`` whose path matches a pattern.
-    ``severity`` replaces that of the catalog. ``file`` is where they were read, ``None`` for the defaults.
+    ``select`` are the codes that are reported, empty for all codes; ``ignore`` are the codes that are left
+    out. ``per_file`` has codes that are left out in files under ``folder`` whose path matches a pattern.
+    ``severity`` has severities by code that replace those of the catalog. ``file`` is the file of the
+    settings, ``None`` for the defaults.
     """
 
     select: tuple[str, ...] = ()
@@ -145,7 +146,7 @@ def _faults_of_codes(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
 
 
 def _position(text: str, path: tuple[str, ...]) -> tuple[int, int]:
-    """Return the line and column of the last of some words, which follow the name of the table in order."""
+    """Return the line and column of the last word of a path of keys, which begins below the table."""
     matches = [match for match in _WORD.finditer(text) if match[0][0] != "#"]
     words = [match[0].strip("\"'") for match in matches]
     table = _TABLE.split(".")[1:]

@@ -24,7 +24,7 @@ _LINE_BREAK = re.compile(r"[\r\n]")
 
 
 def with_tables(paths: Iterable[Path], files: Iterable[Path]) -> list[Path]:
-    """Return files, and the tables of rates, utensils and the like in the folders among the paths."""
+    """Return ``files``, and the tables (rates, utensils and others) of those ``paths`` that are folders."""
     folders = [path for path in paths if path.is_dir()]
     tables = [file for folder in folders for file in sorted(folder.rglob("*.txt")) if file.name in TABLES]
     return list(dict.fromkeys([*files, *tables]))
@@ -40,11 +40,11 @@ class Copy(NamedTuple):
 
 
 class LintedFiles:
-    """All sheets with the network of their units, the tables beside, and the remarks of the reader.
+    """All sheets, the network of their units, the tables beside networks, and the remarks of the reader.
 
-    ``copies[u]`` are the places where unit ``u`` of the network stands, in the order read. Files are read
-    independently of errors in them: lines that cannot be understood are left out. ``contents`` are the bytes
-    of files that are not to be read from disk.
+    ``copies[u]`` are the copies of unit ``u`` of the network, in the order read. Errors do not end the
+    reading of a file: lines that cannot be understood are left out. ``contents`` are the bytes of files that
+    are not to be read from disk.
     """
 
     def __init__(self, files: Iterable[Path], contents: Mapping[Path, bytes] = MappingProxyType({})) -> None:
@@ -66,7 +66,7 @@ class LintedFiles:
 
     @cached_property
     def copies_by_sheet(self) -> list[list[tuple[Copy, int]]]:
-        """The copies of units in each sheet, in the order in which they stand there, each with its unit."""
+        """The copies of units in each sheet, in the order of the sheet, each with the id of its unit."""
         by_sheet: list[list[tuple[Copy, int]]] = [[] for _ in self.sheets]
         for unit, copies in enumerate(self.copies):
             for copy in copies:
@@ -128,6 +128,7 @@ class LintedFiles:
         self.remarks += elements.errors
 
     def _add(self, motion: str, sides: tuple[list[ObjectNode], list[ObjectNode]], index: int) -> None:
+        """Add a unit of the current sheet to the network, and record this copy of it."""
         unit = self._builder.add(motion, *sides)
         if unit == len(self.copies):
             self.copies.append([])

@@ -20,8 +20,8 @@ def lint(
 ) -> list[Diagnostic]:
     """Lint networks, kitchens and lists of goals together; return findings by file, line and column.
 
-    ``contents`` are the bytes of files that are not to be read from disk. What ``# noqa`` comments silence is
-    left out.
+    ``contents`` are the bytes of files that are not to be read from disk. Findings that a ``# noqa`` comment
+    silences are left out.
 
     Names are compared over all files, and with those of a ``vocabulary`` or of the bundled one; the units of
     all files are one network. The severity of a finding is that of its rule; ``fix`` is the mended line where

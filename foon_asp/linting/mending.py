@@ -12,21 +12,20 @@ _LINE = re.compile(rb"([^\r\n]*)(\r\n|\r|\n|\Z)")
 
 
 def is_mendable(finding: Diagnostic, unsafe: bool = False) -> bool:
-    """Whether a finding has a fix: a safe one, which changes nothing of what is read, or any."""
+    """Whether a finding has a safe fix, which does not change what is read; if ``unsafe``, any fix."""
     if finding.rename is not None:
         return unsafe
     return finding.fix is not None and (unsafe or not finding.unsafe)
 
 
 def mended(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -> bytes:
-    """Return the bytes of a file with the lines of findings as their ``fix`` has them.
+    """Return the bytes of a file with the fixes of findings applied.
 
-    Only with ``unsafe`` are fixes applied that change what is read, and renames, which apply to the whole
-    file.
+    Fixes that change what is read, and renames in the whole file, are applied only if ``unsafe``.
 
-    All other bytes stay: line ends, a byte order mark, lines without a fix, and lines that are not what they
-    were when they were linted. A ``//`` that is missing behind the last unit gets the line end of that line,
-    or else of the first.
+    All other bytes stay: line ends, a byte order mark, lines without a fix, and lines that were changed since
+    they were linted. A ``//`` that is added after the last unit gets the line end of the line before it or,
+    if that has none, of the first line.
     """
     fixes: dict[int, tuple[bytes, bytes]] = {}
     separated: set[int] = set()

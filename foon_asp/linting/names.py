@@ -1,4 +1,4 @@
-"""The names in the files that are linted together, and where each stands."""
+"""The names in the files that are linted together, and their places."""
 
 from collections.abc import Iterator
 from functools import cached_property
@@ -21,7 +21,7 @@ def is_of_another_network(unknown: int, total: int) -> bool:
 
 
 class Mention(NamedTuple):
-    """A distinct line of a sheet that has a name in it: the index where it stands first, and how often."""
+    """A distinct line with a name in a sheet: the index of its first copy, and the number of copies."""
 
     sheet: int
     line: Line
@@ -30,7 +30,7 @@ class Mention(NamedTuple):
 
 
 class Names:
-    """Every name of every kind with its mentions, in order, and how often it stands."""
+    """Every name of every kind with its mentions, in order, and their number."""
 
     def __init__(self, files: LintedFiles) -> None:
         self.files = files
@@ -50,7 +50,7 @@ class Names:
 
     @cached_property
     def loose(self) -> dict[Kind, set[str]]:
-        """Names on one side of units only: nodes with them are never made, or never taken."""
+        """Names by kind that do not occur both among the inputs and among the outputs of units."""
         network = self.network
         input_names, output_names = (
             {

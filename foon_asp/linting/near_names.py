@@ -11,14 +11,16 @@ _VERB_ENDING = re.compile(r"(?:e?[sdr]|[ey])$")  # juice, juiced; flakes, flaked
 
 
 class _Slips(NamedTuple):
-    """From which frequencies and lengths on a name counts as a slip for another.
+    """The limits of frequency and length for a name to count as a slip for another name.
 
-    ``rare``, ``very_rare``: mentions of the slip, at most. ``ratio``, ``high_ratio``, ``highest_ratio``: how
-    many times as often the other name is mentioned, at least. ``short``, ``medium``, ``long``: letters of the
-    shorter word, at least; shorter ones are mostly words of their own (off and of, bell and bel). More slips
-    are found with lower limits, and more words are wrongly reported.
-    ``compared``: names with the same letters but one; only the most frequent are compared.
-    ``name_letters``: of a name; longer texts are no names, and slow to compare.
+    ``rare``, ``very_rare``: mentions of the slip, at most.
+    ``ratio``, ``high_ratio``, ``highest_ratio``: how many times as often the other name is mentioned, at
+    least.
+    ``short``, ``medium``, ``long``: letters of the shorter word, at least; shorter ones are mostly words of
+    their own (off and of, bell and bel). With lower limits, more slips are found and more words are wrongly
+    reported.
+    ``compared``: the most frequent names with the same letters but one that are compared.
+    ``name_letters``: letters of a name, at most; longer texts are no names, and slow to compare.
     """
 
     rare: int = 5
@@ -45,14 +47,13 @@ def near_names(
     """Yield pairs of names of one kind: the rarer one, and the one that may be meant.
 
     Names that only differ in doubled letters, capitals, blanks or hyphens are a pair at any frequency
-    (``drinking glas``, ``hashbrown``). A name that is rare beside another one is a pair with it if one
-    letter is missing, added, changed or has changed places, behind the first letter of a word
-    (``baking try``). An ending that is grammar is no slip: egg, eggs, and of ``verbs`` cube, cubed. Nor is a
-    digit.
+    (``drinking glas``, ``hashbrown``). A rare name and a much more frequent name are a pair if one letter
+    after the first of a word is missing, added, changed or swapped (``baking try``). Grammatical endings are
+    no slips: egg, eggs, and for ``verbs`` cube, cubed. A different digit is no slip either.
 
-    ``known_words`` are spelt correctly: two of them are different words, and an unknown word similar to one
-    of them is a slip at any frequency. So is a name in ``loose``, the names never made or never used, similar
-    to one that is not in it.
+    ``known_words`` are spelt correctly: two known words are different words, and an unknown word similar to a
+    known word is a slip at any frequency. ``loose`` are names that are never made or never used: a loose name
+    similar to a name that is not loose is a slip at any frequency.
 
     ``counts`` has the mentions of each name. A rare name is in one pair at most. Rare names are looked up
     among the frequent ones by their deletion neighbourhood, the texts without one of their letters, so that
@@ -129,7 +130,7 @@ def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) ->
 
 
 def deletion_index(words: Iterable[str]) -> dict[str, list[str]]:
-    """Return words by themselves and by the texts without one of their letters."""
+    """Return an index of words by themselves and by the texts that lack one of their letters."""
     deletions: dict[str, list[str]] = {}
     for word in words:
         if len(word) >= _SLIPS.medium:

@@ -1,4 +1,4 @@
-"""Comments that silence linting: ``# noqa: near-name`` above a line, or ``# noqa`` for everything there."""
+"""Comments above a line that silence its findings: ``# noqa: near-name``, or ``# noqa`` for all codes."""
 
 import re
 from collections.abc import Iterator

@@ -25,7 +25,7 @@ def unheld(context: Context) -> Iterator[Diagnostic]:
 
 
 def unheld_nodes(side: Side, habits: Habits) -> Faults:
-    """Yield each object that is in a container whose contents do not list it, if it is the only one."""
+    """Yield each object in a container whose contents do not list it, at most one for a container."""
     for holder in side.nodes:
         contents = content_names(holder)
         if not contents or holder.label in habits.ingredients:
@@ -116,7 +116,7 @@ def _places_are_usual(context: Context) -> bool:
 
 
 def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Faults:
-    """Yield the foods without a place, where exactly one place contains them.
+    """Yield the foods without a stated place that exactly one place contains.
 
     A food is skipped where it is the only content and the other side of the unit has it in that place: then
     the unit puts it there.
@@ -138,7 +138,7 @@ def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Faults:
 
 
 def only_after(side: Side) -> Faults:
-    """Yield an input for each thing that it is in or on and that only the outputs have."""
+    """Yield the inputs that are in or on an object which only the outputs list."""
     own_labels, other_labels = ({node.label for node in nodes} for nodes in (side.nodes, side.others))
     for node in side.nodes:
         for word, related_object in node.relations:

@@ -10,7 +10,7 @@ from foon_asp.text.line import ObjectLine
 
 
 def _remarked(code: str, severity: Severity, meaning: str, explanation: str) -> None:
-    """Enter the rule whose findings are the remarks of the reader with its code."""
+    """Register a rule whose findings are the remarks of the reader with the rule's code."""
 
     def find(context: Context) -> list[Diagnostic]:
         return context.remarks.get(code, [])

@@ -9,9 +9,9 @@ from foon_asp.text.reader import FoonReader
 
 
 def remarks_by_code(files: LintedFiles, vocabulary: Vocabulary) -> dict[str, list[Diagnostic]]:
-    """Return the remarks of the reader by code, with only such fixes as mend and are not doubtful.
+    """Return the remarks of the reader by code, without fixes that are doubtful or repair nothing.
 
-    A line is written anew as a whole; where its brackets are of two kinds, the other may be meant.
+    A fix rewrites a whole line. So if one remark on a line is doubtful, no remark on this line keeps its fix.
     """
     doubtful = {
         remark.source[:2] for remark in files.remarks if _is_doubtful(remark, vocabulary, files.reader)
@@ -24,10 +24,10 @@ def remarks_by_code(files: LintedFiles, vocabulary: Vocabulary) -> dict[str, lis
 
 
 def _is_doubtful(remark: Diagnostic, vocabulary: Vocabulary, reader: FoonReader) -> bool:
-    """Whether a remark is about brackets of two kinds, and the reader may have taken the wrong one.
+    """Whether a remark is about a mixed pair such as ``[a}``, and the reader may have guessed the wrong kind.
 
-    What is a list, or what a word ``contains``, is in braces; else the word has to stand with that kind of
-    bracket elsewhere.
+    Braces are certain for a list, and after the word ``contains``. Any other guess is doubtful, unless the
+    vocabulary usually has this kind of bracket after the word.
     """
     if remark.code != "bracket" or "wrong bracket" not in remark.message:
         return False

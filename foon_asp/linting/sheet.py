@@ -80,7 +80,7 @@ class Sheet:
         ]
 
     def blocks(self, start: int) -> Iterator[tuple[int, ObjectNode]]:
-        """Yield the object nodes of the unit whose first line has that index, each with its object line."""
+        """Yield the object nodes of the unit from a line on, each with the index of its object line."""
         for block in self.written_blocks(start):
             if block is None:
                 return
@@ -126,7 +126,7 @@ class Sheet:
         return self.places[index] if self.places is not None else Source(self.file, index + 1, column)
 
     def finding(self, message: str, index: int, name: str = "", column: int = 1) -> Diagnostic:
-        """Return a finding about a line, or about a name or a column of it; its rule adds the code."""
+        """Return a finding about a line, or a name or column in the line; its code is added by the rule."""
         if self.places is not None:
             source, line = self._in_json(index, name)
         else:

@@ -63,7 +63,7 @@ def unknown_row(context: Context) -> Iterator[Diagnostic]:
 
 
 def _without_unit(sheet: Sheet, context: Context, unknown: Collection[str]) -> Iterator[Diagnostic]:
-    """Yield a finding for each amount that no unit of a known motion takes, or makes."""
+    """Yield a finding for each amount of a node that no unit of its motion, a known one, takes or makes."""
     if _any_fault(sheet):
         return
     rows = UNIT_AMOUNTS.rows(Path(sheet.file), "\n".join(sheet.lines))

@@ -99,6 +99,7 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
     length = median(max(0, end.seconds - start.seconds) for step in steps for start, end in step.spans)
 
     def odd_clock(clock: _Clock) -> str:
+        """Return the message about an unlikely time, or an empty text."""
         parts = clock.text.split(":")
         if any(int(number) >= _MINUTE for number in parts[1:]):
             return f"{clock.text!r} has more than 59 seconds or minutes"
@@ -113,6 +114,7 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
         return ""
 
     def odd_span(start: _Clock, end: _Clock) -> str:
+        """Return the message about an unlikely span of time, or an empty text."""
         if end.seconds < start.seconds:
             return f"the step ends at {end.text}, before it begins at {start.text}"
         if end.seconds - start.seconds >= max(_LONG, 20 * length):

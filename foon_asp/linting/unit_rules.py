@@ -127,7 +127,7 @@ def _once(sheet: Sheet, message: str, indices: list[int]) -> Diagnostic:
 
 
 def _exclude_each_other(labels: set[str], first: _Attribute, second: _Attribute) -> bool:
-    """Whether two attributes cannot both be true: two by one word, or two places that are objects."""
+    """Whether two attributes exclude each other: both have the same word, or both are places."""
     if isinstance(first, Contents) and isinstance(second, Contents):
         return first.word == second.word and first != second
     if not isinstance(first, Relation) or not isinstance(second, Relation) or first == second:

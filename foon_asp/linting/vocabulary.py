@@ -27,9 +27,9 @@ _Row = tuple[str, str, Sequence[int]]
 
 
 class Vocabulary:
-    """Names by kind, each with its numbers; those of several rows for a name are added.
+    """Names by kind, each with its numbers; the numbers of several rows for one name are added up.
 
-    The numbers of a word of a relation are its counts with a bracket, those of a motion are its habit.
+    The numbers of a relation's word are how often it has each bracket; the numbers of a motion are its habit.
     """
 
     def __init__(self, rows: Iterable[_Row] = ()) -> None:
@@ -121,7 +121,10 @@ class Vocabulary:
         return dict(sorted(counts.items(), key=lambda entry: -entry[1]))
 
     def usual_bracket(self, word: str) -> Bracket | None:
-        """Return the bracket that a word has in three lines or more, ten times as often as others, if any."""
+        """Return the bracket that a word has nearly always, or ``None``.
+
+        That is in three lines or more, and ten times as often as the other bracket.
+        """
         for bracket, often in self.brackets(word).items():
             others = sum(self.brackets(word).values()) - often
             return bracket if often >= max(3, 10 * others) else None

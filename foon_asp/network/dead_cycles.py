@@ -11,9 +11,9 @@ from foon_asp.network.graph import cycles
 class DeadCycle(NamedTuple):
     """A set of object nodes, each made only by units that need one of the set.
 
-    ``steps`` are a shortest cycle through its first node, the node that is needed first in the order of the
-    units. Each step is a node and the unit that needs it and makes the node of the next step; the last unit
-    makes the node of the first step. ``nodes`` is the whole set.
+    ``steps`` are a shortest cycle through the node that is needed first in the order of the units. Each step
+    is a node and the unit that needs it and makes the node of the next step; the last unit makes the node of
+    the first step. ``nodes`` is the whole set.
     """
 
     steps: tuple[tuple[int, int], ...]
@@ -23,10 +23,10 @@ class DeadCycle(NamedTuple):
 def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadCycle]:
     """Find the dead cycles among nodes that are not ``available``, in time linear in the size of the network.
 
-    A unit does not make a node that it needs, it hands it on: a knife that chops is a knife before. Nodes
-    that no unit makes are available too. If no dead cycle is found, every node can be made. Of a strongly
-    connected component that can be made in part, the dead cycles are the components of the remainder that
-    need no other component of the remainder.
+    A unit does not make a node that it needs, such as the knife that chops. Nodes that no unit makes are
+    available too. If no dead cycle is found, every node can be made. From a strongly connected component, the
+    nodes that can be made are removed; its dead cycles are the components of the remainder that need no other
+    component of the remainder.
     """
     inputs = [frozenset(nodes) for nodes in network.inputs]
     made = [

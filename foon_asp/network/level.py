@@ -1,7 +1,7 @@
 """Levels of FOON: how much of an object node counts.
 
-At level 3 all of it does. Level 2 drops contents, level 1 keeps the label alone. Units whose motion, inputs
-and outputs then are the same are one unit, which stands for all of them.
+At level 3 all parts count. Level 2 drops contents, level 1 keeps only the label. Units that then have the
+same motion, inputs and outputs are one unit, which stands for all of them.
 """
 
 from dataclasses import replace
@@ -39,7 +39,7 @@ def pattern_at_level(pattern: NodePattern, level: int) -> NodePattern:
 
 
 def network_at_level(network: Network, level: int) -> Network:
-    """Return a level-3 network at a level: numbered anew, with ``detailed`` and what its ids stand for.
+    """Return a level-3 network at a level, with new ids; ``detailed`` and ``stands_for`` lead to the old ids.
 
     Sources of all units that have become one are kept. Raises :class:`ValueError` when the network is not
     of level 3 or there is no such level.

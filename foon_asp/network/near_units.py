@@ -27,7 +27,7 @@ class UnitDifference(NamedTuple):
 
     @property
     def is_slip(self) -> bool:
-        """Whether both units have a name here, and the two names are almost alike."""
+        """Whether both texts of the difference are names, and almost alike."""
         one, other = self.left, self.right
         return bool(one and other) and (
             one_letter_apart(one, other) or without_doubles(one) == without_doubles(other)
@@ -101,8 +101,8 @@ def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitD
 def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit]) -> list[NearUnits]:
     """Return disjoint pairs of units of two lists that are nearly the same, those that differ least first.
 
-    The units of a pair have three differences at most, more than half of their features in common, and among
-    these one that few units have.
+    The units of a pair have at most three differences and more than half of their features in common. At
+    least one of the common features is rare.
     """
     lefts, rights = list(left), list(right)
     candidates = _candidates(lefts, rights)
@@ -126,8 +126,8 @@ def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit
 def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
     """Return the pairs of units in one list that have a single difference, which may be a slip.
 
-    The difference is in the motion, a state or a relation, or in a name that is spelt almost like the other.
-    Units with other labels are different units.
+    The difference is in the motion, a state or a relation, or it is between two names that are spelt almost
+    alike. Units that differ in other labels are not meant to be one.
     """
     listed = list(units)
     pairs = []
@@ -203,7 +203,7 @@ def _parts(node: ObjectNode) -> list[_NodePart]:
 
 
 def _node_differences(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifference, ...]:
-    """Return the differences of two nodes; equal numbers of names of a kind are paired."""
+    """Return the differences of two nodes; different names of a kind are paired if equally many."""
     parts, other_parts = Counter(_parts(node)), Counter(_parts(other))
     differences = []
     for kind in ("label", "state", "relation", "ingredient"):

@@ -13,12 +13,12 @@ A label without states may stand in thousands of containers, so the container is
 
 
 class NodePattern(NamedTuple):
-    """An entry of a kitchen or goals file, a pattern of nodes.
+    """An entry of a kitchen or goals file: a pattern that nodes match.
 
-    It has a container without the relation's word. ``container`` matches any relation to that object;
-    ``None`` matches only nodes with no relation, unless ``relations`` names some, which then have to be
-    there by word. ``ingredients`` is the sorted multiset of everything contained, under whatever word,
-    unless ``contents`` has it by word.
+    ``container`` is an object that the node has to have a relation to, by any word. Without a container, the
+    node has to have exactly the ``relations``, word by word. ``ingredients`` is the sorted multiset of
+    everything that the node contains, under any word. ``contents``, unless empty, are the contents word by
+    word.
     """
 
     label: str
@@ -35,7 +35,7 @@ class NodePattern(NamedTuple):
 
     @property
     def lookup_key(self) -> LookupKey:
-        """The key of the entry: every matching node has it among its :func:`lookup_keys`."""
+        """The key of the entry, one of the :func:`lookup_keys` of every node that matches."""
         related_object = self.container
         if related_object is None and self.relations:
             related_object = min(self.relations).object

@@ -33,8 +33,8 @@ class ObjectNode(NamedTuple):
 
     ``label`` is its name, ``states`` the set of its states, ``relations`` what it is in or on, ``contents``
     what it contains. Motion flags, times and ids belong to the line that was read and are no part of it.
-    :meth:`of` makes one and sorts what has no order. It is a named tuple, because nodes are hashed and
-    compared by the ten thousand.
+    :meth:`of` makes a node and sorts the parts that have no order. The class is a named tuple, because tens
+    of thousands of nodes are hashed and compared.
 
     Example:
         >>> node = foon_asp.parse_node("onion; chopped; in [bowl]")

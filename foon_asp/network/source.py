@@ -1,4 +1,4 @@
-"""Where something was read."""
+"""Places in files where units and items were read."""
 
 from typing import NamedTuple
 
@@ -24,7 +24,7 @@ class Source(NamedTuple):
 
     @property
     def short(self) -> str:
-        """The place as a step shows it: a relative path as it is, of another one the name of the file."""
+        """The file and line for a step of a tree; of an absolute path only the file name."""
         file = _in_a_line(self.file)
         return f"{file.rpartition('/')[2] if file.startswith('/') else file}:{self.line}"
 

@@ -19,7 +19,7 @@ def without_doubles(name: str) -> str:
 
 
 def one_letter_apart(word: str, other: str) -> bool:
-    """Whether adding, leaving out or changing one letter, or swapping two, leads from one to the other."""
+    """Whether two words differ by one letter added, left out or changed, or by two letters swapped."""
     start = 0
     while start < min(len(word), len(other)) and word[start] == other[start]:
         start += 1
@@ -33,7 +33,7 @@ def one_letter_apart(word: str, other: str) -> bool:
 
 
 def near_labels(label: str, labels: Iterable[str], max_labels: int) -> list[str]:
-    """Return up to ``max_labels`` labels similar to one by difflib, ignoring case, the most similar first."""
+    """Return up to ``max_labels`` labels similar to ``label`` (difflib, any case), most similar first."""
     import difflib  # noqa: PLC0415 (for faults alone)
 
     by_lower_case: defaultdict[str, list[str]] = defaultdict(list)

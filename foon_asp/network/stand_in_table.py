@@ -1,4 +1,4 @@
-"""The table of stand-ins: what it costs to use one object node in place of another."""
+"""The table of stand-ins: prices of using one object node in place of another."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -14,7 +14,7 @@ STAND_IN = "stand in"
 
 
 class Edit(StrEnum):
-    """A way in which a node that is used differs from the one that it serves for."""
+    """A way in which the node that is used differs from the node that it is used for."""
 
     WORD = "word"
     """The same place or the same ingredients, by another word: ``on [plate]`` for ``in [plate]``."""
@@ -39,9 +39,9 @@ class Edit(StrEnum):
 
 
 class Difference(NamedTuple):
-    """One edit between two nodes: its kind, the parts of the served and of the serving node, and its price.
+    """One edit between two nodes: its kind, the differing parts of the nodes, and its price.
 
-    ``served`` and ``serving`` are texts, empty where that node lacks it.
+    ``served`` and ``serving`` are the parts as texts, empty for a node that lacks the part.
     """
 
     edit: Edit
@@ -54,11 +54,12 @@ Pairs = Mapping[tuple[str | ObjectNode, str | ObjectNode], Fraction | None]
 
 
 class StandInTable(NamedTuple):
-    """Prices of edits and of pairs of labels and nodes, all above 0; ``None`` stands for never.
+    """Prices of edits, and of pairs of labels or nodes; all are above 0, and ``None`` means never.
 
-    ``edits`` has the price of each kind of edit; ``words`` those of single states and ingredients, by kind
-    and name, in place of the kind's. ``pairs`` are a label or node that serves, and one that is served. The
-    price of a pair of nodes is the whole price; that of a pair of labels is added to those of other edits.
+    ``edits`` has the price of each kind of edit. ``words`` has prices of edits of single states and
+    ingredients, by kind and name, which take precedence over the price of the kind. ``pairs`` has prices by
+    the label or node that serves and the label or node that is served. The price of a pair of nodes is the
+    whole price; the price of a pair of labels is added to the prices of other edits.
 
     Example:
         >>> table = foon_asp.StandInTable.usual()
@@ -79,7 +80,7 @@ class StandInTable(NamedTuple):
         return cls(dict(_EDITS), dict(_WORDS), {})
 
     def dissimilarity(self, serving: ObjectNode, served: ObjectNode) -> Fraction | None:
-        """Return what it costs to use a node in place of another; ``None`` where it never stands in.
+        """Return the price of using a node in place of another; ``None`` if it never stands in.
 
         Parameters:
             serving: The node that is used.
@@ -171,7 +172,7 @@ def spelled_alike(label: str, other: str) -> bool:
 
 
 def spelling_key(label: str) -> str:
-    """Return what labels have in common that differ only in number, blanks, hyphens and capitals."""
+    """Return a key that is equal for labels that differ only in number, blanks, hyphens and capitals."""
     letters = label.casefold().replace(" ", "").replace("-", "").replace("_", "")
     for plural, singular in _PLURALS.items():
         if letters.endswith(plural) and len(letters) > (5 if singular else 3) and not letters.endswith("ss"):

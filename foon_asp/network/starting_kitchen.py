@@ -1,4 +1,4 @@
-"""The starting kitchen: what is assumed to be available where no kitchen is given."""
+"""The starting kitchen: the object nodes assumed to be available where no kitchen is given."""
 
 from abc import ABC, abstractmethod
 from collections import defaultdict
@@ -13,7 +13,7 @@ File = TypeVar("File", bound=Hashable)
 
 
 class RecipeKitchen(NamedTuple):
-    """The starting kitchen of one file: ``raw`` nodes, which no unit makes, and nodes ``granted`` besides."""
+    """The starting kitchen of one file: ``raw`` nodes, which no unit makes, and other nodes, ``granted``."""
 
     raw: list[int]
     granted: list[int]
@@ -25,10 +25,9 @@ def recipe_kitchen(
     """Return the starting kitchen of one file, in time linear in its size; items are not used up.
 
     ``units`` are the inputs and outputs of each unit in the order of the file, as ids of object nodes. Nodes
-    that no unit makes out of others are available. Then units execute as far as they can; where they
-    stop, the first unit in the file's order is granted the inputs that it lacks, except ``goals``, and so
-    on. A goal is granted only where all lacking inputs are goals, which takes several goals that need each
-    other.
+    that no unit makes out of others are available. Then units execute as far as they can. When no more can,
+    the first unit in the file's order that lacks inputs is granted them, except ``goals``. This repeats until
+    only goals are lacking. A goal is granted only then, for example where several goals need each other.
     """
     unit_sides = list(units)
     missing = [len(inputs) for inputs, _ in unit_sides]  # by unit: how many inputs are not available yet
@@ -41,7 +40,7 @@ def recipe_kitchen(
     available: set[int] = set()
 
     def add(nodes: Iterable[int]) -> None:
-        """Make nodes available, and all outputs of units that can execute then."""
+        """Make nodes available, and also all outputs of the units that can execute with them."""
         stack = list(nodes)
         while stack:
             o = stack.pop()
@@ -71,7 +70,8 @@ def recipe_kitchen(
 class StartingKitchen(ABC, Generic[File]):
     """The object nodes assumed to be available in a network: the union of the starting kitchens of its files.
 
-    So merging files loses no goal, and makes no optimum worse. Ids are those of the whole network.
+    Because it is a union, merging files loses no goal and makes no optimum worse. Ids are those of the whole
+    network.
     """
 
     @property
@@ -85,7 +85,7 @@ class StartingKitchen(ABC, Generic[File]):
 
     @abstractmethod
     def granting_files(self, o: int) -> Iterable[File]:
-        """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
+        """Return the files whose starting kitchen grants a node although a unit of the file makes it."""
 
     @abstractmethod
     def files_of(self, units: Iterable[int]) -> Iterable[File]:
@@ -160,7 +160,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         return [unit for unit in self._network.producers[o] if o not in inputs[unit]]
 
     def granting_files(self, o: int) -> Sequence[str]:
-        """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
+        """Return the files whose starting kitchen grants a node although a unit of the file makes it."""
         return self._granting.get(o, ())
 
     def files_of(self, units: Iterable[int]) -> Iterator[str]:

@@ -103,7 +103,7 @@ def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
 def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]:
     """Return the labels that the most units have, with their numbers of units.
 
-    Of labels with as many units the first in the alphabet comes first.
+    Labels with equal numbers are in alphabetical order.
     """
     unit_counts: Counter[str] = Counter()
     objects = network.objects
@@ -115,7 +115,7 @@ def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]
 def most_connected_objects(network: Network, shown: int) -> list[tuple[int, int, int]]:
     """Return the object nodes that most units touch: id, units that need it, units that make it.
 
-    Of nodes with as many units the one that was read first comes first.
+    Nodes with equal numbers are in the order in which they were read.
     """
     sizes = [
         (len({*users, *makers}), -node)

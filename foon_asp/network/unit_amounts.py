@@ -9,7 +9,7 @@ from foon_asp.network.object_node import ObjectNode
 
 
 class UnitAmounts(NamedTuple):
-    """The amounts of a unit, by input and by output; of a node that is not in them, it is 1."""
+    """The amounts of a unit, by input node and by output node; nodes that are not listed have 1."""
 
     inputs: Mapping[ObjectNode, int] = MappingProxyType({})
     outputs: Mapping[ObjectNode, int] = MappingProxyType({})
@@ -27,7 +27,7 @@ Amounts = Mapping[FunctionalUnit, UnitAmounts]
 
 
 class DataAmounts(NamedTuple):
-    """The amounts of the units of data, and what is wrong with them, in words; empty where nothing is."""
+    """The amounts of units, and a message about a ``conflict`` of amounts, empty for none."""
 
     units: Amounts
     conflict: str = ""

@@ -9,7 +9,7 @@ from foon_asp.network.network import Network
 
 
 class UnitPrices(NamedTuple):
-    """Exact prices, none below 0: of ``units`` of level 3, and of all others by their motion."""
+    """Exact prices, none below 0: of single ``units`` of level 3, and by motion for all other units."""
 
     motions: Mapping[str, Fraction]
     units: Mapping[FunctionalUnit, Fraction]
@@ -17,7 +17,8 @@ class UnitPrices(NamedTuple):
     def of_units(self, network: Network) -> tuple[Fraction | None, ...]:
         """Return the price of every unit of a network, ``None`` where it has none.
 
-        Below level 3 it is the least price of the units that a unit stands for, all of which need a price.
+        Below level 3, the price is the least price of the units that a unit stands for, and ``None`` unless
+        all of these have a price.
         """
         if network.detailed is None:
             return self._at_own_level(network)

@@ -1,4 +1,4 @@
-"""Published searches, and those of other packages, over the same problem as the solver and without it."""
+"""Searches that do not use the solver: published searches, and searches that other packages offer."""
 
 from foon_asp.searches.breadth_first import breadth_first as breadth_first
 from foon_asp.searches.depth_first import depth_first as depth_first

@@ -9,7 +9,7 @@ from foon_asp.searches.ties import least
 def breadth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Retrieve a tree breadth-first.
 
-    The first achiever in file order is chosen for each object, whether or not it can ever run, so that the
-    tree has no other guarantees than those of :func:`~foon_asp.searches.retrieval.backward`.
+    The first achiever in file order is chosen for each object, even if it can never execute. So the tree has
+    only the guarantees of :func:`~foon_asp.searches.retrieval.backward`.
     """
     return backward(problem, least(settings.ties))

@@ -11,13 +11,13 @@ def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval
     """Return an executable tree of least depth, or prove that none exists.
 
     A kitchen item has depth 0, a unit one more than its deepest precondition, an object the depth of its
-    achiever; the depth of a tree is that of its deepest goal. For each depth limit, the achievers of an
-    object are tried in file order, until all preconditions of one are solved within the limit less one.
-    Results are memoized, so that a limit takes at most one pass over the relevant units. If one more level
-    solves no new object, no further level does.
+    achiever; the depth of a tree is the depth of its deepest goal. For each depth limit, the achievers of an
+    object are tried in file order, until all preconditions of an achiever are solved within the limit less
+    one. Results are memoized, so that a limit takes at most one pass over the relevant units. If one more
+    level solves no new object, the search ends: no further level solves any.
 
-    At a limit of the ``settings`` the ending is ``unknown``. With ``published`` the search is what the
-    published programs do instead: breadth-first retrieval.
+    At a limit of the ``settings`` the ending is ``unknown``. With ``published``, breadth-first retrieval is
+    run, as the published programs do under this name.
     """
     if settings.published:
         return breadth_first(problem, settings)
@@ -40,8 +40,8 @@ class _DepthLimited:
     """The depth-limited search, and its memo of results over all limits.
 
     ``failed[o]`` is the greatest limit within which object ``o`` cannot be made. ``solved[o]`` is the least
-    limit within which it can, and its achiever: the preconditions of this unit are solved within smaller
-    limits, so that the achievers have no cycle.
+    limit within which ``o`` can be made, with its achiever. The preconditions of the achiever are solved
+    within smaller limits, so that the achievers have no cycle.
     """
 
     def __init__(self, problem: Problem, deadline: Deadline) -> None:
@@ -53,7 +53,7 @@ class _DepthLimited:
         self.objects = sorted(relevant)
 
     def solve(self, goal: int, limit: int) -> bool:
-        """Return whether an object can be made within a limit; not recursive, for limits of any depth.
+        """Return whether an object can be made within a limit; without recursion, so that any depth works.
 
         Raises ``TimeoutError`` at the deadline.
         """
@@ -90,7 +90,7 @@ class _DepthLimited:
         return goal in self.solved and self.solved[goal][0] <= limit
 
     def solves_more(self, limit: int) -> bool:
-        """Return whether a relevant object can be made within this limit and not within one less."""
+        """Return whether a relevant object can be made within this limit and not within the limit before."""
         earlier = {o for o in self.objects if o in self.solved and self.solved[o][0] < limit}
         return any(o not in earlier and self.solve(o, limit) for o in self.objects)
 

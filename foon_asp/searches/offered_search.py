@@ -1,4 +1,4 @@
-"""Searches that other packages offer: run in a process of their own, and their results are validated."""
+"""Searches that other packages offer; each is run in a process of its own, and its result is validated."""
 
 import functools
 from typing import Any

@@ -31,14 +31,14 @@ SEARCHES: Final[Mapping[str, Search]] = {
 
 
 def search_names() -> tuple[str, ...]:
-    """Return the names of all searches, those of other packages last; for help, without a check of names."""
+    """Return the names of all searches, those of other packages last; name clashes are not checked."""
     return tuple(dict.fromkeys([*SEARCHES, *(offer.name for offer in find_offers(ENTRY_POINTS))]))
 
 
 def find_searches() -> dict[str, Search]:
     """Return all searches by name, those of other packages last; no package is imported.
 
-    Raises :class:`UserError` where a package offers a search by a name that another one has.
+    Raises :class:`UserError` if a package offers a search under a name that another search has.
     """
     offers = offers_by_name(find_offers(ENTRY_POINTS), [*SEARCHES, _OPTIMUM])
     return {**SEARCHES, **{name: offered_search(offer) for name, offer in offers.items()}}

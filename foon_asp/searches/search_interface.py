@@ -10,10 +10,10 @@ from foon_asp.searches.ties import Ties
 
 @dataclass(frozen=True, slots=True)
 class SearchSettings:
-    """The settings of searches, of which each search uses some.
+    """The settings of searches; each search uses some of them.
 
-    ``ties`` breaks ties in all of them, ``count`` is of ``greedy-inputs``. ``published`` makes ``ids`` the
-    published iterative deepening, which always chooses the first unit and so is breadth-first retrieval.
+    ``ties`` breaks ties in all searches, ``count`` is used by ``greedy-inputs``. ``published`` makes ``ids``
+    the published iterative deepening, which always chooses the first unit and so is breadth-first retrieval.
     ``depth_limit`` is in units (``ids``), ``time_limit`` in seconds, ``memory_limit`` in bytes; ``None`` is
     no limit.
     """

@@ -21,8 +21,8 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
     """Return a problem whose network also has stand-ins, each a unit with one input and one output.
 
     A stand-in uses one node in place of another that cannot be made from the kitchen. With ``everything``,
-    each pair of nodes is there that the table has a price for, and otherwise those that a best tree by
-    dissimilarity can have (docs/stand-ins.md has the argument).
+    there is a stand-in for each such pair of nodes that the table has a price for. Otherwise there are only
+    those stand-ins that a tree of least dissimilarity can have (proof in docs/stand-ins.md).
 
     Raises:
         UserError: below level 3, where items are used up, or if a unit has the motion of stand-ins.
@@ -95,7 +95,7 @@ class _Nearest:
         return [(served, serving) for served in needed for serving in self._servers[served]]
 
     def _of(self, served: int) -> dict[int, int]:
-        """Return the nodes that may serve for a node, up to the price of the cheapest available one."""
+        """Return the nodes that may serve for a node with their prices, up to the cheapest available node."""
         servers = self._servers.get(served)
         if servers is None:
             priced = self._prices.of(served)
@@ -126,7 +126,7 @@ class _Nearest:
     def _cheapest(
         self, needed: Iterable[int], combined: Callable[[Iterable[int]], int]
     ) -> "dict[int, _Step]":
-        """Return the cheapest last step to each node; a unit costs its inputs' costs, combined.
+        """Return the cheapest last step to each node; a unit costs the ``combined`` costs of its inputs.
 
         Combined by ``max``, the cost is a lower bound on the dissimilarity of making a node (h_max; Bonet
         and Geffner 2001); by ``sum``, the steps lead to a good tree (h_add). Computed by Knuth's
@@ -163,7 +163,7 @@ class _Nearest:
         return steps
 
     def _dissimilarity(self, goals: Iterable[int], steps: "Mapping[int, _Step]") -> int:
-        """Return the dissimilarity of the tree that follows best last steps; each stand-in counts once."""
+        """Return the dissimilarity of the tree made of best last ``steps``; each stand-in counts once."""
         total, met = 0, set(goals)
         stack = list(met)
         while stack:
@@ -175,10 +175,10 @@ class _Nearest:
 
 
 class _Step(NamedTuple):
-    """The last step to a node: a unit, or a stand-in of a ``price``.
+    """The last step to a node: a unit, or a stand-in with its ``price``.
 
-    ``cost`` is that of the step with all before it; ``made_of`` are the nodes it needs that are not
-    available.
+    ``cost`` is the cost of this step and of all steps before it. ``made_of`` are the nodes that the step
+    needs and that are not available.
     """
 
     cost: int

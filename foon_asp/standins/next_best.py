@@ -1,4 +1,4 @@
-"""The next best stand-in: what would be used if what is used were not there."""
+"""The next best stand-in: the node that would be used if the node used in a tree were not available."""
 
 from collections.abc import Collection
 from fractions import Fraction
@@ -12,8 +12,8 @@ from foon_asp.standins.node_prices import NodePrices
 class Used(NamedTuple):
     """A stand-in of a tree, by ids: the serving node is used in place of the served one.
 
-    ``next_best`` is the cheapest other node that the kitchen has or the tree makes without it, with its
-    dissimilarity; ``None`` if there is none.
+    ``next_best`` is the cheapest other node that may serve, with its dissimilarity, among the nodes that the
+    kitchen has or that the tree makes without this stand-in; ``None`` if there is none.
     """
 
     unit: int
@@ -23,7 +23,7 @@ class Used(NamedTuple):
 
 
 def stand_ins_of(problem: Problem, tree: Collection[int]) -> list[Used]:
-    """Return the stand-ins of a tree, by unit ids, in its order; none for a problem without stand-ins."""
+    """Return the stand-ins of a tree of unit ids, in order; empty for a problem without stand-ins."""
     network = problem.network
     units = [unit for unit in tree if network.motions[unit] == STAND_IN]
     if problem.stand_ins is None or not units:

@@ -10,7 +10,7 @@ from foon_asp.network import Edit, Network, ObjectNode, Relation, StandInTable, 
 class NodePrices:
     """The nodes of a network that may stand in for others by a table, with their prices.
 
-    Prices are whole numbers; ``scale`` of them are 1.
+    Prices are whole numbers: the exact prices times ``scale``.
     """
 
     def __init__(self, network: Network, table: StandInTable) -> None:
@@ -45,7 +45,7 @@ class NodePrices:
         return servers
 
     def of_node(self, node: ObjectNode) -> dict[int, int]:
-        """Return the nodes that may serve in place of one that the network may lack, by id, with prices."""
+        """Return the nodes that may stand in for any node, by id, with prices."""
         objects, by_label = self._objects, self._by_label
         labels = (*self._spelled.get(spelling_key(node.label), ()), *self._labels.get(node.label, ()))
         nodes = dict.fromkeys(o for label in labels for o in by_label.get(label, ()))
@@ -93,7 +93,7 @@ class NodePrices:
         return self._edits[edit] if price == -1 else price
 
     def _of_contents(self, ours: tuple[str, ...], theirs: tuple[str, ...]) -> int | None:
-        """Return the price of ingredients of the serving and of the served node, which differ somehow."""
+        """Return the price of using contents with other ingredients or another word; ``None`` for never."""
         if ours == theirs:
             return self._edits[Edit.WORD]
         total = 0
@@ -122,7 +122,7 @@ class NodePrices:
         return total
 
     def _of_relations(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
-        """Return the price of different relations, ``None`` for never."""
+        """Return the price of the differences between two sets of relations; ``None`` for never."""
         surplus = Counter(relation.object for relation in ours - theirs)
         lacking = Counter(relation.object for relation in theirs - ours)
         same = (surplus & lacking).total()

@@ -20,9 +20,9 @@ from foon_asp.standins.extension import with_stand_ins
 class Repair:
     """The problem whose best tree is the cheapest repair of a tree.
 
-    ``posed`` is the problem to solve: each step of the tree makes a node of its own there, which is a goal.
-    ``shown`` is the same without these nodes; the ids of units are the same. ``steps`` are the units of the
-    tree, by id, in the order listed, each once.
+    ``posed`` is the problem to solve: in it, each step of the tree makes one more node, its own, which is a
+    goal. ``shown`` is the same problem without these nodes, with the same ids of units. ``steps`` are the
+    units of the tree, by id, in the order listed, each once.
     """
 
     posed: Problem
@@ -92,7 +92,7 @@ class Repair:
         return [unit for unit in units if unit not in steps and motions[unit] != STAND_IN]
 
     def lacking(self) -> list[int]:
-        """Return the nodes that the steps and goals need, that nothing makes and nothing stands in for."""
+        """Return the nodes that steps or goals need and that cannot be made, even with stand-ins."""
         available = reach(self.posed).available
         made = {o for unit in self.steps for o in self.shown.gives[unit]}
         needed = {o for unit in self.steps for o in self.shown.needs[unit]}.union(self.shown.goals)
@@ -101,7 +101,7 @@ class Repair:
 
 
 def _marked(network: Network, steps: Sequence[int]) -> Network:
-    """Return a network in which each of some units has one more output, a node of its own."""
+    """Return a network in which each of the ``steps`` has one more output, a node of its own."""
     first = len(network.objects)
     markers = {unit: o for o, unit in enumerate(steps, first)}
     # no file has a label with a line end, so nothing stands in for these
@@ -124,7 +124,7 @@ def _marked(network: Network, steps: Sequence[int]) -> Network:
 
 
 def _unmarked(extended: Network, plain: Network) -> Network:
-    """Return a network with stand-ins without the nodes that mark steps."""
+    """Return an extended network without the nodes that mark steps; its stand-ins stay."""
     stand_ins = {key: unit for key, unit in extended._unit_ids.items() if unit >= len(plain)}
     return replace(
         extended,

@@ -24,8 +24,9 @@ def read_stand_ins(
 ) -> StandInTable:
     """Return the usual table with the changes of files; a later file takes precedence.
 
-    The lexicons ``similar`` come before all ``files``; what they list of the labels of ``utensils`` is left
-    out, since a tool or vessel stands in only where a file of stand-ins says so. Raises :class:`InputError`.
+    The lexicons ``similar`` are read before all ``files``. Their pairs with labels of ``utensils`` are left
+    out, since a tool or vessel stands in only where one of the ``files`` lists it. Raises
+    :class:`InputError`.
     """
     table = StandInTable.usual()
     for file in similar:
@@ -55,7 +56,7 @@ def _changed(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -
 
 
 def _row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
-    """Return what a row prices, and its price; ``None`` is the price ``never``."""
+    """Return the edit or pair of a row, and its price; ``None`` for the word ``never``."""
     served, tab, written = value.rpartition("\t")
     price = _price(written.strip(), column + len(value) - len(written))
     if not tab:

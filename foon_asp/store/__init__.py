@@ -1,1 +1,1 @@
-"""Stores: networks on disk, of which a question reads only the part that it needs."""
+"""Stores: networks on disk; a question reads only the part of a network that it needs."""

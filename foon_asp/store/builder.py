@@ -36,8 +36,8 @@ class StoreBuilder:
     """Writes units into a database as they come; copies of a unit are merged and all sources kept.
 
     Nodes and units get the ids that :class:`~foon_asp.network.NetworkBuilder` would give them. ``kitchen``
-    are the entries of the kitchen file, or ``None`` without such a file. In memory are the ids, by what makes
-    a node or a unit what it is: some 400 bytes for each. The database is in one transaction, to be committed.
+    are the entries of the kitchen file, or ``None`` without such a file. The ids of all nodes and units are
+    kept in memory, some 400 bytes for each. All writing is one transaction, which the caller commits.
     """
 
     def __init__(self, database: sqlite3.Connection, kitchen: Sequence[ListedObject] | None) -> None:
@@ -142,9 +142,9 @@ class StoreBuilder:
     ) -> None:
         """Write the remaining rows, and the indexes; ``left_out`` counts lines that were not understood.
 
-        ``goals_from`` says what the goals were assumed from, and is empty where a file lists them.
-        ``repeated`` are nodes that a unit lists twice, and ``amounts`` those of units.
-        ``stated`` are prices that networks have for their units, ``prices`` those of a file, if there is one.
+        ``goals_from`` is the origin of assumed goals, and is empty if a file lists the goals. ``repeated``
+        are nodes that a unit lists twice, ``amounts`` the amounts of units. ``stated`` are the prices that
+        networks state for their units, ``prices`` the prices of a file, if there is one.
         """
         amounts_by_id = [
             (self.unit_id(unit), *(self._amounts(side) for side in sides))
@@ -221,7 +221,7 @@ class StoreBuilder:
         return {unit: price for unit, price in by_id if unit is not None}
 
     def _node_id(self, node: ObjectNode) -> int:
-        """Return the id of a node, which is added if it is new."""
+        """Return the id of a node; adds a node that is new."""
         number = self._latest.get(node)
         if number is None:
             label = self._labels.get(node.label)
@@ -246,7 +246,7 @@ class StoreBuilder:
         return None if label is None or attributes is None else self._nodes.get((label, attributes))
 
     def _in_kitchen(self, number: int, node: ObjectNode) -> bool:
-        """Whether a node matches entries of the kitchen file; notes each, and its amount by the node's id."""
+        """Whether a node matches entries of the kitchen file; records these entries and the node's amount."""
         matches = False
         if self._kitchen is not None and node.label in self._entry_labels:
             for key in lookup_keys(node):
@@ -268,7 +268,7 @@ class StoreBuilder:
         return node_of(decoded_label(label), *columns)
 
     def _origin(self, file: str, videos: tuple[str, ...]) -> int:
-        """Return the id of a file with its videos, which is added if it is new."""
+        """Return the id of a file with its videos; adds a file that is new."""
         number = self._origins.get((file, videos))
         if number is None:
             number = self._origins[file, videos] = len(self._origins)
@@ -291,12 +291,14 @@ class StoreBuilder:
                 self._insert("granted", o, file)
 
     def _insert(self, table: str, *row: Any) -> None:
+        """Add a row to those waiting for a table, and write these once there are many."""
         waiting = self._rows.setdefault(table, [])
         waiting.append(row)
         if len(waiting) >= STORE.rows_per_write:
             self._write_rows(table, waiting)
 
     def _write_rows(self, table: str, rows: list[tuple[Any, ...]]) -> None:
+        """Write all waiting rows of a table, and empty their list."""
         if rows:
             marks = ",".join("?" * len(rows[0]))
             self._database.executemany(f"INSERT INTO {table} VALUES ({marks})", rows)

@@ -1,4 +1,4 @@
-"""Object nodes, entries of kitchens and goals, and names as the columns of a store hold them."""
+"""Encoding of object nodes, names, and entries of kitchens and goals in the columns of a store."""
 
 import json
 from collections.abc import Iterable
@@ -18,7 +18,7 @@ encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode
 
 
 class AttributeColumns(NamedTuple):
-    """The attributes of an object node as JSON; certificates name digests of lists of nodes in this form."""
+    """The attributes of a node as JSON texts; the digests in certificates are of nodes in this form."""
 
     states: str
     relations: str
@@ -43,7 +43,7 @@ def listed(texts: Iterable[str]) -> str:
 
 
 def encoded_label(label: str) -> bytes:
-    """Return a label in UTF-8, in which JSON may have halves of letters."""
+    """Return a label in UTF-8, including lone surrogates, which labels from JSON may have."""
     return label.encode("utf-8", "surrogatepass")
 
 
@@ -105,7 +105,7 @@ def _name(value: object) -> str:
 def number_of(text: str) -> Fraction:
     """Return an exact rate or price of less than 4,000 letters; raises :class:`ValueError` for other texts.
 
-    Python reads numbers of up to 4,300 digits.
+    Python cannot read integers of more than 4,300 digits.
     """
     number = Fraction(text if len(text) < 4000 and "e" not in text.lower() else "")
     if number < 0:

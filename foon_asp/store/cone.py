@@ -1,4 +1,4 @@
-"""The cone of goals: the units of a network that they can need, read backwards step by step."""
+"""The cone of goals: the units of a network that the goals can need, read backwards step by step."""
 
 import copy
 from collections import deque
@@ -24,10 +24,10 @@ class Producers(Protocol):
 
 
 class Cone:
-    """The part read so far of what goals can need, by id in the whole network.
+    """The part read so far of the units that goals can need, by id in the whole network.
 
-    ``units`` are those read. They include all producers of each node that they or the goals need under the
-    container rule, except of ``available`` nodes and of ``open`` ones, whose producers may be missing.
+    ``units`` are the units that were read. For each node that the goals or these units need under the
+    container rule, all producers were read, unless the node is ``available`` or ``open``.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Cone:
     def grow(self, objects: Iterable[int], max_units: int | None = None) -> None:
         """Read the producers of open nodes and of the nodes that they need, breadth first.
 
-        Ends when about ``max_units`` more units were read, ``None`` for no limit.
+        Ends when about ``max_units`` more units were read; ``None`` means no limit.
         """
         queue = deque(objects)
         target_size = None if max_units is None else len(self.units) + max_units

@@ -1,4 +1,4 @@
-"""The digests of a store: of the whole file, and of the content that certificates name."""
+"""The digests of a store: one of the whole file, and those of its contents for certificates."""
 
 import hashlib
 import sqlite3
@@ -14,7 +14,7 @@ FILE_DIGEST = hashlib.sha256().digest_size  # bytes behind the last page, which 
 
 
 def append_digest(file: Path) -> None:
-    """Write the SHA-256 digest of a database behind it."""
+    """Append the SHA-256 digest of a database to its file."""
     with file.open("rb+") as database:
         digest = hashlib.file_digest(database, "sha256").digest()
         database.seek(0, 2)

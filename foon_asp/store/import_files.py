@@ -31,8 +31,8 @@ from foon_asp.text.unit_price_list import read_unit_prices
 class Imported(NamedTuple):
     """The result of an import: ``copies`` counts the units read, ``units`` and ``objects`` the distinct ones.
 
-    ``left_out`` counts lines that were not understood. ``remarks`` say which data beside the network are
-    missing.
+    ``left_out`` counts lines that were not understood. ``remarks`` are about motions without a success rate
+    and nodes that a unit lists twice.
     """
 
     copies: int
@@ -109,7 +109,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
 def _assumed_goals(
     reader: FoonReader, builder: StoreBuilder, last_units: Mapping[int, Source]
 ) -> tuple[list[ListedObject], str]:
-    """Return the goals that networks mark, or what their last units make, and which of the two."""
+    """Return the marked goals, or if there are none the final outputs of last units; and their origin."""
     if reader.marked:
         return [as_entry(node, source) for node, source in reader.marked.items()], MARKED
     return builder.last_outputs(last_units), LAST
@@ -119,7 +119,8 @@ def _assumed_goals(
 def _written(store: Path) -> Iterator[sqlite3.Connection]:
     """Yield a new database; it replaces the store at a normal end, and is removed after an error.
 
-    It is one file beside the store, which a later import takes over when this process is killed.
+    The database is a single file in the store's folder. If this process is killed, a later import replaces
+    the file.
     """
     store = Path(os.path.realpath(store))  # a link stays one
     partial = store.with_name(f".{store.name}.partial")

@@ -1,4 +1,4 @@
-"""The outline of a network: its units and nodes as arrays of numbers, searched all at once."""
+"""The outline of a network: its units and nodes as arrays of numbers, for searches of all at once."""
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from functools import cached_property
@@ -22,9 +22,9 @@ _LABELLED = "label = (SELECT id FROM label WHERE name = ?)"
 class Outline:
     """The hypergraph of all units of a store as arrays; ids are those of the whole network.
 
-    ``outline`` are the rows of the table, ``units`` and ``nodes`` count those of the store. ``motions`` are
-    the names of motions, by number, and ``nodes_where`` returns the ids of the nodes that meet a condition in
-    SQL. Raises :class:`LookupError` for ids that do not exist.
+    ``outline`` are the rows of the table; ``units`` and ``nodes`` are the numbers of units and nodes in the
+    store. ``motions`` are the names of motions, by number. ``nodes_where`` returns the ids of the nodes that
+    meet a condition in SQL. Raises :class:`LookupError` for ids that do not exist.
     """
 
     def __init__(
@@ -144,7 +144,7 @@ class Outline:
             new_distances = _saturating_sum(farthest, own_costs[units])
 
     def leading_to(self, units: Mask, available: Mask, candidates: Mask) -> Mask:
-        """Return the mask of units, and of ``candidates`` that transitively make their unavailable inputs."""
+        """Return the mask of the units, and of all ``candidates`` that lead to their unavailable inputs."""
         mask = units.copy()
         new = np.flatnonzero(mask)
         while len(new):
@@ -156,7 +156,7 @@ class Outline:
 
 
 def _saturating_sum(distances: Distances, costs: Distances) -> Distances:
-    """Return distances plus costs, below :data:`FAR` where the distances are."""
+    """Return distances plus costs; only distances that are :data:`FAR` have the sum :data:`FAR`."""
     return np.where(distances < FAR, np.minimum(distances + costs, FAR - 1), FAR)
 
 

@@ -56,8 +56,8 @@ _Unit = tuple[int, tuple[int, ...], tuple[int, ...]]  # motion, inputs and outpu
 class Store:
     """An opened store. Ids of units and nodes are those that the whole network has when read from text.
 
-    ``with Store(file) as store:`` closes it at the end, as :meth:`close` does; so does Python when nothing
-    refers to the store any more.
+    ``with Store(file) as store:`` closes the store at the end, as :meth:`close` does. Python also closes it
+    when nothing refers to it any more.
 
     Every method reads only what it needs, so that its time does not grow with the network. Opening and each
     method raise :class:`UserError` for a file that is no store, is newer than this program or damaged.
@@ -76,7 +76,7 @@ class Store:
 
     @reporting_damage
     def _read_head(self) -> None:
-        """Read what the store says of itself: its size, whether it has a kitchen and prices, and remarks."""
+        """Read the properties of the store: its size, remarks, and whether it has a kitchen and prices."""
         about = self.file.about
         self.units, self.objects, self.left_out = (int(about(n)) for n in ("units", "objects", "left_out"))
         self.has_kitchen = bool(about("kitchen"))  # or an empty one
@@ -130,9 +130,9 @@ class Store:
     @cached_property
     @reporting_damage
     def digests(self) -> dict[str, str]:
-        """The digests of ``network``, ``kitchen`` and ``prices`` that were computed when it was imported.
+        """The digests of ``network``, ``kitchen`` and ``prices`` that were computed at the import.
 
-        Certificates name them; they are not checked here.
+        These digests stand in certificates, and are not checked here.
         """
         digests = self.file.about("digests")
         return {name: bytes.fromhex(digests[name]).hex() for name in ("network", "kitchen", "prices")}
@@ -285,7 +285,7 @@ class Store:
 
     @reporting_damage
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Return how many nodes have a label, and the ids of the first twelve, as many as a message lists."""
+        """Return the number of nodes with a label, and the ids of the first twelve, which messages list."""
         ids = [*self._named(label)]
         return len(ids), ids[:12]
 
@@ -300,7 +300,7 @@ class Store:
         return self._checked_labels(similar_labels(self._database, label, max_labels))
 
     def _checked_labels(self, labels: list[str]) -> list[str]:
-        """Return labels as they are; raises :class:`LookupError` unless an object node has each."""
+        """Return the labels unchanged; raises :class:`LookupError` for a label that no object node has."""
         for label in labels:
             if next(self._named(label), None) is None:
                 raise LookupError(f"no object node has the label {label!r}")
@@ -523,5 +523,5 @@ class Store:
 
 
 def _price(from_file: bool) -> str:
-    """Return the SQL expression of a unit's price: the stated one; ``from_file``, the listed one first."""
+    """Return SQL for a unit's price: the stated one; if ``from_file``, the listed one takes precedence."""
     return "coalesce(listed, stated)" if from_file else "stated"

@@ -40,10 +40,10 @@ def is_store_database(file: Path) -> bool:
 
 
 class StoreFile:
-    """An opened store, read only. Any number of processes can have one open, and it is never written.
+    """An opened store, read only; any number of processes can have the same store open.
 
-    It is closed by :meth:`close`, or when nothing refers to it any more. Raises :class:`UserError`, here and
-    where something is read, for a file that is no store, was made by a newer program, is cut off or damaged.
+    The store is closed by :meth:`close`, or when nothing refers to it any more. Opening and reading raise
+    :class:`UserError` for a file that is no store, was made by a newer program, is cut off or damaged.
     """
 
     def __init__(self, file: Path) -> None:
@@ -66,7 +66,7 @@ class StoreFile:
         self._closing()
 
     def rows(self, statement: str, ids: Iterable[int]) -> sqlite3.Cursor:
-        """Run a statement, in which ``IN ids`` stands for some ids, and return its rows."""
+        """Run a statement that may have the condition ``IN ids`` about the ``ids``, and return its rows."""
         listed = "IN (SELECT value FROM json_each(?))"
         return self.database.execute(statement.replace("IN ids", listed), (json.dumps([*ids]),))
 

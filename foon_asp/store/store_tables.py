@@ -66,7 +66,7 @@ def create_tables(database: sqlite3.Connection) -> None:
 
 
 def _knows_trigrams() -> bool:
-    """Whether this SQLite has FTS5 and its trigrams, tried where a failure leaves nothing behind."""
+    """Whether this SQLite has FTS5 with trigrams, tried in a database in memory."""
     with contextlib.closing(sqlite3.connect(":memory:")) as database:
         try:
             database.execute(TRIGRAMS)
@@ -76,14 +76,14 @@ def _knows_trigrams() -> bool:
 
 
 def create_indexes(database: sqlite3.Connection) -> None:
-    """Make the indexes of tables that are full, which is quicker than to keep them up to date."""
+    """Make the indexes once the tables are filled, which is faster than updating indexes at each insert."""
     for statement in SCHEMA:
         if statement.startswith("CREATE INDEX"):
             database.execute(statement)
 
 
 def check_tables(database: sqlite3.Connection) -> None:
-    """Raise :class:`ValueError` for a database with other tables: views and triggers run code."""
+    """Raise :class:`ValueError` for a database with other tables, views or triggers, which can run code."""
     database.execute("PRAGMA trusted_schema = OFF")
     rows = database.execute("SELECT type, name, sql FROM sqlite_master WHERE sql IS NOT NULL").fetchall()
     shadow_tables = [(kind, sql) for kind, name, sql in rows if name in _SHADOWS]

@@ -1,4 +1,4 @@
-"""Sets of object nodes of a store, read element by element."""
+"""Sets of ids of object nodes in a store, read element by element."""
 
 from collections.abc import Callable, Collection, Iterator
 

@@ -31,7 +31,7 @@ class StoredStartingKitchen(StartingKitchen[int]):
 
     @reporting_damage
     def granting_files(self, o: int) -> Iterable[int]:
-        """Return the files whose starting kitchen is granted a node that a unit of the file makes."""
+        """Return the files whose starting kitchen grants a node although a unit of the file makes it."""
         rows = self.file.database.execute("SELECT file FROM granted WHERE node = ?", (o,))
         return [file for (file,) in rows]
 

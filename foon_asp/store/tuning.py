@@ -7,10 +7,13 @@ class StoreTuning(NamedTuple):
     """Sizes of batches and caches of this room.
 
     ``rows_per_write``: rows of one table that are kept in memory until they are written.
-    ``cached_nodes``: nodes met lately whose ids an import keeps by node: copies are mostly close together.
-    ``cached_attributes``: different lists of states, relations or contents that are kept as they were read.
-    ``digest_texts``: texts that are put together before they are added to a digest.
-    ``cone_nodes``: nodes whose producers one query reads; a cone reads those of up to as many too many.
+    ``cached_nodes``: recent nodes whose ids an import keeps in memory, since copies are mostly close
+    together.
+    ``cached_attributes``: distinct lists of states, relations or contents that are kept in memory after
+    reading.
+    ``digest_texts``: texts that are joined before they are added to a digest.
+    ``cone_nodes``: nodes whose producers one query reads; a cone may read the producers of up to as many
+    nodes without need.
     ``compared_labels``: labels that share the rarest trigrams with a wanted one, which are compared in full.
     """
 

@@ -1,4 +1,4 @@
-"""Lower bounds on what units of a store cost in a tree, for all units at once."""
+"""Lower bounds on the cost of trees with a unit of a store, for all units at once."""
 
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -14,12 +14,12 @@ _SCALE = 2**40  # of logarithms of success rates, which are whole numbers
 
 
 class UnitDistances:
-    """The distances of all units of a network: what a tree that has a unit costs at least.
+    """The distances of all units of a network: lower bounds on the cost of a tree that has the unit.
 
-    ``kitchen`` is the mask of the available nodes, ``skipped`` of nodes that units may do without. Costs are
-    units, or negative logarithms of success rates if the objective is ``success``, rounded down. The distance
-    of a unit is its cost plus the largest distance of its inputs, where the distance of a node is the least
-    of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001).
+    ``kitchen`` is the mask of the available nodes, ``skipped`` the mask of nodes that units do not need.
+    Costs are units, or negative logarithms of success rates if the objective is ``success``, rounded down.
+    The distance of a unit is its cost plus the largest distance of its inputs, where the distance of a node
+    is the least of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001).
     """
 
     def __init__(
@@ -96,6 +96,7 @@ class UnitDistances:
     def _distances(
         self, executed: Mask, max_distance: int, limit: Callable[[Distances], int] | None
     ) -> Distances:
+        """Return the distances of all units if the units ``executed`` and their outputs cost nothing."""
         available = self._available | self._outline.made_by(executed)
         return self._outline.distances(available, self._costs, max_distance, executed, limit)
 

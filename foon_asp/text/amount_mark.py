@@ -14,13 +14,13 @@ def is_amount(comment: str) -> bool:
 
 
 def read_amount(comment: str) -> int:
-    """Return the amount that a comment line states; raises :class:`LineError` for what is no amount."""
+    """Return the amount that a comment line states; raises :class:`LineError` for any other text."""
     written = comment[len(_MARK) :].strip()
     return amount(written, len(_MARK) + 1 + comment[len(_MARK) :].find(written))
 
 
 def amount(written: str, column: int) -> int:
-    """Return an amount as it is written; raises :class:`LineError` at its column."""
+    """Return the number of a written amount; raises :class:`LineError` at ``column`` for any other text."""
     if not is_number(written) or len(written) > len(str(MAX_AMOUNT)) or not 1 <= int(written) <= MAX_AMOUNT:
         raise LineError(column, f"the amount {written[:40]!r}", (EXPECTED_AMOUNT,))
     return int(written)

@@ -22,13 +22,13 @@ _TREE_COMMENT = "# Task tree for:"  # in the comments that FOON text begins with
 
 
 class ListedTree(NamedTuple):
-    """A tree as a file lists it: units with their sources in order, ``None`` for an answer without a tree.
+    """A tree as a file lists it: its ``units``, each with its source, in the order of the file.
 
-    ``goals``, ``status``, and the words for ``containers`` and ``items`` are those of an answer, empty for
-    other files; ``wanted`` has the goals of which it wants several copies. ``numbers`` are the ids of the
-    atoms ``use(U)`` of clingo, in place of units.
-    ``is_tree`` is false for FOON that does not say that it is a task tree, and may be a network; ``amounts``
-    are those of its units.
+    ``units`` is ``None`` for an answer without a tree. ``goals``, ``status``, ``containers`` and ``items``
+    are read from an answer of foon-asp, and are empty for other files. ``wanted`` has the number of copies of
+    goals that are wanted several times. The output of clingo has no units: ``numbers`` are the ids in its
+    atoms ``use(U)``. ``is_tree`` is false for FOON without a mark of a task tree, which may be a network.
+    ``amounts`` are the amounts of the units.
     """
 
     units: tuple[tuple[FunctionalUnit, Source], ...] | None
@@ -123,7 +123,7 @@ def _with_tree(document: Json) -> Json:
 
 
 def _executions(value: Json) -> Iterator[tuple[FunctionalUnit, Source]]:
-    """Return the unit of a step, as often as it is executed."""
+    """Yield the unit of a step once for each of its executions."""
     return repeat(_unit(value), int(value.get("times", 1)))
 
 

@@ -11,8 +11,8 @@ MARKED, LAST = "marked", "last"
 def wanted_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterable[int]) -> list[int]:
     """Return the final outputs of the last unit of a file, by id: the outputs that no unit needs.
 
-    ``needed`` are the outputs that some unit has as inputs. If all are needed, the outputs that are no
-    inputs of the unit itself are returned, and if there are none, all outputs.
+    ``needed`` are the outputs that some unit has as inputs. If every output is needed, the outputs that are
+    not inputs of the last unit itself are returned. If these are none either, all outputs are returned.
     """
     needed = set(needed)
     return [o for o in outputs if o not in needed] or [o for o in outputs if o not in inputs] or [*outputs]

@@ -54,7 +54,7 @@ def _state(match: re.Match[str]) -> StateLine:
 
 
 def no_tab(bracket: str, column: int) -> Remark:
-    """Return a remark on a blank, or nothing, where a tab should stand before a bracket."""
+    """Return the remark that a bracket has no tab before it."""
     return Remark(column, "space-for-tab", f"no tab before {bracket}; read as if there were one")
 
 

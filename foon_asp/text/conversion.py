@@ -67,7 +67,7 @@ class Converter:
                 self._numbering.learn(line)
 
     def convert(self, text: str, file: str) -> Converted:
-        """Convert a text; its functional units or listed objects stay the same.
+        """Return a converted text, which has the same functional units or listed objects.
 
         Raises :class:`InputError` with the places of all parts that cannot be understood, or whose meaning
         the target cannot hold.
@@ -141,7 +141,7 @@ class Converter:
     def _element(
         self, element: ObjectBlock | MotionLine, source: Source, lost: "_Tally", in_list: bool = False
     ) -> str:
-        """Write an object or a motion, and count what is lost of it; each distinct one is written once."""
+        """Return the text of an object or a motion, and count its losses; equal elements are written once."""
         key = (
             element
             if isinstance(element, MotionLine)
@@ -186,7 +186,7 @@ class _Tally:
             self.found[loss] = Lost(count + 1, min(first, source))
 
     def comments(self, text: str, kept: tuple[str, ...]) -> None:
-        """Count the comments of a text that goes to JSON, but for videos that are kept."""
+        """Count the comments of a text as lost, except amounts and the names of ``kept`` videos."""
         for number, line in enumerate(split_lines(text), 1):
             if line[:1] == "#" and not is_amount(line) and read_video(line) not in kept:
                 kind = Loss.VIDEOS if is_video(line) else Loss.COPIES if read_copy(line) else Loss.COMMENTS

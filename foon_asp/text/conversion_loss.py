@@ -35,13 +35,13 @@ class Loss(StrEnum):
 
 
 class CannotHoldError(Exception):
-    """A dialect cannot hold a name: it would mean something else there."""
+    """A name that a dialect cannot hold, since it would mean something else there."""
 
 
 def lost_in_line(before: Line, after: Line) -> list[Loss]:
     """Return the losses from one line to another, one entry for each occurrence.
 
-    Raises :class:`CannotHoldError` when they do not say the same.
+    Raises :class:`CannotHoldError` when the lines differ in meaning.
     """
     lost = [Loss.IDS] if before.id and not after.id else []
     if isinstance(before, ObjectLine) and isinstance(after, ObjectLine):
@@ -63,8 +63,8 @@ def lost_in_line(before: Line, after: Line) -> list[Loss]:
 def lost_in_states(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) -> list[Loss]:
     """Return the losses from the state lines of one object to those of another, an entry for each occurrence.
 
-    A relation without a word is a container that matches any. Raises :class:`CannotHoldError` when the two
-    objects differ in other ways than known losses.
+    A relation without a word is a container, which matches a relation with any word. Raises
+    :class:`CannotHoldError` when the two objects differ in other ways than known losses.
     """
     ids = Counter(s.id for s in before if s.id) - Counter(s.id for s in after)
     return [Loss.IDS] * ids.total() + _lost_attributes(before, after)
@@ -86,6 +86,7 @@ def _lost_fields(before: tuple[str, ...], after: tuple[str, ...]) -> Iterator[Lo
 
 
 def _lost_times(before: MotionFields, after: MotionFields) -> Iterator[Loss]:
+    """Yield the losses of times and success rates between two motion lines."""
     if in_two_fields(before.times) != in_two_fields(after.times):
         yield Loss.TIMES
     if before[1:] != after[1:]:

@@ -67,13 +67,12 @@ class DataFiles(NamedTuple):
 class Data(NamedTuple):
     """All data read: the merged network and the data beside it.
 
-    ``kitchen`` are the ids of the object nodes that ``kitchen_items`` stand for. ``rates`` is ``None`` where
-    there is no rates file, ``unit_prices`` where there is no file of prices and no unit has one.
-    ``warnings`` lists the assumptions made while reading; ``left_out`` counts the lines dropped.
-    ``starting`` says that there is no kitchen file, so that the kitchen is the starting kitchen.
-    ``goals_from`` says what ``goals`` were assumed from where no file lists them: those *marked*, or the
-    *last* unit of each file; it is empty where a file does. ``repeated`` are nodes that a unit lists twice,
-    and ``amounts`` how many of a node units take or make, where that is not one.
+    ``kitchen`` are the ids of the object nodes that match ``kitchen_items``. ``rates`` is ``None`` without a
+    rates file, ``unit_prices`` without any price. ``warnings`` lists the assumptions made while reading;
+    ``left_out`` counts the lines dropped. ``starting`` is true without a kitchen file: then the kitchen is
+    the starting kitchen. ``goals_from`` is empty if a file lists the goals. Otherwise it is the origin of the
+    assumed ``goals``: the *marked* nodes, or the *last* unit of each file. ``repeated`` are nodes that a unit
+    lists twice. ``amounts`` has the copies of nodes that units take and make, where these are not 1.
     """
 
     network: Network
@@ -177,7 +176,7 @@ def _may_be_network(file: Path) -> bool:
 
 
 def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
-    """Read all pieces; raises :class:`InputError` for input that is not understood.
+    """Read the network and the data beside it; raises :class:`InputError` for input that is not understood.
 
     With ``lenient`` the lines of a network that are not understood are left out with a warning. Below
     ``level`` 3, network, kitchen and goals are taken at that level, where an entry matches all nodes

@@ -33,10 +33,10 @@ class Rename(NamedTuple):
 class Diagnostic(NamedTuple):
     """A remark about one place in an input file.
 
-    ``code`` names the kind of remark in a few words and is the same for all remarks of that kind;
-    ``excerpt`` is the line of the file that it is about, without its end, or empty; ``fix`` is how that
-    line would be written without what is remarked on, where this changes nothing of what it says. Where
-    the fix is ``unsafe``, it changes what is read; so does the ``rename`` that would mend it.
+    ``code`` is the name of the kind of remark. ``excerpt`` is the line of the file that the remark is about,
+    without its line end, or empty. ``fix`` is the corrected line, ``None`` where no correction is known. A
+    fix changes nothing of what is read, unless it is ``unsafe``. ``rename`` is a correction in the whole
+    file, which always changes what is read.
     """
 
     severity: Severity
@@ -81,7 +81,7 @@ class InputError(UserError):
 
 
 def in_brief(diagnostics: Sequence[Diagnostic]) -> list[str]:
-    """Return warnings as :func:`summarize` does if these are up to six lines, else their number."""
+    """Return warnings as :func:`summarize` does, or one line of counts if that has more than six lines."""
     summary = summarize(diagnostics)
     if sum(1 + text.count("\n") for text in summary) <= 6:
         return summary

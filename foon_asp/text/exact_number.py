@@ -16,7 +16,7 @@ def read_price(written: str, column: int = 1) -> Fraction:
 
 
 def read_decimal(written: str, column: int, expected: str) -> Fraction:
-    """Read a number from 0; raises :class:`LineError` with the expectation for any other text."""
+    """Read a number from 0; raises :class:`LineError` for any other text, saying what is ``expected``."""
     if len(written) > MAX_LETTERS:
         raise LineError(column, f"a number of {len(written)} letters", (f"at most {MAX_LETTERS}",))
     if not _DECIMAL.fullmatch(written):

@@ -15,7 +15,7 @@ _JSON_KEY = re.compile(rb'"(?:input_nodes|object_label|label)"\s*:')
 
 
 class FolderFile(NamedTuple):
-    """A file, and its path relative to the folder that was named; for a named file, its name."""
+    """A file, and its path relative to the named folder; for a file that was named itself, its name."""
 
     file: Path
     relative: Path

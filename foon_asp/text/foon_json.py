@@ -71,7 +71,7 @@ class FoonJson(Format):
                 yield from block.lines
 
     def normalised(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return JSON laid out anew; the line end behind the last bracket is there or not, as before."""
+        """Return JSON laid out anew; a line end after the last bracket is neither added nor removed."""
         try:
             check_json(text, file)
         except InputError:

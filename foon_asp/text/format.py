@@ -38,9 +38,10 @@ class Dialect(StrEnum):
 class Format(Protocol):
     """A format of files, as the reader, ``fmt``, ``convert``, ``rename`` and ``lint`` use it.
 
-    ``dialects`` are its dialects; ``suffix`` and ``list_suffix`` are how the names of its networks
-    and of its lists of objects end. ``has_comments`` says whether it has comments, and ``machine_written``
-    whether a node that a unit lists twice means two of it. A ``file`` is its name in messages.
+    ``dialects`` are its dialects; ``suffix`` and ``list_suffix`` are how the names of its networks and of its
+    lists of objects end. ``has_comments`` says whether it has comments. If ``machine_written``, a node that a
+    unit lists twice means two copies of the node. The parameter ``file`` of methods is the name of the file
+    in messages.
     """
 
     dialects: tuple[Dialect, ...] = ()
@@ -59,11 +60,11 @@ class Format(Protocol):
         """Whether a text lists object nodes, as a kitchen or goals do, and has no functional units."""
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a file in order; raises :class:`InputError` for one that is no text."""
+        """Yield the units of a file in order; raises :class:`InputError` for a file that is no text."""
         yield from self.units(read_plain_text(file), str(file), reading)
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order; its diagnostics are added to ``reading``."""
+        """Yield the units of a text in order; the diagnostics of the text are added to ``reading``."""
         for unit in self.listed_units(text, file, reading):
             amounts = unit.amounts if self.machine_written else UnitAmounts()
             yield unit.identity._replace(amounts=amounts) if amounts else unit.identity
@@ -78,7 +79,7 @@ class Format(Protocol):
         """Yield the parts of a text that can be understood as lines of FOON text."""
 
     def normalised(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return a text in canonical form, which means the same.
+        """Return a text in canonical form, with the same meaning.
 
         Raises :class:`InputError` with all faults; with ``lenient``, lines that cannot be understood stay.
         """
@@ -100,7 +101,8 @@ WrittenPart = tuple[str, "list[Loss]"]
 class Writer(Protocol):
     """Writes files in a dialect, part by part.
 
-    ``holds_prices`` says whether they can hold prices of units, ``holds_no_inputs`` units without inputs.
+    ``holds_prices`` says whether these files can hold prices of units, ``holds_no_inputs`` whether they can
+    hold units without inputs.
     """
 
     holds_prices: bool
@@ -109,14 +111,14 @@ class Writer(Protocol):
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
         """Write an object, of a unit or of a list.
 
-        Raises :class:`CannotHoldError` where it would be read as another.
+        Raises :class:`CannotHoldError` where the text would be read as another object.
         """
 
     def motion(self, line: MotionLine) -> WrittenPart:
-        """Write a motion; raises :class:`CannotHoldError` where it would be read as another."""
+        """Write a motion; raises :class:`CannotHoldError` where the text would be read as another motion."""
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
-        """Put a unit together; ``price`` is empty where it has none."""
+        """Put a unit together; ``price`` is empty for a unit without a price."""
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
         """Put a file together from its units and its source videos."""
@@ -125,4 +127,4 @@ class Writer(Protocol):
         """Put a file together from its objects."""
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return the videos of a file, given with its comment lines, that the result can name."""
+        """Return those ``videos`` of a file with these comment lines that the result can name."""

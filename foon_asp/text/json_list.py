@@ -27,8 +27,8 @@ class JsonElement(NamedTuple):
 class JsonList:
     """The elements of a list, read one by one; faults are collected in ``errors``.
 
-    The list is the file's only value, or with ``key`` the value of that key of an object, whose other
-    values are in ``others`` when all has been read.
+    Without ``key``, the list is the whole file. With ``key``, the file is an object, and the list is the
+    value of this key; the object's other values are in ``others`` once all elements have been read.
     """
 
     def __init__(self, text: str, file: Path, key: str | None = None) -> None:
@@ -100,7 +100,7 @@ class JsonList:
         self._expect_end(position + 1)
 
     def _in_list(self, position: int) -> Generator[tuple[int, object], None, int]:
-        """Yield the elements of the list that begins there, and return where it ends."""
+        """Yield the elements of the list that begins at a position, and return the position of its end."""
         position = self._expect("[", position, "a list, [ ... ]")
         first = True
         while self._text[position : position + 1] != "]":
@@ -186,7 +186,7 @@ def begins_json(text: str) -> bool:
 
 
 def before_json(text: str) -> str:
-    """Return an error message about text before JSON; empty for other texts.
+    """Return an error message if other text stands before JSON, else an empty text.
 
     JSON is searched for in the first 2,000 letters.
     """
@@ -213,7 +213,8 @@ class JsonFault(NamedTuple):
 def json_fault(error: json.JSONDecodeError) -> JsonFault:
     """Return the fault that the standard library found.
 
-    A comma before the end of a list or an object is reported at the comma, while Python versions differ.
+    A comma before the end of a list or an object is reported at the comma, since Python versions report
+    different places.
     """
     text, offset, message = error.doc, error.pos, error.msg
     start = offset

@@ -77,9 +77,9 @@ class _JsonName(NamedTuple):
 
 
 class _Level:
-    """A list or an object while JSON is read: its current key, and the key whose value it is.
+    """A list or an object while JSON is read: its current ``key``, and the key that it is under (``owner``).
 
-    ``first`` is the number of names before it.
+    ``first`` is the number of names before the list or object.
     """
 
     def __init__(self, owner: str, is_list: bool, first: int = 0) -> None:
@@ -91,7 +91,7 @@ class _Level:
 
 
 def _json_names(text: str) -> list[_JsonName]:
-    """Return the names of a JSON text, those of an object at its end."""
+    """Return the names of a JSON text; names directly in an object come after names nested deeper in it."""
     levels = [_Level("", True)]
     names: list[_JsonName] = []
     tokens = list(TOKEN.finditer(text))

@@ -45,9 +45,9 @@ class JsonObject(NamedTuple):
 def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
     """Read a node from ``{"label", "states", "ingredients", "container"}`` or the names of the other form.
 
-    States are names, also ``in [bowl]``, or objects with ``state_label`` and ``relative_object``. The
-    ingredients are those of a state ``contains``, which may be missing. A missing, null or empty value and
-    ``"None"`` are no value. Raises :class:`ValueError` for a value of another form.
+    States are names, also ``in [bowl]``, or objects with ``state_label`` and ``relative_object``. Listed
+    ingredients are read under the word ``contains``; a state with this name may be missing. A missing, null
+    or empty value and ``"None"`` are no value. Raises :class:`ValueError` for a value of another form.
     """
     if not isinstance(value, dict):
         raise ValueError(f'found {shown(value)}, expected an object {{"label": ..., "states": [...]}}')
@@ -86,8 +86,8 @@ def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[
 def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern, tuple[str, ...]]]:
     """Yield the entries of a list with their patterns and remarks.
 
-    Faulty entries become errors of the list. An entry is a node as :func:`read_object` reads it, one in
-    one-line notation, or one of an answer in JSON.
+    Faulty entries become errors of the list. An entry is a node as :func:`read_object` reads it, a node in
+    one-line notation, or a node of an answer in JSON.
     """
     for value, source in elements:
         try:
@@ -138,7 +138,7 @@ def check_keys(value: dict[str, object], allowed: set[str]) -> None:
 
 
 def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
-    """Return the key of ``keys`` that an object has, and its value; else the first key and ``None``.
+    """Return the one of ``keys`` that an object has, and its value; without any, the first key and ``None``.
 
     Raises :class:`ValueError` if it has two of the keys.
     """
@@ -188,9 +188,9 @@ def stated_amount(value: dict[str, object]) -> int | None:
 
 
 def price_of(value: object, exponents: bool = False) -> str:
-    """Return the price of a unit as written in JSON, as a number or text; empty where it has none.
+    """Return the price of a unit, in JSON a number or a text; empty for a unit without a price.
 
-    A number may have an exponent where the form has ``exponents``; the price is without it.
+    If the form has ``exponents``, a number may be written with one; the price is returned without it.
     """
     if value is None:
         return ""

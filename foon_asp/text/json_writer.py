@@ -64,7 +64,7 @@ class JsonWriter:
         return written_list(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return the videos if the form has a key for them and they are those of the whole file, or none."""
+        """Return the videos if the form has a key for videos and these are all of the file, else none."""
         named = tuple(video for video in map(read_video, comments) if video)
         return videos if not self._is_list and named == videos and not any(map(read_copy, comments)) else ()
 
@@ -77,6 +77,7 @@ def with_container(block: ObjectBlock, pattern: NodePattern) -> ObjectBlock:
 
 
 def _listed(text: str) -> ObjectBlock:
+    """Read back an object from the JSON of a list; raises :class:`CannotHoldError` for an error."""
     reading = Reading()
     blocks = [with_container(*entry) for entry in read_json_objects(f"[{text}]", "", reading)]
     _raise_first_error(reading)
@@ -154,7 +155,7 @@ def json_motion(line: MotionLine) -> str:
 
 
 def list_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
-    """Write an object with label, states, ingredients and one container, that of ``in`` if it has one."""
+    """Write an object with label, states, ingredients and one container, preferably the one of ``in``."""
     attributes = [state.attribute for state in states]
     relations = sorted(
         (attribute for attribute in attributes if isinstance(attribute, Relation)),
@@ -178,7 +179,8 @@ def list_motion(line: MotionLine) -> str:
 def written_unit(inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str, level: int) -> str:
     """Return the text of a unit at a level from the texts of its parts.
 
-    Its motion is laid out one level deeper, and its objects two. ``price`` is empty for none.
+    The text of its motion is laid out one level deeper, the texts of its objects two levels. ``price`` is
+    empty for a unit without a price.
     """
     key = "\n" + STEP * (level + 1)
     lists = (written_list(objects, level + 1) for objects in (inputs, outputs))

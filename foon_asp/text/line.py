@@ -38,8 +38,9 @@ class Remark(NamedTuple):
 class ObjectLine(NamedTuple):
     """``O278⇥mixing bowl⇥1⇥15``: starts an object node.
 
-    ``id`` is what stands behind the letter, or empty. ``fields`` are what follows the label, as written:
-    the motion flag, and on a goal its recipe category or the mark ``!``. Neither is part of the node.
+    ``id`` is the number after the letter, or empty. ``fields`` are the texts after the label: the motion
+    flag, and for a goal its recipe category or the mark ``!``. Neither ``id`` nor ``fields`` are part of the
+    node.
     """
 
     label: str
@@ -49,13 +50,13 @@ class ObjectLine(NamedTuple):
 
     @property
     def motion_flag(self) -> str | None:
-        """``1`` when the object is in motion, ``0`` when it is not, ``None`` when nothing is said."""
+        """``1`` when the object is in motion, ``0`` when it is not, ``None`` without a flag."""
         first = self.fields[0] if self.fields else None
         return first if first in MOTION_FLAGS else None
 
     @property
     def is_goal(self) -> bool:
-        """Whether the line is tagged as what the recipe makes: a category or the mark ``!``."""
+        """Whether the line is tagged as a goal of the recipe, by a category or the mark ``!``."""
         return bool(self.fields) and (self.category is not None or "!" in self.fields)
 
     @property
@@ -80,8 +81,9 @@ class StateLine(NamedTuple):
 class MotionLine(NamedTuple):
     """``M54⇥pour*⇥1:10⇥1:11``: the motion of a unit.
 
-    ``composite`` tells of a ``*`` behind the motion: several motions annotated as one. ``fields`` are the
-    times, and with success rates the entity and its rate, as written. None of it is part of the unit.
+    ``composite`` is true for a ``*`` after the motion: several motions annotated as one. ``fields`` are the
+    times and, where there is a success rate, the moving entity and this rate, as written. None of these is
+    part of the unit.
     """
 
     motion: str
@@ -95,7 +97,7 @@ Line = ObjectLine | StateLine | MotionLine
 
 
 def name_of(line: Line) -> str:
-    """Return the name that has the id of a line; a label, a motion, a state or the word of a relation."""
+    """Return the name that the id of a line belongs to: a label, a motion, a state or a relation's word."""
     if isinstance(line, ObjectLine):
         return line.label
     if isinstance(line, MotionLine):

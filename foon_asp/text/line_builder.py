@@ -101,6 +101,7 @@ class _LineBuilder(Transformer[Token, object]):
         return _bracketed(word, Token("BARE", shown, column=column - 1), id_, remarks)
 
     def related(self, tokens: list[Token]) -> StateLine:
+        """Return the line of a relation or of contents."""
         remarks: list[Remark] = []
         id_ = _id(tokens[0], remarks)
         _blank_end(tokens, remarks)
@@ -196,7 +197,7 @@ def _blank_end(tokens: list[Token], remarks: list[Remark]) -> None:
 
 
 def _tabbed(tokens: list[Token], remarks: list[Remark]) -> tuple[str, Token]:
-    """Return the word and the bracket without the tab between them, with a remark if it is missing."""
+    """Return a word and the bracket after it, with a remark if there is no tab between them."""
     _, word, bracket = tokens
     column = bracket.column or 1
     if bracket[0] == "\t" and bracket[1] in "[{":
@@ -223,9 +224,9 @@ def _name(token: Token, remarks: list[Remark]) -> str:
 def _bracketed(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
     """Return the state line of ``word [object]`` or ``word {list}``.
 
-    A list, or the word ``contains``, in ``[]`` is still a list.
+    A list in ``[]``, and anything in ``[]`` after the word ``contains``, is read as if it were in ``{}``.
 
-    Empty ``[]`` leave the word alone, which then is a state, as in ``on``.
+    With empty ``[]``, the word alone is a state, such as ``on``.
     """
     closing = "]" if bracket[0] == "[" else "}"
     if bracket[-1] != closing or len(bracket) == 1:

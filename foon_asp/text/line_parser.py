@@ -58,7 +58,7 @@ def parse_node(notation: str) -> ObjectNode:
 
 
 def parse_name(text: str) -> str | ObjectNode:
-    """Return the label if a text is a label alone, else the node of a one-line notation, as ``onion;`` is.
+    """Return the label if a text is a label alone, else the node of a one-line notation, such as ``onion;``.
 
     Raises :class:`LineError` like :func:`parse_node`.
     """

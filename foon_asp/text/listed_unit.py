@@ -11,7 +11,8 @@ from foon_asp.text.stated_amounts import counted_amounts
 class ObjectBlock(NamedTuple):
     """A mention of an object node: its object line, the state lines under it, its source and its amount.
 
-    ``amount`` is ``None`` where none is stated: in a unit that is one, and in a kitchen any number.
+    ``amount`` is ``None`` where none is stated; this means one copy in a unit, and any number of copies in a
+    kitchen.
     """
 
     object: ObjectLine
@@ -52,9 +53,8 @@ class ReadUnit(NamedTuple):
 class ListedUnit(NamedTuple):
     """A copy of a functional unit with its lines as read, nodes in the order listed.
 
-    ``sources`` has one entry, unless a merged file says from which copies the unit came;
-    ``motion_source`` is the place of its motion. ``price`` is that of this copy as written,
-    empty where it has none.
+    ``sources`` has one entry, unless a merged file says from which copies the unit came; ``motion_source`` is
+    the place of the motion. ``price`` is the price of this copy as written, empty for none.
     """
 
     motion: MotionLine

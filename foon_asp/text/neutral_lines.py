@@ -80,7 +80,7 @@ class NeutralLines(FoonJson):
             yield ListedUnit(MotionLine(unit.motion), inputs, outputs, unit.sources, unit.source, price)
 
     def normalised(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return each line laid out anew; one that cannot be understood stays if ``lenient``."""
+        """Return each line laid out anew; if ``lenient``, lines that cannot be understood stay unchanged."""
         lines = split_lines(text.removeprefix("\ufeff"))
         reading = Reading(lenient)
         understood = {unit.source.line for unit, _ in _units(lines, file, reading)}
@@ -193,7 +193,7 @@ def _number_price(written: str) -> str:
 def _nodes(
     value: object, key: str, nodes: dict[str, ObjectNode]
 ) -> tuple[list[ObjectNode], dict[ObjectNode, int]]:
-    """Read the nodes of a side, each once, and the amounts above 1: a list of names, or amounts by name."""
+    """Read a side, a list of names or amounts by name; return its nodes, each once, and amounts above 1."""
     if not isinstance(value, list | dict):
         raise ValueError(f'found {shown(value)} as "{key}", expected a list of names, or amounts by name')
     listed: dict[ObjectNode, int] = {}

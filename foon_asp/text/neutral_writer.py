@@ -46,7 +46,7 @@ class NeutralWriter:
         self._names: dict[str, ObjectNode] = {}
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
-        """Return the plain name of an object node, which no other node has, as JSON, and its amount."""
+        """Return the name and the amount of an object node as JSON; no other node may have the same name."""
         states = tuple(map(with_word, block.states))
         node = block._replace(states=states).node
         name = str(node) if states else node.label
@@ -79,11 +79,11 @@ class NeutralWriter:
         return written_list(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return none."""
+        """Return no videos, since the neutral form cannot name any."""
         return ()
 
 
 def _amount(fragment: str) -> tuple[str, int]:
-    """Return a name as JSON, and the amount that stands behind it."""
+    """Split the JSON of a node into its name, still JSON, and its amount."""
     name, _, amount = (fragment, "", "1") if fragment.endswith('"') else fragment.rpartition(": ")
     return name, int(amount)

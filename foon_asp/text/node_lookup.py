@@ -17,7 +17,7 @@ _IN_QUOTES = re.compile(r' *"(?:\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4})|[^"\\])*("?)')
 
 
 class Wording(NamedTuple):
-    """The noun for the node in messages, and the option before a name to paste."""
+    """The noun for the node in messages, and the option that precedes each candidate to paste."""
 
     thing: str
     before: str
@@ -60,7 +60,7 @@ class NodeNames(Protocol):
         """Return the ids of the nodes that match a kitchen or goals entry."""
 
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Return the number of nodes with a label, and the ids of the first, a dozen or more."""
+        """Return the number of nodes with a label, and the ids of at least the first twelve."""
 
     def beginning(self, start: str, max_labels: int) -> Sequence[str]:
         """Return labels that begin with ``start``, in alphabetical order, at most ``max_labels``."""
@@ -77,12 +77,12 @@ def find_goal(
 ) -> int:
     """Return the id of the object node that a goal names.
 
-    A name is the node itself in one-line notation (``sweet potato; chopped; in [cutting board]``, as
-    ``str(node)`` has it), else the label of an entry of the goals file, else a label that one node alone has.
-    A label that cannot be read as the notation, or whose notation is no node, is taken as it is written. A
-    semicolon at the end (``onion;``) makes a label the notation, which means no entry and no other node.
-    Raises :class:`GoalError` with candidates ready to paste if the name is unknown or means several nodes;
-    ``wording`` is for other nouns than goals.
+    A name is tried as the one-line notation of a node (``sweet potato; chopped; in [cutting board]``, as
+    ``str(node)`` returns it), then as the label of an entry of the goals file, then as a label of a single
+    node. A text that is no notation, or the notation of no node, is also tried literally as a label. A label
+    with a semicolon after it (``onion;``) is only tried as notation, of the node without states. Raises
+    :class:`GoalError` with candidates ready to paste if the name is unknown or means several nodes.
+    ``wording`` has other nouns than goal for messages.
     """
     named: str | ObjectNode = name
     fault = None
@@ -120,7 +120,7 @@ def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
     """Return the ids of nodes whose one-line notation, or whose label, begins with ``start``, by label.
 
     At most ``max_nodes`` are returned. The text before the first semicolon is a whole label; without a
-    semicolon, ``start`` is the beginning of one. The label may be in quotes.
+    semicolon, ``start`` is the beginning of a label. The label may be in quotes.
     """
     label, semicolon, _ = start.partition(";")
     labels = [label] if semicolon else []
@@ -138,7 +138,7 @@ def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
 
 
 def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[str]:
-    """Return names that mean the entries of a goals file: their labels, where these mean no other node."""
+    """Yield a name for each entry of a goals file: its label, or if that is ambiguous its notation."""
     counts = Counter(entry.pattern.label for entry in listed)
     for entry in listed:
         label = entry.pattern.label
@@ -170,6 +170,7 @@ def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
 
 
 def _only(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording: Wording) -> int:
+    """Return the only node of a name; raises :class:`GoalError` with candidates if there are several."""
     if count > 1:
         message = f"the {wording.thing} {name!r} means {count} object nodes"
         raise _unclear(f"{message}; paste the one you mean", names, count, nodes, wording)
@@ -177,7 +178,7 @@ def _only(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording
 
 
 def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames) -> Sequence[int]:
-    """Return nodes, most similar in notation to an unknown one first; unsorted if it is a label alone."""
+    """Return nodes sorted by similarity to an unknown ``node``; unsorted if that is a label alone."""
     if node == ObjectNode(node.label):
         return nodes
     import difflib  # noqa: PLC0415 (only for error messages)

@@ -28,7 +28,7 @@ def is_store(file: Path) -> bool:
 
 
 def read_beginning(file: Path, length: int) -> bytes:
-    """Return the first bytes of a file; empty if it cannot be read, or only once, as a pipe."""
+    """Return the first bytes of a file; empty for an unreadable file or a pipe."""
     if not file.is_file():
         return b""
     try:
@@ -108,7 +108,7 @@ def with_own_mark(text: str) -> str:
 def beginning(file: Path, max_bytes: int = 1_000_000) -> str:
     """Return the beginning of a file as text, by which its format is recognised.
 
-    A unit of the neutral form may have ``max_bytes``.
+    ``max_bytes`` has to hold the first line of a file in the neutral form, a whole unit.
     """
     return read_beginning(file, max_bytes).decode("utf-8-sig", errors="replace")
 

@@ -19,11 +19,11 @@ class FoonReader(Reading):
     r"""Reads any number of FOON files; each distinct line and object block is parsed once.
 
     With ``lenient``, what is not understood is left out with a warning; otherwise it is an error.
-    ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that are in no
-    unit because they were not understood or make none; ``prices`` are those that copies of units state.
-    ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``last_units`` are the last
-    unit of each file that makes anything, by id and with its place, for a network read in one go.
-    ``repeated`` are the nodes that a copy of a unit lists twice, and ``amounts`` those that copies state.
+    ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that were not
+    understood or do not form a unit. ``prices`` and ``amounts`` are those that copies of units state.
+    ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``last_units`` has, by id,
+    the place of the last unit with outputs of each file that :meth:`read_network` read. ``repeated`` are the
+    nodes that a copy of a unit lists twice.
 
     Example:
         >>> from pathlib import Path
@@ -151,7 +151,7 @@ class FoonReader(Reading):
         return TextUnits(["\n".join(split_lines(text))], file, self).objects()
 
     def parse(self, line: str) -> Line | LineError:
-        """Return what a line says, or its error; each distinct line is parsed once.
+        """Return the parsed line, or its error; each distinct line is parsed once.
 
         Parameters:
             line: The line.

@@ -21,13 +21,13 @@ _report: ContextVar[Report | None] = ContextVar("_report", default=None)
 
 
 class Reading:
-    """The diagnostics of files, and the prices and marks that they have beside their units.
+    """The diagnostics of files, and the prices, amounts and goal marks that these files state.
 
     With ``lenient``, what is not understood is left out with a warning; otherwise it is an error.
-    ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that are in no
-    unit because they were not understood or make none; ``prices`` are those that copies of units state.
+    ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that were not
+    understood or do not form a unit. ``prices`` and ``amounts`` are those that copies of units state.
     ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``repeated`` are the nodes
-    that a copy of a unit lists twice, and counts once; ``amounts`` are those that copies of units state.
+    that a copy of a unit lists twice; they count once.
     """
 
     def __init__(self, lenient: bool = False) -> None:

@@ -26,8 +26,8 @@ _FIELD = re.compile(r"[^\t\[\]{},]+")
 class Renaming:
     """A renaming of one name, applied after all mentions in all files have been learnt.
 
-    Where the new name has an id already, the lines of the old one get it; else they keep theirs.
-    ``mentions`` counts the mentions of the old name, ``already`` those of the new one.
+    If the new name already has an id, lines with the old name get this id; else they keep their own.
+    ``mentions`` counts the mentions of the old name, ``already`` the mentions of the new name.
     """
 
     def __init__(self, rename: Rename) -> None:
@@ -79,7 +79,7 @@ class Renaming:
         return name_of(line) == self.rename.old and self.rename.kind == kind_of(line)
 
     def id(self, old_id: str) -> str:
-        """Return the new id of a line with an id: the most frequent of the new name, if it has any."""
+        """Return the new name's most frequent id; ``old_id`` if that is empty or the new name has no id."""
         return self._ids.most_common(1)[0][0] if old_id and self._ids else old_id
 
     def name(self, kind: NameKind, name: str) -> str:

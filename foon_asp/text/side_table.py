@@ -49,7 +49,7 @@ class SideTable(FoonText):
                 yield Mention(TABLES[PurePath(file).name].names, line.partition("\t")[0].strip())
 
     def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
-        """Return a table with the new name; raises :class:`UserError` where that has two rows then."""
+        """Return a table with the new name; raises :class:`UserError` if the name gets two different rows."""
         new = each_line(text, lambda line: _renamed_row(line, PurePath(file).name, renaming))
         rows = (line.split("\t") for line in split_lines(new))
         name = renaming.rename.new

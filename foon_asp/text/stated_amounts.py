@@ -25,9 +25,10 @@ class StatedAmounts:
         self._copies.setdefault(unit, {})[source] = amounts
 
     def settled(self, network: Network | None = None) -> DataAmounts:
-        """Return the amounts of each unit, and the first two copies that disagree.
+        """Return the amounts of each unit, and a message about the first two copies that disagree.
 
-        Copies that state no amounts, which are all 1, are in the ``network``, or are not looked at.
+        Copies that state no amounts have all amounts 1. They are compared only if their ``network`` is
+        passed.
         """
         amounts: dict[FunctionalUnit, UnitAmounts] = {}
         conflict = ""
@@ -49,9 +50,9 @@ class StatedAmounts:
 def with_table(
     stated: DataAmounts, rows: Sequence[Row[UnitAmount, int]], units: Iterable[FunctionalUnit]
 ) -> tuple[DataAmounts, list[Diagnostic]]:
-    """Return amounts with those of a table in their place, and warnings about rows that match no unit.
+    """Return amounts after a table replaced some, and warnings about rows of the table that match no unit.
 
-    ``units`` are all that have a motion of the table.
+    ``units`` are all units whose motion is in the table.
     """
     amounts = dict(stated.units)
     used: set[UnitAmount] = set()

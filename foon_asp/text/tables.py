@@ -45,9 +45,10 @@ def motion_column(name: str, what: str) -> str:
 
 
 def stated_name(name: str) -> str | ObjectNode:
-    """Return the name in the first column: a label, which means all of its nodes, or a node.
+    """Return the name in the first column: a label, which means all nodes with the label, or a single node.
 
-    A semicolon behind a label alone makes it the node that has nothing else. Raises :class:`LineError`.
+    A label with a semicolon after it is the node without states, relations and contents. Raises
+    :class:`LineError`.
     """
     name = name.strip()
     if not name:
@@ -91,7 +92,7 @@ def _seconds(written: str, column: int) -> Fraction:
 
 
 def _tool(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | None]:
-    """Return a tool, by label or node, and its number from a row; ``None`` is the number ``free``.
+    """Return the tool of a row, as a label or a node, and its number; ``None`` for the word ``free``.
 
     Raises :class:`LineError` at the column of another value.
     """
@@ -155,9 +156,10 @@ def read_utensils(file: Path) -> frozenset[str]:
 
 
 def read_stock(file: Path) -> dict[ObjectNode, int]:
-    """Read a table of copies; or FOON text, in which each object block is one copy, or its amount.
+    """Read how many copies of nodes there are, from a table, or from FOON text.
 
-    Raises :class:`InputError` for a line of another form, and for a node with two different counts.
+    In FOON text, each object block counts as one copy, or as its amount. Raises :class:`InputError` for a
+    line of another form, and for a node with two different counts in a table.
     """
     text = "\n".join(split_lines(read_plain_text(file)))
     if not _OBJECT_LINE.search(text):

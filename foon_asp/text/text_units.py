@@ -1,7 +1,7 @@
 """The units of FOON text, and the objects of one that lists them without motions.
 
-A well-formed unit is read by its object blocks, each distinct one once; any other one is read line by line,
-with remarks.
+A well-formed unit is read by its object blocks, and each distinct block is parsed once. Any other unit is
+read line by line, with remarks.
 """
 
 from collections.abc import Iterable, Iterator
@@ -52,14 +52,14 @@ def _clean_node(block: str) -> ObjectNode | None:
 
 @lru_cache(50_000)  # the states under very many objects are the same
 def _clean_blank(states: str) -> ObjectNode | None:
-    """Return a node without label that has the attributes of state lines; ``None`` where one has remarks."""
+    """Return a node without label with the attributes of state lines; ``None`` if a line has remarks."""
     lines = map(read_line, states.split("\n"))
     attributes = [line.attribute for line in lines if isinstance(line, StateLine) and not line.remarks]
     return node_of("", attributes) if len(attributes) == states.count("\n") + 1 else None
 
 
 def _clean_nodes(blocks: str) -> list[ObjectNode] | None:
-    """Return the nodes of the object blocks on one side of a unit; ``None`` where one is not clean."""
+    """Return the nodes of the object blocks on one side of a unit; ``None`` if a block is not well-formed."""
     nodes = list(map(_clean_node, blocks.split("\nO")))
     return cast(list[ObjectNode], nodes) if all(nodes) else None
 
@@ -186,7 +186,7 @@ class TextUnits:
             yield unit
 
     def _unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
-        """Read the lines between two separators as a unit; ``None`` where they hold none."""
+        """Read the lines between two separators as a unit; ``None`` if they are no unit."""
         section = _Section(end, closed, self.reading.left_out)
         for index in range(start, end):
             line = self._lines[index]
@@ -235,7 +235,7 @@ class TextUnits:
             self._reject("amount", str(error), index, error.column)
 
     def _line(self, section: "_Section", index: int) -> None:
-        """Add a line to its section, or record the fault of a line that fits nowhere."""
+        """Add a line to its section; record a fault if the line is broken or out of place."""
         line = self._lines[index]
         parsed = read_line(line)
         if isinstance(parsed, LineError):
@@ -293,7 +293,7 @@ class TextUnits:
         return Source(self.file, self._number + index, column)
 
     def _remark(self, line: Line, index: int) -> None:
-        """Report the remarks on a line, with the fix that a rewritten line would be."""
+        """Report the remarks on a line, with the line in canonical form as their fix."""
         if line.remarks:
             mended = write_line(line)
             fix = mended if mended != self._lines[index] else None
@@ -312,9 +312,10 @@ class TextUnits:
 class _Section:
     """The lines between two separators, while they are read one by one; positions are indices of lines.
 
-    ``block`` is that of the current object line, ``None`` before the first; ``lost`` says that this
-    object line cannot be read, so that the states under it are left out. ``blamed`` says that an error among
-    the lines may be the reason for a missing motion or object. ``left_out`` is the count before the section.
+    ``block`` is the block of the current object line, ``None`` before the first one. ``lost`` is true if the
+    current object line cannot be read; then the states under it are left out. ``blamed`` is true if an error
+    in a line may be the reason for a missing motion or object. ``left_out`` is the count of lines left out
+    before the section.
     """
 
     def __init__(self, end: int, closed: bool, left_out: int) -> None:

@@ -54,7 +54,7 @@ class TextWriter:
         return tuple(video for video in videos if read_video(f"# Source:\t{video}") == video)
 
     def in_dialect(self, line: Line) -> Line:
-        """Return a line with the parts that the dialect has."""
+        """Return a line with only the parts that the dialect can hold."""
         line = line._replace(remarks=())
         line = with_word(line) if isinstance(line, StateLine) else line
         line = self._numbering.number(line) if self._target is Dialect.IDS else line._replace(id="")
@@ -83,7 +83,7 @@ class TextWriter:
 
 
 def with_word(line: StateLine) -> StateLine:
-    """Return a container without a word with the word ``in``."""
+    """Return a state line; a container without a word gets the word ``in``."""
     if isinstance(line.attribute, Relation) and not line.attribute.word:
         return line._replace(attribute=line.attribute._replace(word="in"))
     return line

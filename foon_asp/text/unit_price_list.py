@@ -25,8 +25,8 @@ class UnitPriceList(NamedTuple):
 def read_unit_prices(file: Path) -> UnitPriceList:
     """Read ``motion⇥price`` lines, and ``motion⇥input⇥...⇥→⇥output⇥...⇥price`` for single units.
 
-    Nodes are in one-line notation; ``->`` is an arrow, too. Raises :class:`InputError` for a line of another
-    form, and for a motion or a unit with two different prices.
+    Nodes are in one-line notation; ``->`` may stand for ``→``. Raises :class:`InputError` for a line of
+    another form, and for a motion or a unit with two different prices.
     """
     price_list = UnitPriceList({}, {}, {})
     for name, price, source in UNIT_PRICES.rows(file):

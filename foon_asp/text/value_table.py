@@ -24,10 +24,10 @@ class Row(NamedTuple, Generic[K, V]):
 class Table(NamedTuple, Generic[K, V]):
     """The description of a kind of table.
 
-    ``code`` is that of its faults, ``names`` is the kind of the names in the first column, and ``expected``
-    describes the value behind the tab, empty for a table of one column. ``row`` reads the name before the
-    tab, and the text behind it with its column; it raises :class:`LineError`. ``second`` is the message about
-    a name with two values.
+    ``code`` is the code of diagnostics about the table, ``names`` the kind of the names in the first column.
+    ``expected`` describes the value after the tab, empty for a table of one column. ``row`` converts the
+    name, the text after the tab and the column of this text to a name and a value; it raises
+    :class:`LineError`. ``second`` is the message about a name with two values.
     """
 
     code: str

@@ -26,7 +26,7 @@ from foon_asp.text.listed_unit import node_of
 def write_line(line: Line) -> str:
     """Return the canonical text of a line, which is unchanged for a line read without a remark.
 
-    Ids, fields and the order of ingredients are kept; parts that remarks say were left out are not.
+    Ids, fields and the order of ingredients are kept, but not the parts that were left out with a remark.
     """
     if isinstance(line, ObjectLine):
         return "\t".join((f"O{line.id}", line.label, *line.fields))
@@ -54,7 +54,7 @@ def write_node(node: ObjectNode) -> str:
 
 
 def counted_node(node: ObjectNode, amount: int | None) -> str:
-    """Return the object block of a node, with its amount unless that is ``None``."""
+    """Return the object block of a node, with its amount unless ``amount`` is ``None``."""
     return write_node(node) + ("" if amount is None else write_amount(amount))
 
 
