@@ -30,7 +30,7 @@ def coprime_base(numbers: Iterable[int]) -> list[int]:
 
 
 def powers(number: int, base: Sequence[int]) -> dict[int, int]:
-    """Return the exponents of a number in a coprime base made for it, without those that are 0."""
+    """Return the nonzero exponents of a number in a coprime base made for it."""
     exponents: dict[int, int] = {}
     for factor in base:
         while number % factor == 0:

@@ -43,7 +43,7 @@ class Lexicographic:
         return tuple(sum(coordinates, Fraction(0)) for coordinates in zip(self.zero, *vectors, strict=True))
 
     def sign(self, vector: Sequence[Fraction | int]) -> int:
-        """Return -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly.
+        """Return -1, 0 or 1 for a cost below, equal to or above the cost of nothing, exactly.
 
         A vector that is not zero can cost nothing, because 7/10 * 7/10 divided by 49/100 is 1.
         """
@@ -110,7 +110,7 @@ class Lexicographic:
 
     @cached_property
     def _factors(self) -> list[dict[int, dict[int, int]]]:
-        """For each level a coprime base, with the exponent of each factor by the index of the rate."""
+        """For each level, the factors of a coprime base, each with its exponent in rates by their index."""
         factors_by_level: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:
             base = coprime_base(n for rate in rates or () for n in rate.as_integer_ratio())
