@@ -1,4 +1,4 @@
-"""A question about plans: what its rules do, which units can matter, and the best plan so far."""
+"""A question about plans: its rules applied, the units that can matter, and the incumbent."""
 
 import time
 from collections import Counter
