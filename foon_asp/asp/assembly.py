@@ -272,8 +272,8 @@ def reach_of_rules(settings: Settings) -> ReachOfRules:
 def hold_for_parts(settings: Settings) -> bool:
     """Whether the added rules are antimonotone, so that they hold for every subtree as well.
 
-    This has to be so within a part of the network as well, and where more object nodes are available than
-    the kitchen of the rules has. Raises as :func:`assemble` does.
+    They also have to be antimonotone in every part of the network, and with more object nodes available than
+    in the kitchen of the rules. Raises as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False
