@@ -444,9 +444,9 @@ def undefined(signature: Signature, defined: set[Signature]) -> str:
 def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) -> list[str]:
     """Return ``NAME=VALUE`` settings as arguments of clingo, typed after the ``#const`` they set.
 
-    Where the encoding's own value is a string the setting is one too, quotes or not; where it is a number
-    the setting has to be a whole number that fits 32 bits. Raises :class:`UserError` for an unknown name, and
-    for one that only a ready-made constraint has which is used with values of its own.
+    Where the default value is a string, the setting becomes a string, with or without quotes. Where the
+    default is a number, the setting has to be a whole number that fits 32 bits. Raises :class:`UserError` for
+    an unknown name, and for a constant that only a ready-made constraint with values of its own has.
     """
     defaults = {
         name: value
