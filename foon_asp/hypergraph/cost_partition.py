@@ -160,6 +160,7 @@ class CostPartitioning:
         return alone, together
 
     def _shared(self, solved: Weighed) -> SharedCosts:
+        """Return the cost partition by the rounded dual values of an LP solution."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         relaxation, shares = self._relaxation, np.array(solved.x)

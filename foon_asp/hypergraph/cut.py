@@ -171,7 +171,7 @@ class _Growth:
         return not self._unreached or bool(self.refuse(actions, max_refused=1))
 
     def refuse(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
-        """Admit actions one by one, except those with which all targets would be reached; return these.
+        """Admit actions one by one; refuse and return actions with which the targets would be reached.
 
         Ends after ``max_refused`` refusals. The consequences of an object are followed once: if they include
         all targets, further actions that achieve the object are refused at once.

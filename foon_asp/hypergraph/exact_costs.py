@@ -148,7 +148,7 @@ class ExactCosts:
         return not _large(proved) and order.sign(proved) >= 0
 
     def of(self, costs: Costs) -> int:
-        """Return the cost of a tree; it may be too great by the rounding error."""
+        """Return the cost of a tree, which may be too great by the rounding error."""
         total = 0
         for objective, factor in self._factors.items():
             measure = Fraction(costs.measure(objective))
@@ -198,6 +198,7 @@ class _Vectors:
         self._costs, self._coordinates = costs, coordinates
 
     def of(self, action: int) -> list[int]:
+        """Return the cost of an action as a vector."""
         vector: list[int] = []
         for objective, figure in self._costs.figures(action):
             if multiplies(objective):

@@ -135,6 +135,7 @@ def improved(
     total = sum(map(cost, best))
 
     def offer(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
+        """Keep the tree that follows h_add or h_max at some prices, if it is the best so far."""
         nonlocal best, total
         derived = derive(graph, actions, price, h_add).tree(graph, graph.goals)
         if derived is not None:

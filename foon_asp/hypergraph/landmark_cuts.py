@@ -57,8 +57,8 @@ class _Level:
     """Objects that every derivation makes, and the goal zone around the last of them.
 
     The goal zone is the set of objects from which its cuts are made. ``edge`` are actions that achieve an
-    object of the zone, need none of its objects and have a reduced cost above 0. ``cut`` is the latest cut
-    of this zone, or else the cut that follows the whole level.
+    object of the zone, need none of its objects and have a reduced cost above 0. ``cut`` is the latest cut of
+    this zone or, without one, the cut after the whole level.
     """
 
     def __init__(self, objects: Sequence[int], after: WeightedCut | None) -> None:

@@ -171,6 +171,7 @@ def _reduced_at(
     below: int = 0,
     max_actions: float = math.inf,
 ) -> Reduced:
+    """Return :func:`at_costs`; raises ``KeyboardInterrupt`` where the reduction is interrupted."""
     reduced = at_costs(subproblem, objectives, costs, expired, known_tree, below, max_actions)
     if reduced.interrupted:
         raise KeyboardInterrupt

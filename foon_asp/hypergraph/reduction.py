@@ -181,6 +181,7 @@ def at_costs(
         task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
 
         def fixed_first(task: Task, gap: Gap, h_values: HValues) -> Stage:
+            """Fix by the cutoff first, and run all rounds only if few enough actions remain."""
             if below and len(gap.candidates) > max_actions:
                 before = len(gap.candidates)
                 gap, cuts = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap))
@@ -321,7 +322,7 @@ def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Bound trees by landmark cuts, which are not guided: that would look at all actions."""
+    """Bound trees by landmark cuts without a guide, since a guide looks at all actions."""
     if task.costs is not None:
         gap = greedy.bound(task, gap, h_values, None).gap
         yield gap
@@ -398,7 +399,7 @@ class _Presolve:
             self.take(stages, h_values)
 
     def run_beside(self, solved: SolvedGoals) -> None:
-        """Run all rounds, from the gap by ``solved`` goals if any, and add the answer to ``solved``."""
+        """Run all rounds, from the gap that ``solved`` gives if any, and add the answer to ``solved``."""
 
         def begin() -> None:
             costs = solved.costs
@@ -482,6 +483,7 @@ def _extend(presolve: _Presolve) -> None:
     subproblem, h_values = reduced.subproblem, dict[int, int]()
 
     def extend() -> None:
+        """Extend the best tree of the goals alone, and keep the candidates of cheap extensions."""
         tree = extended(task.thin, gap.incumbent, costs, len(graph.needs) // 4)
         if tree is None:
             return

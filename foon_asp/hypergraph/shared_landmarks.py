@@ -64,7 +64,7 @@ class SharedLandmarks:
     def tighten(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> Gap:
         """Return the gap of a question: a tree at least as good, its bound, and the candidates between them.
 
-        Cuts are evidence only where the gap is open, since there are many, and large ones.
+        Cuts are kept as evidence only where the gap stays open, since they are many and large.
         """
         relaxed = self._relax(task, excluded, tree)
         candidates = self._actions - excluded
