@@ -26,7 +26,8 @@ class Measure(NamedTuple):
 class Landmark(NamedTuple):
     """The condition that one of the ``members`` is executed, or an initial copy of ``stock`` is consumed.
 
-    With an ``action``, it holds only if the action is executed. ``objects`` are the cut of the landmark.
+    With an ``action``, the condition applies only if the action is executed. ``objects`` are the cut of the
+    landmark.
     """
 
     members: tuple[int, ...]

@@ -452,6 +452,7 @@ class CountBound:
 
     @cached_property
     def _cutter(self) -> Cutter:
+        """The cutter of the targets in the delete relaxation, in which initial copies cost nothing."""
         flows = self._flows
         asks, targets = flows.lacking(priced=False)
         objects = {o for numbers in (*asks, *flows.adds, targets) for o in numbers}

@@ -122,6 +122,7 @@ class PlanProver(CountBound):
         return self._split(model, *column, depth)
 
     def _split(self, model: CountModel, column: int, max_count: int, depth: int) -> Split:
+        """Return a proof by branching: for values of a column above ``max_count``, and up to it."""
         program, size = model.program, self._size
         lower, upper = list(program.lower), list(program.upper)
         action = column < size

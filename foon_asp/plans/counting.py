@@ -356,7 +356,7 @@ class Counting:
 
 
 def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
-    """Return the rank of each figure among the distinct figures; -1 for the neutral figure."""
+    """Return the rank of each figure among the distinct figures; -1 for the figure ``idle``."""
     numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
     return [-1 if figure == idle else numbers[figure] for figure in figures]
 

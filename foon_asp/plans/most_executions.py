@@ -17,8 +17,8 @@ def most_executions(
 ) -> dict[int, tuple[int, int]]:
     """Return the least and greatest number of executions in any best plan, by unit that can matter.
 
-    Where no plan exists, every unit has at most one execution. Raises :class:`UserError` where no plan is
-    proved best and its absence is not proved.
+    Where no plan exists, every unit has at most one execution. Raises :class:`UserError` where neither a best
+    plan nor the absence of plans is proved.
     """
     question = PlanQuestion(problem, objectives, settings, Reporter())
     outcome = solve_question(question)

@@ -159,7 +159,7 @@ class StateEquation(RoundedProgram):
         self.add((level,), {a: -cost for a, cost in enumerate(costs) if cost}, -level.max_cost)
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row that a member of a landmark is executed, if its action, where it has one, is.
+        """Add the row of a landmark: some member is executed, or its action, if it has one, is not.
 
         Nothing is added if initial copies satisfy the landmark too, or if its action has no indicator.
         """

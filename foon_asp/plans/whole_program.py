@@ -25,8 +25,8 @@ class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
 class Solved(NamedTuple):
     """A relaxed solution ``x``, ``None`` without one, and a proved lower ``bound``.
 
-    The bound is infinite where it is proved that there is no solution, and -infinite where nothing is proved;
-    such a solution may violate rows a little.
+    The bound is infinite where it is proved that there is no solution, and -infinite where nothing is proved.
+    A solution with a bound of -infinity may violate rows a little.
     """
 
     x: list[float] | None
