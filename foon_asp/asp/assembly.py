@@ -56,10 +56,10 @@ def assemble(
 ) -> Program:
     """Find and check the encodings of settings.
 
-    With ``used_up``, they are those of plans in which items are used up. ``problem`` is the question: names
-    in rules that do not occur in its network are warned of.
-    Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that
-    no encoding has and for clingo options that would change what an answer means.
+    With ``used_up``, they are those of plans in which items are used up. ``problem`` is the question; warns
+    of names in rules that do not occur in its network. Raises :class:`UserError` for files that are missing
+    or at fault, for ``#script``, for constants that no encoding has and for clingo options that would change
+    what an answer means.
     """
     ours = encodings_folder() / USED_UP if used_up else encodings_folder()
     folder = _find_encodings(settings.encodings, ours)

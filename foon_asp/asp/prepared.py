@@ -173,8 +173,8 @@ def prepare(
     execute, since a constraint may require units that no goal needs. Rules that are understood are applied
     first, unless there are no reductions; settled rules need not be enforced again. With a ``listener``,
     which receives trees and bounds, there are reductions: they may exclude every tree but one of the best.
-    With bounds on trees there are none, since only an excluded tree may keep to the bounds. ``for_sale`` are
-    object nodes that may be added to the kitchen. ``brief`` says that the best tree without the unsettled
+    With bounds on trees there are none, since perhaps only excluded trees keep to the bounds. ``for_sale``
+    are object nodes that may be added to the kitchen. ``brief`` says that the best tree without the unsettled
     rules is not needed. ``solved`` are other goals of the same question. Raises :class:`UserError` where an
     objective needs rates that are not known.
     """

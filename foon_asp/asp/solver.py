@@ -434,9 +434,9 @@ class _Solver:
     ) -> "Run":
         """Run clingo for the best tree by some of the levels.
 
-        Trees of success ``products``, given by exponents, are excluded, unless they have fewer units than
-        ``fewer`` says for the index of the product. With ``wanted``, the product of this index is required
-        instead. Reports trees, and with ``bounds`` also bounds on the question.
+        Trees with one of the success ``products``, given by exponents, are excluded, unless they have fewer
+        units than ``fewer`` has for the index of the product. With ``wanted``, the product of this index is
+        required instead. Reports trees, and with ``bounds`` also bounds on the question.
         """
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 
