@@ -60,8 +60,8 @@ class RateScale(NamedTuple):
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
     """Return the finest useful scale of rates in (0, 1] within clingo's 32-bit integers.
 
-    It is at most 10^8, and more only where a rate next to 1 would weigh almost 0. Raises
-    ``ValueError`` for other rates.
+    It is at most 10^8, except where a rate next to 1 would weigh almost 0. Raises ``ValueError`` for other
+    rates.
     """
     if not all(0 < rate <= 1 for rate in rates):
         raise ValueError("expected success rates above 0 and at most 1")
