@@ -1,4 +1,4 @@
-"""Coprime bases: factors of numbers by which products of their powers can be compared.
+"""Coprime bases: factors of numbers, by which products of powers of the numbers can be compared.
 
 Numbers without common divisors, each above 1, are *independent*: a product of rational powers of them is 1
 only if all exponents are 0. So when every rate is written in powers of such numbers, equal products have

@@ -83,7 +83,7 @@ class Cutter:
         )
 
     def cut(self, keep: Iterable[int], order: Iterable[int]) -> Cut | None:
-        """Return a cut whose landmark has no action of ``keep`` and few others, mostly late in ``order``.
+        """Return a cut with a small landmark, without actions of ``keep``, mostly late in ``order``.
 
         Grows a set of actions that does not reach the targets, first by ``keep`` and then along ``order``,
         until no action can be added. The landmark consists of the refused actions that the targets need.
@@ -102,7 +102,7 @@ class Cutter:
         return self._shrink(first, refused, reached, self._consumer_counts)
 
     def among(self, actions: Iterable[int]) -> tuple[int, ...] | None:
-        """Return the actions that are not forbidden; ``None`` where one is not in :attr:`actions`."""
+        """Return the actions that are not forbidden; ``None`` where some are not in :attr:`actions`."""
         remaining = tuple(a for a in actions if a not in self._forbidden)
         return remaining if self._positions.keys() >= set(remaining) else None
 

@@ -52,7 +52,7 @@ class ExactCosts:
     def priced(
         self, counts: Callable[[int], int], price: int | Fraction, limit: int | None = None
     ) -> "ExactCosts":
-        """Return these costs with a price on each unit, times its count.
+        """Return these costs plus a price on each unit, multiplied by the count of the unit.
 
         Where the price is a fraction, all costs are multiplied by its denominator. With a ``limit``, a search
         ends as soon as a bound reaches the limit or a tree costs less.

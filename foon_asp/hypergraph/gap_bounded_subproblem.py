@@ -18,8 +18,8 @@ from foon_asp.problem import Problem
 class Subproblem:
     """A question with cuts that hold for every tree, before any reduction.
 
-    ``remaining`` are the actions of the cuts. With ``redundant``, trees may have units that lead to no goal,
-    since rules can require such units; ``costs`` then cover all actions.
+    ``remaining`` are the actions for which the cuts hold. With ``redundant``, trees may have units that lead
+    to no goal, since rules can require such units; ``costs`` then cover all actions.
     """
 
     problem: Problem

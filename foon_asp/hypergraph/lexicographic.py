@@ -1,9 +1,10 @@
 """Lexicographic costs that are compared exactly: counts, and products of rates.
 
 A cost is a vector of rational numbers. A level that counts has one coordinate. A level that multiplies rates
-has one for each rate ``r``: the exponent ``e`` in the product of all ``r ** e``, which costs ``-log`` of it.
-Costs add up coordinate by coordinate, can be multiplied by rational numbers, and are ordered: the first level
-at which they differ decides. So linear programming works on them as on numbers, and nothing is rounded.
+has a coordinate for each rate ``r``: the exponent ``e`` in the product of all ``r ** e``. The cost is
+``-log`` of the product. Costs add up coordinate by coordinate, can be multiplied by rational numbers, and are
+ordered: the first level at which they differ decides. So linear programming works on them as on numbers, and
+nothing is rounded.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -142,7 +143,7 @@ def times(vector: Vector, factor: Fraction) -> Vector:
 
 @lru_cache(maxsize=4096)
 def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
-    """Return ``-log(rate)`` to ``digits`` digits, and its greatest error; the rate is below 1."""
+    """Return ``-log(rate)`` to ``digits`` digits, and a bound on its error; the rate is below 1."""
     # close to 1, the logarithms of denominator and numerator share their first digits
     shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
     precise = Context(prec=digits + shared + 10)
