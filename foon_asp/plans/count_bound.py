@@ -38,8 +38,8 @@ class CountBound:
     ``expired`` returns whether to give up: methods then raise :class:`Stopped`. ``required`` are disjunctive
     action landmarks. ``limits`` bound weighted sums, with weights from 0, over executions or over the actions
     used. ``derivation`` are actions that reach the targets in the delete relaxation: landmarks are grown
-    around it. Only plans count that are as good as the incumbent by each of ``levels`` and that do not
-    execute everything in one of ``excluded_counts`` as often.
+    around it. Only plans count that are as good as the incumbent by each of ``levels``. Plans that execute
+    all actions at least as often as one of ``excluded_counts`` do not count.
     """
 
     def __init__(
@@ -66,9 +66,9 @@ class CountBound:
     def plain_counts(self, measures: Sequence[Measure]) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important.
 
-        They belong to a plan of the delete relaxation, as those of :meth:`counts`, and are found much faster,
-        as few actions have an indicator. ``None`` if no counts are found. Where items have costs, or counts
-        are excluded, it does not search.
+        Like counts of :meth:`counts`, they belong to a plan of the delete relaxation. They are found much
+        faster, as few actions have an indicator. ``None`` if no counts are found. Where items have costs, or
+        counts are excluded, it does not search.
         """
         if self._excluded_counts or any(measure.item for measure in measures):
             return None

@@ -85,7 +85,7 @@ class Flows:
         """A number for the role of each object (colour refinement, Weisfeiler & Leman 1968).
 
         Objects have one role if actions of one kind consume and add them in the same amounts, and actions are
-        of one kind if they do so with objects of the same roles, looked at ``role_depth`` times.
+        of one kind if they do so with objects of the same roles, refined ``role_depth`` times.
         """
         touched: dict[int, list[tuple[int, int]]] = {o: [] for o in self.targets}
         sides = [
