@@ -92,7 +92,7 @@ class Encoding:
     statements: list[AST] = field(default_factory=list)
 
     def first_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
-        """Return the atoms over signatures, as predicate and first argument; empty where that is no name."""
+        """Return atoms over signatures: the predicate, and the first argument, empty where it is no name."""
         symbols = (
             node.symbol for statement in self.statements for node in nodes(statement) if _is_atom(node)
         )
