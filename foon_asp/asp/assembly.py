@@ -56,10 +56,10 @@ def assemble(
 ) -> Program:
     """Find and check the encodings of settings.
 
-    With ``used_up``, they are those of plans in which items are used up. ``problem`` is the question: names
-    in rules that do not occur in its network are warned of.
-    Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that
-    no encoding has and for clingo options that would change what an answer means.
+    With ``used_up``, they are those of plans in which items are used up. ``problem`` is the question; warns
+    of names in rules that do not occur in its network. Raises :class:`UserError` for files that are missing
+    or at fault, for ``#script``, for constants that no encoding has and for clingo options that would change
+    what an answer means.
     """
     ours = encodings_folder() / USED_UP if used_up else encodings_folder()
     folder = _find_encodings(settings.encodings, ours)
@@ -272,8 +272,8 @@ def reach_of_rules(settings: Settings) -> ReachOfRules:
 def hold_for_parts(settings: Settings) -> bool:
     """Whether the added rules are antimonotone, so that they hold for every subtree as well.
 
-    This has to be so within a part of the network as well, and where more object nodes are available than
-    the kitchen of the rules has. Raises as :func:`assemble` does.
+    They also have to be antimonotone in every part of the network, and with more object nodes available than
+    in the kitchen of the rules. Raises as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False

@@ -22,6 +22,6 @@ def better_than(incumbents: Iterable[Costs], objectives: Iterable[Objective]) ->
 
 
 def _bounded(bounds: Iterable[Mapping[Objective, int]]) -> Bounded:
-    """Return bounds on trees: from each set, at least one number has to be met."""
+    """Return bounds on trees: a tree has to meet at least one bound of each set."""
     rules = "".join(write_at_most(number, bound) for number, bound in enumerate(bounds))
     return Bounded(rules, (question_encoding("at_most.lp"),))

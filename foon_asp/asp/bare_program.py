@@ -24,8 +24,8 @@ class BareProgram(NamedTuple):
     """The files, arguments and text for a command line of clingo.
 
     ``files`` are encodings and constraints, ``constants`` the arguments that set constants. ``facts`` and
-    ``rules`` without a file are the text of one more file, as ``foon-asp facts`` prints it. It has no
-    reduction, bound or second step.
+    ``rules`` without a file are the text of one more file, as ``foon-asp facts`` prints it. The program has
+    no reduction, bound or second step.
     """
 
     files: tuple[Path, ...]

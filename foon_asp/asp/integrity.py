@@ -56,10 +56,10 @@ def relax(
     """Number the integrity constraints of constraint files from 1, and relax them.
 
     Without ``soft``, integrity constraint number C holds unless ``_dropped(C)`` does
-    (``questions/clash.lp``). With it, it is a rule for ``_broken(C,Way)``, where ``Way`` has the values of
-    its variables (``questions/soft.lp``).
-    Other rules stay as they are. ``before`` are constraints whose texts are numbered first in messages.
-    Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
+    (``questions/clash.lp``). With ``soft``, the constraint becomes a rule for ``_broken(C,Way)``, where
+    ``Way`` has the values of its variables (``questions/soft.lp``). Other rules stay as they are. ``before``
+    are constraints whose texts are numbered first in messages. Raises as
+    :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}

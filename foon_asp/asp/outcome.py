@@ -55,8 +55,8 @@ class Outcome(NamedTuple):
     ``left`` counts the units that were left for the search, 0 if it was not needed. ``cuts`` are the sets of
     object nodes whose landmarks the reductions used for bounds; see :mod:`foon_asp.hypergraph`; goals that
     share landmarks leave them out. ``stopped`` names the limit that stopped an unproved answer, and what was
-    being done. ``cases`` are those that a proof by cuts tells apart, if one alone was not enough: a unit,
-    then the cases without it and those with it.
+    being done. ``cases`` is the case split of a proof by cuts, if it has one: a unit, then the cases without
+    the unit and the cases with it.
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))

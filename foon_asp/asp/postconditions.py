@@ -125,7 +125,7 @@ class Postconditions:
             self._reduced(outcome, costs, reduced, reduced.costs)
 
     def settled(self, tree: Collection[int], chosen: Collection[int], by: Sequence[Objective]) -> None:
-        """Require that a tree has the settled costs by some objectives."""
+        """Require that a tree costs the same as the ``chosen`` one by some objectives."""
         ours, theirs = self.problem.costs(tree), self.problem.costs(chosen)
         self.require(
             ours.key(by) == theirs.key(by),
@@ -136,7 +136,7 @@ class Postconditions:
         )
 
     def no_better(self, harder: Outcome, easier: Outcome, by: str) -> None:
-        """Require that a tree is no better than the proved optimum of a question that allows it, too."""
+        """Require that a tree is no better than the proved optimum of a question that allows more trees."""
         if harder.costs is None or easier.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
             return
         theirs = easier.costs

@@ -41,9 +41,9 @@ class Prepared:
     ``tree`` some tree of them, ``None`` where nothing makes the goals. ``reduced`` is the result of the
     reductions, ``None`` where none ran. ``stopped`` says that a limit or ctrl-C interrupted the cut, so that
     nothing is known. ``kept`` is the problem restricted by user rules, where these are applied before the
-    search, ``contradicted`` says that they allow no tree, ``full_program`` is the program with all of them.
-    ``unsettled`` says that clingo has to enforce some of them, which ``tree`` and ``reduced`` ignore.
-    ``redundant`` says that trees that keep to these may need redundant units, which lead to no goal.
+    search. ``contradicted`` says that user rules allow no tree, ``full_program`` is the program with all user
+    rules. ``unsettled`` says that clingo has to enforce some rules, which ``tree`` and ``reduced`` ignore.
+    ``redundant`` says that trees under these rules may need redundant units, which lead to no goal.
     """
 
     problem: Problem
@@ -172,11 +172,11 @@ def prepare(
     Without user rules, these are the units that the goals can need; with user rules, all units that can
     execute, since a constraint may require units that no goal needs. Rules that are understood are applied
     first, unless there are no reductions; settled rules need not be enforced again. With a ``listener``,
-    which receives trees and bounds, the reductions exclude units of trees that are no better than another
-    one, except with bounds, within which only the excluded tree may be.
-    ``for_sale`` are object nodes that may be added to the kitchen. ``brief`` says that the best tree without
-    the unsettled rules is not needed. ``solved`` are other goals of the same question. Raises
-    :class:`UserError` where an objective needs rates that are not known.
+    which receives trees and bounds, there are reductions: they may exclude every tree but one of the best.
+    With bounds on trees there are none, since perhaps only excluded trees keep to the bounds. ``for_sale``
+    are object nodes that may be added to the kitchen. ``brief`` says that the best tree without the unsettled
+    rules is not needed. ``solved`` are other goals of the same question. Raises :class:`UserError` where an
+    objective needs rates that are not known.
     """
     if problem.items is not None:
         raise UserError("this question is not built for items that are used up")

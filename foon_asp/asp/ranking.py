@@ -52,8 +52,8 @@ class Ranked:
         """Iterate over trees in order of exact costs.
 
         clingo finds them in order of rounded costs. A tree is yielded once no later tree can come before it:
-        with rounded costs, a later tree can if its weight is higher by less than the number of units that
-        weigh less than they cost (docs/dev/exact-success.md).
+        with rounded costs, a later tree can be better if its weight is higher by less than the number of
+        units whose weight is rounded down (docs/dev/exact-success.md).
         """
         if self.complete or self._prepared.stopped:
             return

@@ -8,12 +8,12 @@ class SearchTuning(NamedTuple):
 
     ``nearest_units``: size of the first reduced-cost neighbourhood, and of landmarks explored at once.
     ``nearest_growth``: factor by which the neighbourhood grows where it has no tree. ``explored_units``:
-    limit of explored units, without those that mattered before; ``explored_growth``: factor by which they
-    grow in each round. ``open_rounds``: searches for trees with open preconditions, each with fewer open
-    ones than before. ``cut_objects``: object nodes of the cuts kept for a certificate to try first; it
-    finds others by itself. ``units_without_clingo``: units of a network that is searched faster than clingo
-    is imported. ``max_weight``: of a constraint that may be broken or dropped, so that sums of weights fit
-    clingo.
+    limit of explored units, not counting units that mattered before; ``explored_growth``: factor by which
+    they grow in each round. ``open_rounds``: searches for trees with open preconditions, each with fewer open
+    ones than before. ``cut_objects``: object nodes of the cuts kept for a certificate to try first; it finds
+    others by itself. ``units_without_clingo``: units of a network that is searched faster than clingo is
+    imported. ``max_weight``: greatest weight of a constraint that may be broken or dropped, so that sums of
+    weights fit clingo.
     """
 
     nearest_units: int = 200

@@ -28,9 +28,9 @@ class Broken(NamedTuple):
 class SoftOutcome(NamedTuple):
     """An answer under soft constraints.
 
-    ``penalty`` is the sum of weight times ways over ``constraints``, for the tree of ``outcome``; ``None``
-    and empty where there is no tree. An ``optimal`` outcome has the least penalty of all trees, and is the
-    best by the objectives among those with that penalty.
+    ``penalty`` is the sum of ``weight`` times ``ways`` over all soft ``constraints``, for the tree of
+    ``outcome``. Without a tree, they are ``None`` and empty. An ``optimal`` outcome has the least penalty of
+    all trees, and is the best by the objectives among those with that penalty.
     """
 
     outcome: Outcome

@@ -384,7 +384,7 @@ class _Solver:
         return self._optimal(best) if proved else self._limited(best, run.lower)
 
     def _best_reported(self, units: Units) -> Units:
-        """Return the incumbent; with replaced encodings these units, since another order may count."""
+        """Return the incumbent; with replaced encodings ``units``, since these may define another order."""
         assert self.listener.incumbent is not None
         return units if self.program.replaced else self.listener.incumbent[0]
 
@@ -434,9 +434,9 @@ class _Solver:
     ) -> "Run":
         """Run clingo for the best tree by some of the levels.
 
-        ``products`` of rates, by exponents, are excluded, except for trees of fewer units than ``fewer`` has
-        for the index of the product; with ``wanted`` the product of that index is required instead. Reports
-        trees, and ``bounds`` where they are those of the question.
+        Trees with one of the success ``products``, given by exponents, are excluded, unless they have fewer
+        units than ``fewer`` has for the index of the product. With ``wanted``, the product of this index is
+        required instead. Reports trees, and with ``bounds`` also bounds on the question.
         """
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 

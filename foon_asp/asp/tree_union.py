@@ -47,9 +47,9 @@ def tree_union(
 
     With ``worse`` 0, these are the optimal trees; else all trees without redundant units whose first
     objective is worse than the best value by at most this share of it. Each search finds a tree that adds a
-    unit to those of some tree, or takes one from those of every tree; the last one proves that no such tree
-    is left.
-    Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for rules with ``worse``.
+    unit to the units of some tree, or removes one from the units of every tree; the last search proves that
+    no such tree is left. Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for rules with
+    ``worse``.
     """
     best = solve(problem, objectives, settings, reporter)
     if best.status is not Status.OPTIMAL or best.units is None or best.costs is None:

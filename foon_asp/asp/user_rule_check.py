@@ -18,9 +18,9 @@ from foon_asp.problem import Objective, Problem, levels, reach
 
 
 class UserRuleCheck:
-    """Constraints, read once, to check executable trees with; or plans, where items are used up.
+    """Constraints, read once, by which executable trees are checked (plans, where items are used up).
 
-    ``local`` says that their truth for a tree does not depend on units outside it.
+    ``local`` says that whether a tree breaks them does not depend on units outside the tree.
     """
 
     def __init__(self, settings: Settings, used_up: bool = False) -> None:

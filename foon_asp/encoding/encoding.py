@@ -92,7 +92,7 @@ class Encoding:
     statements: list[AST] = field(default_factory=list)
 
     def first_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
-        """Return the atoms over signatures, as predicate and first argument; empty where that is no name."""
+        """Return atoms over signatures: the predicate, and the first argument, empty where it is no name."""
         symbols = (
             node.symbol for statement in self.statements for node in nodes(statement) if _is_atom(node)
         )
@@ -444,9 +444,9 @@ def undefined(signature: Signature, defined: set[Signature]) -> str:
 def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) -> list[str]:
     """Return ``NAME=VALUE`` settings as arguments of clingo, typed after the ``#const`` they set.
 
-    Where the encoding's own value is a string the setting is one too, quotes or not; where it is a number
-    the setting has to be a whole number that fits 32 bits. Raises :class:`UserError` for an unknown name, and
-    for one that only a ready-made constraint has which is used with values of its own.
+    Where the default value is a string, the setting becomes a string, with or without quotes. Where the
+    default is a number, the setting has to be a whole number that fits 32 bits. Raises :class:`UserError` for
+    an unknown name, and for a constant that only a ready-made constraint with values of its own has.
     """
     defaults = {
         name: value

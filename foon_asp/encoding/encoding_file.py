@@ -152,7 +152,7 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
 
 
 def _refused(file: Path, target: str) -> str:
-    """Return why a file may not include another, named as in the file; empty if it may."""
+    """Return the reason why a file may not include ``target``; empty if it may."""
     folder = file.parent.resolve()
     path = file.parent / target
     if "\0" in target or not path.resolve().is_relative_to(folder) or ".." in Path(target).parts:

@@ -25,9 +25,9 @@ _CONTEXT = Context(prec=60, Emax=MAX_EMAX, Emin=MIN_EMIN)
 class RateScale(NamedTuple):
     """Integer weights and exponents for a set of rates.
 
-    ``weights[p]`` is ``floor(scale * -ln p)``; ``exponents[p][f]`` is the power to which the rate holds
-    factor number ``f``. The factors are pairwise coprime, so two products of rates are equal exactly when
-    the sums of their exponents are. A weight of 0 does not mean a rate of 1, which may be next to 1.
+    ``weights[p]`` is ``floor(scale * -ln p)``; ``exponents[p][f]`` is the exponent of factor number ``f`` in
+    the rate. The factors are pairwise coprime, so two products of rates are equal exactly when the sums of
+    their exponents are. A rate with a weight of 0 may be slightly below 1.
     """
 
     scale: int
@@ -43,7 +43,7 @@ class RateScale(NamedTuple):
         return total
 
     def weigh(self, product: Fraction) -> int:
-        """Return ``floor(scale * -ln product)``: no plan of that success weighs more."""
+        """Return ``floor(scale * -ln product)``: no plan with this success rate weighs more."""
         return _weight(product, self.scale)
 
     def success_bound(self, weight: int) -> Fraction:
@@ -60,8 +60,8 @@ class RateScale(NamedTuple):
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
     """Return the finest useful scale of rates in (0, 1] within clingo's 32-bit integers.
 
-    It is at most 10^8, and more only where a rate next to 1 would weigh almost 0. Raises
-    ``ValueError`` for other rates.
+    It is at most 10^8, except where a rate next to 1 would weigh almost 0. Raises ``ValueError`` for other
+    rates.
     """
     if not all(0 < rate <= 1 for rate in rates):
         raise ValueError("expected success rates above 0 and at most 1")

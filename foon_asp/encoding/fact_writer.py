@@ -106,7 +106,8 @@ def write_facts_read(
 ) -> str:
     """Return the facts of :func:`write_facts` restricted to the predicates in ``read``.
 
-    Without ``scales``, predicates that depend on them are omitted. Raises :class:`UserError` as that does.
+    Without ``scales``, predicates that depend on them are omitted. Raises :class:`UserError` as
+    :func:`write_facts` does.
     """
     seen = problem.as_seen or problem
     name = problem.network.object_number
@@ -156,7 +157,7 @@ def write_worlds(
 ) -> Iterator[str]:
     """Yield facts about units and their object nodes by predicates, each unit in a world of its own.
 
-    So rules see each unit separately; ``world`` is the predicate of worlds.
+    A world lets rules see each unit separately; ``world`` is the predicate of worlds.
     """
     network = problem.network
     sees_nodes = not OBJECT_FACTS.isdisjoint(predicates)
@@ -406,7 +407,7 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
 
 
 def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Scales) -> str:
-    """Return facts of sets of strict upper bounds, of each of which at least one has to hold.
+    """Return facts of sets of strict upper bounds: at least one bound of each set has to hold.
 
     Raises :class:`UserError` for an objective that is rounded.
     """
@@ -423,7 +424,7 @@ def write_assisted(twins: Mapping[int, int], max_assisted: int) -> str:
 
 
 def write_required(sets: Sequence[Iterable[int]]) -> str:
-    """Return facts of sets of units, by number, of each of which a tree has to have one."""
+    """Return facts of sets of units, by number: a tree has to have a unit of each set."""
     return "".join(
         "".join([f"_required({index}).\n", *(f"_one_of({index},{_check(number)}).\n" for number in numbers)])
         for index, numbers in enumerate(sets)
@@ -446,12 +447,12 @@ def write_avoided(number: int, units: Iterable[int]) -> str:
 
 
 def write_unseen(units: Iterable[int]) -> str:
-    """Return facts that ask for a tree with one of some units, by their numbers."""
+    """Return facts that ask for a tree with at least one of some units, by their numbers."""
     return "".join(f"_unseen({_check(unit)}).\n" for unit in units)
 
 
 def write_in_all(units: Iterable[int]) -> str:
-    """Return facts that ask for a tree without one of some units, by their numbers."""
+    """Return facts that ask for a tree that lacks at least one of some units, by their numbers."""
     return "".join(f"_in_all({_check(unit)}).\n" for unit in units)
 
 

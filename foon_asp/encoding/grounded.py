@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 class Grounded:
     """Ground program of files and text.
 
-    With ``endless``, for rules whose grounding may not terminate, it is in a worker process, which is killed
-    at the limits and at ctrl-C; also with much text or limited memory. ``doing`` names the phase in messages
-    about limits. Raises :class:`foon_asp.encoding.run.ProgramError` where clingo refuses the program, and
+    With ``endless`` (grounding may not terminate), with much text, and with limited memory, the program is in
+    a worker process, which is killed at the limits and at ctrl-C. ``doing`` names the phase in messages about
+    limits. Raises :class:`foon_asp.encoding.run.ProgramError` where clingo refuses the program, and
     :class:`LimitError`.
     """
 

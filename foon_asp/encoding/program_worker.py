@@ -19,6 +19,7 @@ def serve() -> None:
     program: GroundProgram | None = None
 
     def obey(command: str, *parameters: Any) -> object:
+        """Execute a command, and return its answer."""
         nonlocal program
         if command == "ground":
             program = None  # frees the memory before the next one

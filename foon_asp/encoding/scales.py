@@ -169,7 +169,7 @@ class Scales:
         return {unit: self.unit_vector(unit) for unit in self._units}
 
     def bound(self, objective: Objective, weight: int) -> int | Fraction:
-        """Return the bound on an objective from a lower bound on weights (an upper bound on success)."""
+        """Return the bound on an objective (for success, an upper one) from a lower bound on weights."""
         if multiplies(objective):
             return Fraction(1) if self.rates is None else self.rates.success_bound(weight)
         return weight / self.costs[objective].scale if objective in self.costs else weight

@@ -107,7 +107,7 @@ def _forget(worker: Worker) -> None:
 
 
 def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handlers | None = None) -> Any:
-    """Send a command, and return the answer.
+    """Send a command to a worker, and return its answer.
 
     Raises :class:`ProgramError` and :class:`UserError` as the program does, and :class:`LimitError`.
     """
@@ -125,7 +125,7 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
 
 
 def _cause(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
-    """Return the error for a process that died: mostly out of memory, else rules beyond clingo."""
+    """Return the error for a process that died, mostly since memory ran out, else because of the rules."""
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
         deadline.out_of_memory()
         return LimitError(deadline)

@@ -9,10 +9,10 @@ from foon_asp.hypergraph.goal_graph import GoalGraph
 def relevant_beside_landmarks(graph: GoalGraph, allowed: Container[int]) -> set[int]:
     """Return the allowed actions that stay: action landmarks, and actions relevant beside them.
 
-    The only achiever of a goal is an action landmark, so its preconditions are goals, too. Its effects are
-    then true in every tree, and other achievers of them are of no use, unless the landmark may itself be
-    derived from them. Going backwards from the goals so extended, and stopping at effects of landmarks, keeps
-    every irredundant tree.
+    The only achiever of a goal is an action landmark, so its preconditions are goals, too. Every tree has the
+    effects of the landmark, so that other achievers of these effects are of no use, unless the landmark may
+    be derived from its own effects. The search backwards from the extended goals stops at effects of
+    landmarks; every irredundant tree remains.
     """
     needs, gives, achievers = graph.needs, graph.gives, graph.makers
     goals = list(graph.goals)

@@ -34,9 +34,8 @@ class TooLongError(Exception):
 class _Node:
     """A node of the search tree: the used and the forbidden actions, and a bound on its derivations.
 
-    No derivation of the node costs less than ``bound``, in parts, by the ``weights`` of rows. A node is
-    either closed, or has two children, and no derivation with an action of ``above_cutoff`` beats the
-    incumbent.
+    No derivation of the node costs less than ``bound``, in parts, by the ``weights`` of rows. No derivation
+    with an action of ``above_cutoff`` beats the incumbent. A node is either closed, or has two children.
     """
 
     used: frozenset[int]
@@ -55,9 +54,9 @@ class Branching:
 
     All of the actions can run, and each costs more than 0. ``cuts`` are sets of objects of cuts to begin
     with. ``guess`` is the primal heuristic: it proposes derivations from the LP values of the actions and
-    from the forbidden ones. ``incumbent`` is the best derivation found, if any; no derivation costs less than
-    ``bound`` and it. ``closed`` is true where it is proved that none costs less than the incumbent, or than
-    ``total`` without one. ``effort`` is what remains of the budget of a search, in actions looked at.
+    from the forbidden ones. ``incumbent`` is the best derivation found, if any; no better one costs less than
+    ``bound``. ``closed`` is true where it is proved that no derivation costs less than the incumbent (without
+    one: than ``total``). ``effort`` is the remaining budget of a search, in actions looked at.
     """
 
     def __init__(
@@ -219,7 +218,7 @@ class Branching:
         return True
 
     def _rounded_derivation(self, cutter: Cutter, shares: Any, node: _Node) -> set[int]:
-        """Return the actions of the rounded LP solution; none, and add a cut, if they miss a target."""
+        """Return the rounded LP solution; if it misses a target, add a cut, and return the empty set."""
         chosen = node.used.union(self._np.flatnonzero(shares > 0.5).tolist()) - node.forbidden
         self.effort -= len(cutter.actions)
         cut = cutter.cut(chosen, cutter.actions)
@@ -235,7 +234,7 @@ class Branching:
             self._total, self.incumbent = total, frozenset(actions)
 
     def _try_guesses(self, shares: Any, node: _Node) -> None:
-        """Make derivations that the heuristic proposes the incumbent, where they are better."""
+        """Replace the incumbent by better derivations that the heuristic proposes."""
         self.effort -= 2 * len(self._actions)
         solution = dict(zip(self._actions, shares.tolist(), strict=True))
         for derivation in self._guess(solution, {self._actions[a] for a in node.forbidden}):

@@ -1,4 +1,4 @@
-"""Coprime bases: factors of numbers by which products of their powers can be compared.
+"""Coprime bases: factors of numbers, by which products of powers of the numbers can be compared.
 
 Numbers without common divisors, each above 1, are *independent*: a product of rational powers of them is 1
 only if all exponents are 0. So when every rate is written in powers of such numbers, equal products have
@@ -30,7 +30,7 @@ def coprime_base(numbers: Iterable[int]) -> list[int]:
 
 
 def powers(number: int, base: Sequence[int]) -> dict[int, int]:
-    """Return the exponents of a number in a coprime base made for it, without those that are 0."""
+    """Return the nonzero exponents of a number in a coprime base made for it."""
     exponents: dict[int, int] = {}
     for factor in base:
         while number % factor == 0:

@@ -3,7 +3,7 @@
 Greedy weights of cuts depend on the order of the cuts. Here all cuts are weighed at once, and cuts that the
 LP solution violates are added until none is found (Bonet and Helmert 2010; Katz and Domshlak 2010 for cost
 partitioning). The floats of HiGHS are rounded to parts such that no action carries more than its cost, so the
-bound holds whatever they were.
+bound holds whatever the floats were.
 """
 
 import math
@@ -22,9 +22,9 @@ from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 class SharedCosts(NamedTuple):
     """A cost partition over cuts: objects and weight of each cut, in :data:`PARTS` of 1.
 
-    No derivation by the actions looked at costs less than ``bound``, in parts. ``reduced_costs`` are those of
-    each action, in parts, and ``shares`` the LP value of each action. ``tight`` are the cuts that the LP
-    solution satisfies with equality: the ones to begin the next relaxation with.
+    No derivation by the actions looked at costs less than ``bound``, in parts. ``reduced_costs`` has the
+    reduced cost of each action, in parts, and ``shares`` its LP value. ``tight`` are the cuts that the LP
+    solution satisfies with equality; the next relaxation begins with them.
     """
 
     bound: int
@@ -82,9 +82,10 @@ class CostPartitioning:
             relaxation.add_known(known_cuts)
 
     def advance(self, enough: int, max_solutions: float = math.inf) -> SharedCosts | None:
-        """Solve, and separate violated cuts, up to a bound of ``enough`` or ``max_solutions`` times.
+        """Solve and separate violated cuts until the bound is ``enough``, ``max_solutions`` times at most.
 
-        ``None`` where the targets cannot be reached or are all available, and where HiGHS fails.
+        Returns the cost partition of the last solution; ``None`` where the targets cannot be reached or are
+        all available, and where HiGHS fails.
         """
         if self._cutter.hopeless or not self._cutter.targets:
             self.converged = True
@@ -159,6 +160,7 @@ class CostPartitioning:
         return alone, together
 
     def _shared(self, solved: Weighed) -> SharedCosts:
+        """Return the cost partition by the rounded dual values of an LP solution."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         relaxation, shares = self._relaxation, np.array(solved.x)

@@ -59,8 +59,8 @@ class Weighed(NamedTuple):
 class Covering:
     """Minimize the sum of ``costs[c] * x[c]``, ``x >= 0``, with ``x`` adding up to 1 or more in every row.
 
-    A limit is a row of its own: the sum of ``amounts[c] * x[c]`` is not above it. Solved by HiGHS; rows are
-    added between solutions, each of which starts from the one before.
+    A limit is one more row: the sum of ``amounts[c] * x[c]`` is at most ``max_amount``. Solved by HiGHS; rows
+    are added between solutions, each of which starts from the one before.
     """
 
     def __init__(self, costs: Sequence[float]) -> None:
@@ -117,7 +117,7 @@ class Covering:
     def solve(self, expired: Callable[[], bool] = lambda: False) -> Relaxed:
         """Return a basic optimal solution of the rows so far; where time is up, the current basic solution.
 
-        ``expired`` is called now and then. Raises :class:`UnsolvedError` where HiGHS ends otherwise.
+        ``expired`` is called now and then. Raises :class:`UnsolvedError` where HiGHS ends for another reason.
         """
         highs = self._highs
         if not self._at_vertex:  # steps of the simplex algorithm would start from nothing

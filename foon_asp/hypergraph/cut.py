@@ -83,12 +83,12 @@ class Cutter:
         )
 
     def cut(self, keep: Iterable[int], order: Iterable[int]) -> Cut | None:
-        """Return a cut whose landmark has no action of ``keep`` and few others, mostly late in ``order``.
+        """Return a cut with a small landmark, without actions of ``keep``, mostly late in ``order``.
 
         Grows a set of actions that does not reach the targets, first by ``keep`` and then along ``order``,
-        until no action can be added; the landmark are the refused actions that the targets need. ``None``
-        where ``keep`` alone reaches the targets. Landmarks contain only actions of ``order``, so it should
-        contain all :attr:`actions`.
+        until no action can be added. The landmark consists of the refused actions that the targets need.
+        ``None`` where ``keep`` alone reaches the targets. Landmarks contain only actions of ``order``, so it
+        should contain all :attr:`actions`.
         """
         growth = _Growth(self, self._missing)
         positions = self._positions
@@ -102,7 +102,7 @@ class Cutter:
         return self._shrink(first, refused, reached, self._consumer_counts)
 
     def among(self, actions: Iterable[int]) -> tuple[int, ...] | None:
-        """Return the allowed ones of some actions; ``None`` where one of them is not in :attr:`actions`."""
+        """Return the actions that are not forbidden; ``None`` where some are not in :attr:`actions`."""
         remaining = tuple(a for a in actions if a not in self._forbidden)
         return remaining if self._positions.keys() >= set(remaining) else None
 
@@ -121,9 +121,9 @@ class Cutter:
     ) -> Cut:
         """Return a cut grown backwards from an unreached object, as small as this greedy choice makes it.
 
-        Every action outside the landmark that achieves an object of the cut needs an unreached object; the
-        one with the most consumers is added, since other actions need it, too. Objects without achiever have
-        no count of consumers, and come first.
+        Every action outside the landmark that achieves an object of the cut needs unreached objects. Of
+        these, the object with the most consumers is added to the cut, since other actions need it, too.
+        Objects without achiever have no count of consumers, and come first.
         """
 
         def most_consumed(action: int) -> int | None:
@@ -135,7 +135,7 @@ class Cutter:
         return self._closed({target}, most_consumed)
 
     def _closed(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
-        """Return the cut of objects, closed under what ``needed`` returns for crossing actions."""
+        """Return the cut of objects, and of the objects that ``needed`` returns for crossing actions."""
         graph, forbidden = self._graph, self._forbidden
         stack = list(inside)
         achievers: set[int] = set()
@@ -171,7 +171,7 @@ class _Growth:
         return not self._unreached or bool(self.refuse(actions, max_refused=1))
 
     def refuse(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
-        """Admit actions one by one, and return the refused ones: with them the targets would be reached.
+        """Admit actions one by one; refuse and return actions with which the targets would be reached.
 
         Ends after ``max_refused`` refusals. The consequences of an object are followed once: if they include
         all targets, further actions that achieve the object are refused at once.
@@ -237,7 +237,7 @@ class _Growth:
         return new
 
     def _undo(self, new: list[int]) -> None:
-        """Take back that objects were reached."""
+        """Mark objects as not reached again."""
         missing, reached = self._missing, self.reached
         for o in new:
             reached[o] = False

@@ -7,8 +7,9 @@ from foon_asp.hypergraph.goal_graph import GoalGraph
 
 
 def undominated(graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int]) -> set[int]:
-    """Return the actions that stay: no other has a subset of their preconditions, all effects, and less cost.
+    """Return the actions that stay: those that no other action dominates.
 
+    An action dominates another if it has a subset of its preconditions, all its effects, and no greater cost.
     In any tree, the dominating action can replace the dominated one, and the tree costs no more under the
     whole list of objectives, since ``cost`` compares by all of them. Effects that no action needs do not
     count. Of actions that dominate each other, one stays.

@@ -27,8 +27,8 @@ class ExactCosts:
 
     An additive objective is scaled to whole numbers and multiplied by more than the greatest sum of the
     objectives after it. Where rates multiply, each factor of a coprime base has a rounded logarithm of forty
-    digits: equal products are then equal sums, and sums that differ by more than ``doubt`` compare exactly
-    in spite of rounding. It is 0 where nothing is rounded.
+    digits: equal products are then equal sums, and sums that differ by more than ``doubt`` compare exactly in
+    spite of rounding. ``doubt`` is 0 where nothing is rounded.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
@@ -52,7 +52,7 @@ class ExactCosts:
     def priced(
         self, counts: Callable[[int], int], price: int | Fraction, limit: int | None = None
     ) -> "ExactCosts":
-        """Return these costs with a price on each unit, times its count.
+        """Return these costs plus a price on each unit, multiplied by the count of the unit.
 
         Where the price is a fraction, all costs are multiplied by its denominator. With a ``limit``, a search
         ends as soon as a bound reaches the limit or a tree costs less.
@@ -103,7 +103,7 @@ class ExactCosts:
         return cost
 
     def first(self, total: int) -> int | Fraction:
-        """Return the bound on the first objective by a lower bound on sums (on success: an upper bound)."""
+        """Return the bound on the first objective (for success, an upper one) by a lower bound on sums."""
         figure = total // self._factors[self._objectives[0]]
         if self._objectives[0] not in self._multiplied:
             return self.total(self._objectives[0], figure)
@@ -113,8 +113,8 @@ class ExactCosts:
     def met(self, cuts: Cuts, tree: Collection[int]) -> bool:
         """Return whether a cost partition proves this tree optimal, exactly.
 
-        Each weight is the reduced cost of its cheapest action. Where rates multiply, weights and reduced
-        costs are recomputed as vectors of exponents of rates, which are exact.
+        The weight of each cut is the reduced cost of its cheapest action. Where rates multiply, weights and
+        reduced costs are recomputed as vectors of exponents of rates, which are exact.
         """
         total = sum(map(self, tree))
         if self._limit is not None:
@@ -148,7 +148,7 @@ class ExactCosts:
         return not _large(proved) and order.sign(proved) >= 0
 
     def of(self, costs: Costs) -> int:
-        """Return the cost of a tree, or more by the rounding error."""
+        """Return the cost of a tree, which may be too great by the rounding error."""
         total = 0
         for objective, factor in self._factors.items():
             measure = Fraction(costs.measure(objective))
@@ -164,11 +164,11 @@ class ExactCosts:
         return [(objective, self._figure(objective, action)) for objective in self._objectives]
 
     def total(self, objective: Objective, figure: int) -> int | Fraction:
-        """Return the cost by an additive objective of a scaled sum."""
+        """Return the cost by an additive objective that belongs to a scaled sum."""
         return figure if objective.row.whole else Fraction(figure, self._steps[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
-        """Return whether a sum of rounded logarithms is that of a product of rates."""
+        """Return whether a sum of rounded logarithms, ``figure``, belongs to a product of rates."""
         return abs(figure - _logarithm(product.denominator) + _logarithm(product.numerator)) < _ROUNDED
 
     def rate(self, action: int) -> Fraction:
@@ -198,6 +198,7 @@ class _Vectors:
         self._costs, self._coordinates = costs, coordinates
 
     def of(self, action: int) -> list[int]:
+        """Return the cost of an action as a vector."""
         vector: list[int] = []
         for objective, figure in self._costs.figures(action):
             if multiplies(objective):
@@ -234,7 +235,7 @@ class CoarseCosts:
 
 
 def _coarse(rate: Fraction) -> int:
-    """Return ``-ln(rate)`` in thousandths; for a rate of 0, as for one of some ``10**-43``."""
+    """Return ``-ln(rate)`` in thousandths; a rate of 0 counts as about ``10**-43``."""
     if not rate:
         return 100_000
     return int((math.log(rate.denominator) - math.log(rate.numerator)) * 1000)  # a float may not hold it

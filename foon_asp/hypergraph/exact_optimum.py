@@ -16,8 +16,8 @@ Limit = tuple[Mapping[int, Fraction], Fraction]
 class ExactOptimum(NamedTuple):
     """The optimum of a covering problem: the value of each column and the dual of each row, where above 0.
 
-    ``value`` is the cost of the columns, equal to the sum of the row duals less that of the limits' duals
-    times their amounts.
+    ``value`` is the cost of the columns. It equals the sum of the duals of rows, less the sum of each limit's
+    dual times its amount.
     """
 
     x: dict[int, Fraction]
@@ -39,11 +39,11 @@ def exact_optimum(
 ) -> ExactOptimum | None:
     """Solve a covering problem over ordered costs exactly, from a basis near the optimum.
 
-    ``rows`` list the columns that cover them, ``costs`` are those of the columns, none below 0. Before these
-    rows come ``limits``: the amount that each column consumes, and the amount available. The basis is given
-    by its columns and by as many tight rows. Each step solves the basis anew, and Bland's rule prevents
-    cycling. ``None`` where the basis is singular or its solution infeasible, which floats can lead to, and
-    after too many steps.
+    Each of the ``rows`` lists the columns that cover it. ``costs`` has the cost of each column, none below 0.
+    Before these rows come ``limits``: the amount that each column consumes, and the amount available. The
+    basis is given by its columns and by as many tight rows. Each step solves the basis anew, and Bland's rule
+    prevents cycling. ``None`` after too many steps, and where floats suggest a basis that is singular or
+    infeasible.
     """
     basic_columns, tight_rows = set(columns), set(tight)
     full = [{column: -amount for column, amount in amounts.items()} for amounts, _ in limits]
@@ -101,8 +101,8 @@ class _Basis:
     def entering(self, order: Lexicographic) -> tuple[int, bool] | None:
         """Return the entering variable by Bland's rule, and whether it is the slack of a row.
 
-        That is the first column of negative reduced cost, else the first row of negative dual. ``None`` at
-        the optimum.
+        The first column of negative reduced cost enters, else the first row of negative dual. ``None`` at the
+        optimum.
         """
         loads: dict[int, list[Vector]] = {}
         for row, weight in self.weights.items():

@@ -41,8 +41,8 @@ def extensions(
 ) -> set[int]:
     """Return the actions of extensions that cost up to ``limit`` where ``free`` actions cost nothing.
 
-    The path from an action of an extension to a required set is in the extension, so it counts in full, and
-    so does the derivation of the action, without free actions.
+    The path from each action of an extension to a required set belongs to the extension, so its cost counts
+    in full. So does the cost of the action's derivation, except free actions.
     """
     towards, price = _towards_required(graph), _free(free, cost)
     all_actions = range(len(graph.needs))

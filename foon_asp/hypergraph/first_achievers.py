@@ -17,7 +17,7 @@ _STEPS = 1000  # actions processed between two looks at the time
 class FirstAchievers:
     """A graph all of whose actions can run, without add effects that they never achieve first.
 
-    In large graphs, only landmarks among the first objects are computed; none where time is up.
+    In large graphs, only landmarks among the first objects are computed; where time is up, no landmarks are.
     """
 
     def __init__(self, graph: Hypergraph, expired: Callable[[], bool] = lambda: False) -> None:
@@ -82,8 +82,8 @@ def _bits(objects: Iterable[int]) -> int:
 def _landmarks(graph: Hypergraph, tracked: int, expired: Callable[[], bool]) -> list[int]:
     """Return the landmarks of each object among the first ``tracked`` ones, as bit sets.
 
-    The greatest fixpoint of: the object itself, and the landmarks common to all its achievers, an achiever's
-    being those of its preconditions (Keyder, Richter and Helmert 2010).
+    A greatest fixpoint: an object has itself and the landmarks common to all its achievers, an achiever has
+    the landmarks of its preconditions (Keyder, Richter and Helmert 2010).
     """
     own = [1 << o if o < tracked else 0 for o in range(graph.size)]
     landmarks: list[int | None] = [None] * graph.size

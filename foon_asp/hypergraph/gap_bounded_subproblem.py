@@ -18,8 +18,8 @@ from foon_asp.problem import Problem
 class Subproblem:
     """A question with cuts that hold for every tree, before any reduction.
 
-    ``remaining`` are the actions of the cuts. With ``redundant``, trees may have units that lead to no goal,
-    which rules can require; ``costs`` then cover all actions.
+    ``remaining`` are the actions for which the cuts hold. With ``redundant``, trees may have units that lead
+    to no goal, since rules can require such units; ``costs`` then cover all actions.
     """
 
     problem: Problem
@@ -57,7 +57,7 @@ class Subproblem:
         return {unit for unit in units if restriction is None or not restriction.removed(unit)}
 
     def with_only_achievers(self, units: Iterable[int], max_units: int) -> set[int]:
-        """Return units closed under sole achievers of preconditions; ends at about ``max_units`` units."""
+        """Add the sole achievers of preconditions to units, transitively, up to about ``max_units`` units."""
         graph, kitchen = self.graph, self.problem.kitchen
         closed, waiting = set(units), list(units)
         while waiting and len(closed) < max_units:
@@ -108,10 +108,10 @@ class Subproblem:
     def actions_within(self, limit: int, expired: Callable[[], bool]) -> Collection[int]:
         """Return a superset of the actions of trees that cost up to ``limit``, coarser where time is up.
 
-        The reduced cost of a tree is at most its cost less the bound. In irredundant trees, it includes a
-        path from each action to a goal; else at least the derivation of the action itself. All trees up to
-        the limit remain, so cuts are found anew among the remaining actions. Raises ``KeyboardInterrupt``
-        where that is interrupted.
+        The reduced cost of a tree is at most its cost less the bound. It includes at least the derivation of
+        each action and, in an irredundant tree, the path from the action to a goal. All trees up to the limit
+        remain, so cuts are found anew among the remaining actions. Raises ``KeyboardInterrupt`` where the
+        search for cuts is interrupted.
         """
         graph, costs, cuts = self.graph, self.costs, self.cuts
         remaining: Collection[int] = self._all() if self.redundant else self.remaining

@@ -100,7 +100,7 @@ def improve_repeatedly(task: Task, gap: Gap) -> Stage:
 
 
 def follow_h_add(task: Task, gap: Gap) -> Gap:
-    """Make the tree that follows h_add the incumbent, if it is better."""
+    """Replace the incumbent by the tree that follows h_add, if that is better."""
     costs = task.costs
     assert costs is not None
     tree = derive(task.graph, gap.candidates, costs, h_add=True).tree(task.graph, task.graph.goals)
@@ -135,7 +135,7 @@ def prune_beside_landmarks(task: Task, gap: Gap) -> Gap:
 def relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:
     """Return the gap over the relevant actions that can run, and their h-values; ``None`` without a tree.
 
-    A gap without an incumbent has the tree that follows h_max for one.
+    Where the gap has no incumbent, the tree that follows h_max becomes it.
     """
     graph = task.graph
     cone, _ = graph.cone(task.scope)

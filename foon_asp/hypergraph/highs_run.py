@@ -10,10 +10,10 @@ from foon_asp.deadline import uninterrupted
 class RunTuning(NamedTuple):
     """How HiGHS is run such that it ends when time is up.
 
-    ``small_size``: columns and rows of a program that is run here, ``steps`` of the simplex algorithm at a
-    time, which take about a second; larger ones are run in a thread.
-    ``poll_seconds``: between two looks at the time.
-    ``end_seconds``: that HiGHS has to end; a step of the interior-point method may take longer.
+    ``small_size``: columns and rows of a program, together; with more, it is run in a thread of its own.
+    ``steps``: steps of the simplex algorithm between two looks at the time; they take about a second.
+    ``poll_seconds``: seconds between two looks at the time, for a program in a thread.
+    ``end_seconds``: seconds that HiGHS has to end; a step of the interior-point method may take longer.
     """
 
     small_size: int = 6000
@@ -37,7 +37,7 @@ def libraries() -> tuple[Any, Any]:
 def silent_highs() -> Any:
     """Return an instance of HiGHS that writes nothing.
 
-    From version 1.16 on, it writes its name when it is made, where it sets callbacks, before it has options.
+    From version 1.16 on, HiGHS writes its name already at construction, when it enables callbacks.
     """
     libraries()
     import highspy  # noqa: PLC0415 (it is there now)
@@ -51,10 +51,10 @@ def silent_highs() -> Any:
 
 
 def run(highs: Any, expired: Callable[[], bool], whole: bool = False) -> bool:
-    """Run HiGHS on its model, in ``whole`` numbers if so; return whether it ended before time was up.
+    """Run HiGHS on its model; return whether it ended before time was up.
 
-    Otherwise its current solution can be read. Raises ``KeyboardInterrupt`` where HiGHS does not stop, after
-    which the instance must not be used.
+    ``whole`` says that the model has whole numbers. Where time was up, the current solution can be read.
+    Raises ``KeyboardInterrupt`` where HiGHS does not stop, after which the instance must not be used.
     """
     if whole or highs.getNumCol() + highs.getNumRow() > RUN.small_size:
         return _Run(highs, expired).wait()

@@ -12,19 +12,19 @@ if TYPE_CHECKING:  # few questions need it
 
 
 class FirstCuts(NamedTuple):
-    """Landmark cuts from before any action was left out, and the actions that they hold for."""
+    """Landmark cuts found before any action was excluded, and the actions that they hold for."""
 
     cuts: Cuts
     actions: Collection[int]
 
 
 class Evidence(NamedTuple):
-    """What proves the lower bound of a gap.
+    """The cuts and the case split that prove the lower bound of a gap.
 
-    ``first`` are the cuts from before any reduction, ``cuts`` the greedy cost partition of the greatest sum,
+    ``first`` are the cuts found before any reduction, ``cuts`` the greedy cost partition of the greatest sum,
     ``shared`` the optimal cost partition that raised the bound. ``tight`` are the tight cuts of all LP
-    solutions so far, in order; those of the last one are ``starting``, with which the next relaxation begins.
-    ``cases`` are the actions branched on.
+    solutions so far, in order. ``starting`` are the tight cuts of the last solution, with which the next
+    relaxation begins. ``cases`` are the actions branched on.
     """
 
     first: FirstCuts | None = None
@@ -42,10 +42,10 @@ NO_EVIDENCE = Evidence()
 class Gap:
     """The state of a question between two stages; a stage makes new ones, each smaller than the one before.
 
-    ``incumbent`` are the actions of the best tree so far, ``lower_bound`` is one on the cost of every tree,
-    in the units of :class:`ExactCosts`. ``candidates`` are the actions that trees better than the incumbent
-    can have, or that trees as good can have where these are wanted. ``proved`` is true where the incumbent is
-    proved optimal. ``budget`` are the actions that branch and bound may still look at.
+    ``incumbent`` are the actions of the best tree so far, ``lower_bound`` bounds the cost of every tree, in
+    the units of :class:`ExactCosts`. ``candidates`` are the actions that better trees can have, and trees
+    that are as good where these are wanted. ``proved`` is true where the incumbent is proved optimal.
+    ``budget`` are the actions that branch and bound may still look at.
     """
 
     incumbent: frozenset[int]
@@ -64,7 +64,7 @@ class Gap:
         return replace(self, candidates=candidates)
 
     def raised(self, lower_bound: int, evidence: Evidence) -> "Gap":
-        """Return the gap with a lower bound, if that is greater, and what proves it."""
+        """Return the gap with new evidence, and with a lower bound where that is greater."""
         return replace(self, lower_bound=max(self.lower_bound, lower_bound), evidence=evidence)
 
     def closed(self) -> "Gap":

@@ -39,7 +39,7 @@ def guessed(
     shares: Mapping[int, float],
     without: Collection[int],
 ) -> Iterator[set[int]]:
-    """Yield irredundant trees without the actions ``without`` that follow the LP values ``shares``."""
+    """Yield irredundant trees that follow the LP values ``shares`` and have no action of ``without``."""
     allowed = [a for a in actions if a not in without]
 
     def unshared(action: int) -> int:
@@ -87,10 +87,10 @@ def perturbation_search(
 ) -> set[int]:
     """Return a cheaper tree found by perturbation search, else ``tree``; ends at a cost of ``enough``.
 
-    Half of the times, a random part of the actions of the current tree costs nothing and the cost of every
-    other action is multiplied by a factor from 0.5 to 1.5, over all other actions or a random part. The other
-    half, costs are scaled by one less the LP values ``shares``. A tree of equal cost becomes the current
-    tree. Ends when each action was looked at ``tries`` times after the last improvement.
+    Each cost is multiplied by a random factor from 0.5 to 1.5. Half of the time, a random part of the current
+    tree costs nothing, and perhaps only a random part of the other actions is allowed. Otherwise, costs are
+    also multiplied by one less the LP values ``shares``. A tree of equal cost becomes the current tree. Ends
+    when each action was looked at ``tries`` times after the last improvement.
     """
     best = last = tree
     total = sum(map(cost, tree))
@@ -135,6 +135,7 @@ def improved(
     total = sum(map(cost, best))
 
     def offer(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
+        """Keep the tree that follows h_add or h_max at some prices, if it is the best so far."""
         nonlocal best, total
         derived = derive(graph, actions, price, h_add).tree(graph, graph.goals)
         if derived is not None:

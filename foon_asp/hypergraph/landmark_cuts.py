@@ -57,8 +57,8 @@ class _Level:
     """Objects that every derivation makes, and the goal zone around the last of them.
 
     The goal zone is the set of objects from which its cuts are made. ``edge`` are actions that achieve an
-    object of the zone, need none of its objects and have a reduced cost above 0. ``cut`` is the latest cut
-    of this zone, or else the cut that follows the whole level.
+    object of the zone, need none of its objects and have a reduced cost above 0. ``cut`` is the latest cut of
+    this zone or, without one, the cut after the whole level.
     """
 
     def __init__(self, objects: Sequence[int], after: WeightedCut | None) -> None:
@@ -99,7 +99,7 @@ class _Target:
         return None
 
     def add(self, needed: Sequence[int]) -> None:
-        """Add a level of the common preconditions of the latest landmark, the last of them first."""
+        """Add a level with the common preconditions of the latest landmark; its last object comes first."""
         if needed:
             self.outer_zones |= self.levels[-1].zone
             self.levels.append(_Level(needed, self.levels[-1].cut))
@@ -121,8 +121,8 @@ def landmark_cuts(
     ``allowed`` actions count, and all costs are above zero. ``guide_costs`` are h-values of objects, infinite
     where missing: a cut passes through the precondition of the greatest h-value, as in LM-cut. Targets take
     turns, the greatest h-value first, so that the cuts of one do not take the costs that others need.
-    ``guide`` computes h-values from reduced costs, and is called now and then. Objects of reduced cost 0 only
-    grow, so the time is linear in what the cuts touch, not in the size of the graph.
+    ``guide`` computes h-values from reduced costs, and is called now and then. The set of objects of reduced
+    cost 0 only grows, so the time is linear in what the cuts touch, not in the size of the graph.
     """
     search = _Search(graph, allowed, cost, guide_costs)
     queue = deque(_Target(o) for o in sorted(targets, key=search.guide_key, reverse=True))

@@ -23,9 +23,9 @@ class LandmarkRelaxation:
     """The relaxation over some actions, which all can run; objects and actions are numbered anew.
 
     ``actions`` are the old numbers of the actions. ``graph`` has first achievers only, ``targets`` are its
-    targets, ``costs`` the costs of actions. The columns of ``covering`` cost ``relative``, at most 1: costs
-    by the greatest one, ``dearest``, as these may be too great for floats. ``rows`` are the actions of the
-    landmark of each of the ``cuts``.
+    targets, ``costs`` the costs of actions. The columns of ``covering`` cost ``relative``: the costs divided
+    by the greatest one, ``dearest``, as costs may be too great for floats. ``rows`` has the landmark of each
+    of the ``cuts``.
     """
 
     def __init__(
@@ -84,8 +84,8 @@ class LandmarkRelaxation:
     ) -> tuple[int, int]:
         """Add disjoint cuts that an LP solution violates, until ``budget`` actions were looked at.
 
-        ``shares`` is the array of the LP value of each action, which is used up; cuts have no action of
-        ``used``. Returns the number of cuts added, and of actions looked at.
+        ``shares`` is the array of the LP value of each action, which is changed in place. Cuts have no action
+        of ``used``. Returns the number of cuts added, and of actions looked at.
         """
         added = looks = 0
         for cutter in cutters:
@@ -107,8 +107,9 @@ class LandmarkRelaxation:
     def shared_out(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
         """Return a feasible weight in parts for each row: its dual value rounded, limited by ``capacity``.
 
-        Capacity that rounding leaves over is used greedily. ``capacity`` is the cost of each action in parts,
-        which becomes its reduced cost. The weights add up to a lower bound, whatever the dual values are.
+        Capacity that rounding leaves over is used greedily. ``capacity`` has the cost of each action in
+        parts, and in the end its reduced cost. The weights add up to a lower bound, whatever the dual values
+        are.
         """
         of_1 = self.dearest * PARTS
         wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in dual_values}

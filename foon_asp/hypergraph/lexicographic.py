@@ -1,9 +1,10 @@
 """Lexicographic costs that are compared exactly: counts, and products of rates.
 
 A cost is a vector of rational numbers. A level that counts has one coordinate. A level that multiplies rates
-has one for each rate ``r``: the exponent ``e`` in the product of all ``r ** e``, which costs ``-log`` of it.
-Costs add up coordinate by coordinate, can be multiplied by rational numbers, and are ordered: the first level
-at which they differ decides. So linear programming works on them as on numbers, and nothing is rounded.
+has a coordinate for each rate ``r``: the exponent ``e`` in the product of all ``r ** e``. The cost is
+``-log`` of the product. Costs add up coordinate by coordinate, can be multiplied by rational numbers, and are
+ordered: the first level at which they differ decides. So linear programming works on them as on numbers, and
+nothing is rounded.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -43,7 +44,7 @@ class Lexicographic:
         return tuple(sum(coordinates, Fraction(0)) for coordinates in zip(self.zero, *vectors, strict=True))
 
     def sign(self, vector: Sequence[Fraction | int]) -> int:
-        """Return -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly.
+        """Return -1, 0 or 1 for a cost below, equal to or above the cost of nothing, exactly.
 
         A vector that is not zero can cost nothing, because 7/10 * 7/10 divided by 49/100 is 1.
         """
@@ -110,7 +111,7 @@ class Lexicographic:
 
     @cached_property
     def _factors(self) -> list[dict[int, dict[int, int]]]:
-        """For each level a coprime base, with the exponent of each factor by the index of the rate."""
+        """For each level, the factors of a coprime base, each with its exponent in rates by their index."""
         factors_by_level: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:
             base = coprime_base(n for rate in rates or () for n in rate.as_integer_ratio())
@@ -142,7 +143,7 @@ def times(vector: Vector, factor: Fraction) -> Vector:
 
 @lru_cache(maxsize=4096)
 def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
-    """Return ``-log(rate)`` to ``digits`` digits, and its greatest error; the rate is below 1."""
+    """Return ``-log(rate)`` to ``digits`` digits, and a bound on its error; the rate is below 1."""
     # close to 1, the logarithms of denominator and numerator share their first digits
     shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
     precise = Context(prec=digits + shared + 10)

@@ -47,9 +47,9 @@ class Rules(Protocol):
     """Rules on derivations that neither targets nor limits express."""
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        """Return by rule the barred actions.
+        """Return by rule the actions that it bars.
 
-        No derivation with the used actions and none of ``without`` that keeps to the rule has a barred
+        A derivation with the used actions and no action of ``without`` breaks the rule if it has a barred
         action.
         """
 
@@ -57,7 +57,7 @@ class Rules(Protocol):
         """Return actions of a derivation that together break a rule; empty where it keeps to all rules."""
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
-        """Return a limit that a derivation exceeds, each once; ``None`` where there is no other."""
+        """Return a limit that a derivation exceeds, each limit once; ``None`` without a further one."""
 
 
 class CheaperError(Exception):
@@ -276,10 +276,9 @@ class Prover:
     ) -> tuple[Proof | None, Sequence[Cut]]:
         """Return a proof of ``goal``, if one is found without exact arithmetic, and all cuts.
 
-        A greedy cost partition over ``known_cuts`` is tried first. Where many actions cost multiples of
-        ``step``, reduced-cost fixing by it follows, if it fixes enough actions, with a proof for ``others``.
-        If not ``alone``, both are done with the rounded dual solution of the LP, too. At the root, the search
-        comes last.
+        A greedy cost partition over ``known_cuts`` is tried first, then reduced-cost fixing by it, which
+        needs a proof for the ``others``. Unless ``alone``, and where costs are multiples of ``step``, both
+        are tried again with the rounded dual solution of the LP, and at the root :func:`branched` comes last.
         """
         targets = set(cutter.targets)
         known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
@@ -374,7 +373,7 @@ class Prover:
     def _searched(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
-        """Return the proof of the search, its cuts widened to all actions; ``None`` where it finds none."""
+        """Return the proof by :func:`branched`, with cuts widened to all actions; ``None`` without one."""
         if not step:
             return None
         result = branched(
@@ -407,8 +406,8 @@ class Prover:
     def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> tuple[Packing, dict[int, Vector]]:
         """Partition costs greedily: each cut in turn gets the least reduced cost of its landmark actions.
 
-        The number of a cut is the maximum of its weight, ``None`` for a cut without one. Returns the cost
-        partition, and the reduced costs of the landmark actions.
+        Each cut comes with the maximum of its weight, ``None`` for no maximum. Returns the cost partition,
+        and the reduced costs of the landmark actions.
         """
         reduced_costs: dict[int, Vector] = {}
         weights: list[tuple[Cut, Vector]] = []

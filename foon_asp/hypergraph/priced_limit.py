@@ -36,9 +36,10 @@ def limited(
     """Search for the best tree that keeps to an upper limit on a sum, which ``tree`` exceeds.
 
     A first tree within the limit is found by :func:`any_within_limit`. Then the price is the Lagrange
-    multiplier at which that tree and the one beyond the limit cost the same. With a price, a tree within the
-    limit costs at most the bound of the ``row`` times the price more, so lower bounds carry over. Where that
-    price leaves many units, lower prices that rise up to it are tried. ``None`` where nothing is found out.
+    multiplier at which that tree and the one beyond the limit cost the same. It raises the cost of a tree
+    within the limit by at most the price times the bound of the ``row``, so lower bounds carry over. Where
+    many units remain at this price, lower prices that rise up to it are tried. ``None`` where nothing is
+    found out.
     """
     first = any_within_limit(subproblem, row, expired)
     if first is None or first.tree is None:
@@ -89,7 +90,7 @@ def _by_rising_prices(
     row: LinearRow,
     expired: Callable[[], bool],
 ) -> Limited:
-    """Search for trees better than ``incumbent``, which is within the limit, from ``over`` beyond it.
+    """Search for better trees within the limit than ``incumbent``; ``over`` is a tree beyond the limit.
 
     A question at a low price is about as quick as one without a price. Prices rise, from about the cost of a
     unit, to the one at which ``incumbent`` and ``over`` cost the same; the optimal tree at a price replaces
@@ -170,6 +171,7 @@ def _reduced_at(
     below: int = 0,
     max_actions: float = math.inf,
 ) -> Reduced:
+    """Return :func:`at_costs`; raises ``KeyboardInterrupt`` where the reduction is interrupted."""
     reduced = at_costs(subproblem, objectives, costs, expired, known_tree, below, max_actions)
     if reduced.interrupted:
         raise KeyboardInterrupt

@@ -19,8 +19,8 @@ def neighbourhood(
     """Return the allowed actions that stay: those of irredundant derivations of reduced cost up to ``limit``.
 
     In such a derivation there is a path from each action to a goal, each action a consumer of the one before,
-    so the reduced costs along the path count. With the h-values ``h_actions`` of actions, these count instead
-    of an action's own reduced cost, as no action of its derivation is on the path. Dijkstra's algorithm from
+    so the reduced costs along the path count. Where ``h_actions`` are given, the h-value of an action counts
+    instead of its own reduced cost, as no action of its derivation is on the path. Dijkstra's algorithm from
     the goals, up to the limit (``math.inf`` is none) and until it has ``enough`` actions, if given. No
     reduced cost is below ``min_reduced_cost``. ``reachable`` tests whether an object can be made at a reduced
     cost, where there are no ``h_actions``.

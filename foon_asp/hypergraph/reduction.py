@@ -1,7 +1,7 @@
 """Presolve of a question: an incumbent, a lower bound, and the units that a better tree can have.
 
-Stages (:mod:`greedy_stages`, :mod:`relaxation_stages`) pass a :class:`Gap`, each a smaller one than the stage
-before it.
+Stages (:mod:`greedy_stages`, :mod:`relaxation_stages`) pass on a :class:`Gap`, which each stage makes
+smaller.
 """
 
 import math
@@ -40,7 +40,7 @@ Stages = Callable[[Task, Gap, HValues], Stage]
 
 
 class Course(NamedTuple):
-    """The stages from a first tree on, where little of a large network was looked at, and elsewhere."""
+    """The stages after a first tree: ``near_goals`` of a large network, or over the ``whole`` network."""
 
     near_goals: Stages
     whole: Stages
@@ -51,13 +51,13 @@ class Reduced(NamedTuple):
 
     ``tree`` are the units of the incumbent, or ``None`` where there is no tree. ``units`` are those of the
     incumbent and those that a better tree can have, ascending. ``settled`` is true where the incumbent is
-    proved optimal. ``costs`` compares trees exactly, and ``bound`` is a lower bound by it on every tree;
-    ``None`` and 0 where rates are too fine. ``cuts`` is the greedy cost partition of the greatest sum, over
-    the units remaining at the time. ``interrupted`` is true where ctrl-C ended it, or time was up before any
-    reduction: ``units`` means nothing then. ``subproblem`` is the gap-bounded subproblem, which holds
-    whatever rules trees have to keep to. ``shared`` is the optimal cost partition, if one was computed.
-    ``cases`` are the actions branched on. ``tight`` are the tight cuts of the LP solutions by which units
-    were left out, over the units remaining at the time.
+    proved optimal. ``costs`` compares trees exactly, and ``bound`` is a lower bound on the cost of every
+    tree; where rates are too fine, they are ``None`` and 0. ``cuts`` is the greedy cost partition of the
+    greatest sum, over the units remaining at the time. ``interrupted`` is true where ctrl-C ended the
+    reduction, or time was up before any reduction: ``units`` means nothing then. ``subproblem`` is the
+    gap-bounded subproblem, which holds whatever rules trees have to keep to. ``shared`` is the optimal cost
+    partition, if one was computed. ``cases`` are the actions branched on. ``tight`` are the tight cuts of the
+    LP solutions by which units were left out, over the units remaining at the time.
     """
 
     tree: frozenset[int] | None
@@ -107,8 +107,8 @@ def reduce(
 
     ``objectives`` is the list as it is optimized, with ``units`` in it, so that every unit costs something.
     Without reductions, the relevant units that can be executed remain. ``expired`` returns whether time is
-    up; longer computations are interrupted, as by ctrl-C, by the ``guard``. ``solved`` are other goals of
-    the same question, which help with this one; its answer is added.
+    up; longer computations are interrupted, as by ctrl-C, by the ``guard``. ``solved`` are other goals of the
+    same question, which help with this one; the answer to this one is added to them.
     """
     with uncollected():
         with guard():
@@ -132,9 +132,9 @@ def reduce_under_rules(
 ) -> Reduced:
     """Reduce a problem whose trees have to keep to user rules, without knowing the rules.
 
-    Of the result, ``subproblem`` and ``bound`` hold for the trees under any rules. With ``redundant``, its
-    trees may have units that lead to no goal. ``course`` is :data:`BOUND` where any tree
-    will do, else :data:`ROUNDS`. Other arguments are those of :func:`reduce`.
+    In the result, ``subproblem`` and ``bound`` hold for the trees under any rules. With ``redundant``, trees
+    may have units that lead to no goal. ``course`` is :data:`BOUND` where any tree will do, else
+    :data:`ROUNDS`. Other arguments are those of :func:`reduce`.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     with uncollected():
@@ -168,9 +168,9 @@ def at_costs(
 ) -> Reduced:
     """Reduce a gap-bounded subproblem under other costs, with ``known_tree`` as a first incumbent, if any.
 
-    With ``below``, only units are left out whose trees all cost at least ``below`` and at least as much as
-    the incumbent; that is given up where more than ``max_actions`` remain and the first cuts exclude hardly
-    any.
+    With ``below``, a unit is left out only if all its trees cost at least ``below`` and at least as much as
+    the incumbent. The reduction ends early if more than ``max_actions`` remain and the first cuts exclude
+    hardly any.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
@@ -181,6 +181,7 @@ def at_costs(
         task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
 
         def fixed_first(task: Task, gap: Gap, h_values: HValues) -> Stage:
+            """Fix by the cutoff first, and run all rounds only if few enough actions remain."""
             if below and len(gap.candidates) > max_actions:
                 before = len(gap.candidates)
                 gap, cuts = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap))
@@ -219,7 +220,7 @@ def _task(
 
 
 def _with_costs(task: Task, actions: Collection[int]) -> Task:
-    """Return the task with exact costs of actions, unless it has costs or rates are too fine for them."""
+    """Return the task with exact costs of actions, unless it has them or rates are too fine for them."""
     if task.costs is None:
         with suppress(TooFineError):
             return replace(task, costs=ExactCosts(task.problem, task.objectives, actions))
@@ -321,7 +322,7 @@ def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Bound trees by landmark cuts, which are not guided: that would look at all actions."""
+    """Bound trees by landmark cuts without a guide, since a guide looks at all actions."""
     if task.costs is not None:
         gap = greedy.bound(task, gap, h_values, None).gap
         yield gap
@@ -354,8 +355,8 @@ def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
 class _Presolve:
     """A run of the stages of a task: its last gap, ``None`` before there is a tree.
 
-    ``ended`` is true where nothing interrupted it. Trees that may be ``redundant`` may have any action, so
-    the costs of all actions are needed.
+    ``ended`` is true where nothing interrupted the run. If trees may be ``redundant``, they may have any
+    action, so that the costs of all actions are needed.
     """
 
     def __init__(self, task: Task, listener: Listener | None, guard: Guard, redundant: bool = False) -> None:
@@ -369,7 +370,7 @@ class _Presolve:
         return Bounds(self._listener)
 
     def guarded(self, step: Callable[[], None]) -> None:
-        """Take a step that may be interrupted, which raises ``KeyboardInterrupt`` before there is a tree."""
+        """Take a step; an interrupt raises ``KeyboardInterrupt`` only where there is no tree yet."""
         self.ended = False
         try:
             with self.guard():
@@ -398,7 +399,7 @@ class _Presolve:
             self.take(stages, h_values)
 
     def run_beside(self, solved: SolvedGoals) -> None:
-        """Take all rounds, from the gap that other goals leave if any, and add the answer to them."""
+        """Run all rounds, from the gap that ``solved`` gives if any, and add the answer to ``solved``."""
 
         def begin() -> None:
             costs = solved.costs
@@ -482,6 +483,7 @@ def _extend(presolve: _Presolve) -> None:
     subproblem, h_values = reduced.subproblem, dict[int, int]()
 
     def extend() -> None:
+        """Extend the best tree of the goals alone, and keep the candidates of cheap extensions."""
         tree = extended(task.thin, gap.incumbent, costs, len(graph.needs) // 4)
         if tree is None:
             return

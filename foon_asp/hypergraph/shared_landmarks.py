@@ -1,7 +1,8 @@
 """Landmarks that questions about one network share.
 
-A disjunctive action landmark belongs to no goal: it is one of every object that cannot be reached without its
-actions. So the landmarks found for one goal bound the trees of others, and the trees without some actions.
+A disjunctive action landmark belongs to no single goal: it is a landmark of every object that cannot be
+reached without its actions. So landmarks found for one goal also bound the trees of other goals, and the
+trees of questions that exclude actions.
 """
 
 from collections.abc import Iterable, Sequence
@@ -63,7 +64,7 @@ class SharedLandmarks:
     def tighten(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> Gap:
         """Return the gap of a question: a tree at least as good, its bound, and the candidates between them.
 
-        Cuts are evidence only where the gap is open, since there are many, and large ones.
+        Cuts are kept as evidence only where the gap stays open, since they are many and large.
         """
         relaxed = self._relax(task, excluded, tree)
         candidates = self._actions - excluded
@@ -166,13 +167,13 @@ class SharedLandmarks:
         return self._np.add.reduceat(values[self._np.concatenate(arrays)], starts).tolist()  # type: ignore[no-any-return]
 
     def _learn(self, rows: Iterable[int]) -> None:
-        """Compute which objects new landmarks are landmarks of."""
+        """Compute which objects are reachable without new landmarks; they are landmarks of all others."""
         for row in rows:
             landmark = frozenset(self._relaxation.rows[row].tolist())
             self._reached_without.append(self._relaxation.graph.reach(landmark))
 
     def _following(self, task: Task, tree: frozenset[int], x: Any) -> frozenset[int]:
-        """Return the best of a tree and those among its actions and the ones of an LP solution."""
+        """Return the best of a tree and of trees that combine its actions with those of an LP solution."""
         actions, costs = self._relaxation.actions, self.costs
         used = self._np.flatnonzero(x > _LP.used).tolist()
         shares = dict.fromkeys(tree, 0.0) | {actions[i]: float(x[i]) for i in used}
@@ -182,7 +183,7 @@ class SharedLandmarks:
         return min(tree, *map(frozenset, trees), key=lambda tree: sum(map(costs, tree)))
 
     def _cut(self, row: int, targets: Iterable[int]) -> frozenset[int]:
-        """Return the objects of a cut of one of the targets whose landmark are actions of a row."""
+        """Return the objects of a cut with one of the targets; its landmark actions are all in a row."""
         relaxation, reached = self._relaxation, self._reached_without[row]
         graph, landmark = relaxation.graph, frozenset(relaxation.rows[row].tolist())
         target = next(o for o in targets if not reached[o])

@@ -1,4 +1,4 @@
-"""What answers to some questions about a network teach about others."""
+"""Answered questions about a network, by which others are answered faster."""
 
 from contextlib import suppress
 from typing import TYPE_CHECKING
@@ -18,8 +18,8 @@ if TYPE_CHECKING:  # few questions need it
 class SolvedGoals:
     """Trees of questions that differ in goals and removed units alone, and landmarks that they share.
 
-    Landmarks are shared from the first question on that greedy cuts did not answer: with easier questions it
-    is faster to begin each anew.
+    Landmarks are shared once greedy cuts did not suffice for a question: easier questions are answered faster
+    one by one.
     """
 
     def __init__(self) -> None:
@@ -38,7 +38,7 @@ class SolvedGoals:
         return 0 if self._derivations is None else self._derivations.cost.get(goal, 0)
 
     def gap(self, task: Task) -> Gap | None:
-        """Return the gap of a question with shared costs; ``None`` where nothing is, or there is no tree."""
+        """Return the gap of a question with shared costs; ``None`` without these, or without a tree."""
         if self._landmarks is None or self._derivations is None:
             return None
         if not self._derivations.cost.keys() >= set(task.graph.goals):
@@ -58,7 +58,7 @@ class SolvedGoals:
         return None if self._landmarks is None else self._landmarks.costs
 
     def _tree(self, task: Task) -> frozenset[int]:
-        """Return the best tree of trees of the preconditions of an achiever, solved or by h_add."""
+        """Return the best tree of an achiever and trees of its preconditions, solved or by h_add."""
         graph, costs, derivations, trees = task.graph, task.costs, self._derivations, list[set[int]]()
         assert costs is not None
         assert derivations is not None

@@ -38,9 +38,9 @@ class Support:
         return bool(o in self._goals or self._consumers.get(o))
 
     def replaceable(self, action: int) -> bool:
-        """Return whether each add effect in use of an action has another achiever, too.
+        """Return whether every add effect in use of an action has another achiever.
 
-        As long as a tree is redundant, that is true of some redundant action: the last, in an executable
+        A redundant tree always has a redundant action of which this is true: the last, in an executable
         order, of the actions that would be removed together.
         """
         return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._in_use(o))

@@ -1,4 +1,4 @@
-"""One question to reduce: what all stages read, and none changes."""
+"""A question to reduce: data that all stages read and none changes."""
 
 import random
 from collections.abc import Callable, Collection
@@ -14,7 +14,7 @@ from foon_asp.problem import Objective, Problem
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Task:
-    """A question as a graph with costs, and what of it is wanted.
+    """A question as a graph with costs, and the settings of its reduction.
 
     ``coarse`` are rough costs, for estimates. ``costs`` compare trees exactly; ``None`` where rates are too
     fine, and before the first tree. In ``thin``, required sets have few achievers. Trees that cost less than

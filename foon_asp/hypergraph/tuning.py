@@ -18,12 +18,13 @@ class PresolveTuning(NamedTuple):
     ``easy_actions``: actions; with fewer, clingo is faster than a thorough search for better trees.
     ``relaxed_actions``: actions; with fewer, clingo is faster than the linear relaxation.
     ``branching_budget``: actions that branch and bound may look at; some 20 s of processor time.
-    ``branching_bound``: share of the incumbent's cost; branching begins from such a bound on.
-    ``sufficient_bound``: share of the incumbent's cost; from such a bound on, branching is faster than cuts.
+    ``branching_bound``: share of the incumbent's cost that the bound has to reach before branching begins.
+    ``sufficient_bound``: share of the incumbent's cost; from this bound on, branching is faster than cuts.
     ``search_looks``: looks at each action in a search for a better tree that follows an LP solution.
-    ``sparse_share``: share of the candidates; searched by branching up to it, else by perturbation.
-    ``landmark_actions``: sizes of all landmarks together, for each action, after which greedy cuts end.
-    ``worthwhile_share``: share of the candidates that may remain for another turn to pay.
+    ``sparse_share``: share of the candidates; up to it, trees are searched by branching, else by
+    perturbation.
+    ``landmark_actions``: sum of the sizes of landmarks, per action, after which greedy cuts end.
+    ``worthwhile_share``: share of the candidates; another turn follows only if fewer remain.
     """
 
     lazy_actions: int = 40_000
@@ -45,8 +46,9 @@ class CutTuning(NamedTuple):
     """How landmark cuts and h-values are looked for.
 
     ``guided_cuts``: cuts, or one for each target, after which the h-values that guide cuts are computed anew.
-    ``guides``: times that h-values are computed for as many cuts as there are objects: each looks at all of
-    them, and more would make cuts quadratic (``benchmarks/shapes.py``, grid by kitchen).
+    ``guides``: times at most that h-values are computed for as many cuts as there are objects. Each time
+    looks at all objects, so that without a maximum cuts would take quadratic time (``benchmarks/shapes.py``,
+    grid by kitchen).
     ``lazy_depth``: depth of the recursion of lazy h_max. ``lazy_looks``: actions that it looks at in all.
     """
 
@@ -63,11 +65,11 @@ class RelaxationTuning(NamedTuple):
     ``stalled_solutions``: solutions after which a bound that hardly grows counts as optimal.
     ``stalled_growth``: share of the gap that these solutions have to gain.
     ``node_rounds``: rounds of separation at each node but the root.
-    ``guess_interval``: nodes from one at which derivations are guessed to the next.
-    ``landmark_bits``: bits of the landmark sets by which first achievers are computed; in larger graphs,
-    landmarks among fewer objects are.
-    ``starting_landmarks``: sizes of the landmarks with which it begins together, for each action.
-    ``run_seconds``: of an interior-point run, which cannot be continued.
+    ``guess_interval``: nodes from one guess of derivations to the next.
+    ``landmark_bits``: bits of the landmark sets by which first achievers are computed; in larger graphs, only
+    landmarks among fewer objects are computed.
+    ``starting_landmarks``: sum of the sizes of the landmarks with which it begins, per action.
+    ``run_seconds``: seconds of an interior-point run, which cannot be continued.
     """
 
     cuts: int = 40
@@ -103,7 +105,8 @@ class PriceTuning(NamedTuple):
     """How a limit on a sum over units is priced, by :mod:`foon_asp.hypergraph.priced_limit`.
 
     ``prices``: prices that are tried. ``easy_units``: units; with fewer, clingo is faster than another price.
-    ``rising_units``: units; with more, rising prices are tried. ``rising_prices``: these, at most.
+    ``rising_units``: units; with more, rising prices are tried. ``rising_prices``: rising prices that are
+    tried, at most.
     """
 
     prices: int = 2

@@ -1,8 +1,8 @@
 """Order of many executions at once: a founded order of counts, in runs of one action each.
 
 Whether each action can be executed as often as counted is a question about the firing sequences of a Petri
-net. An action is executed as often as it can be at once, and without alternatives where what it consumes is
-plentiful for all executions that wait; elsewhere the search branches.
+net. A run executes an action as often as possible. The search tries no alternative to a run if there are
+enough copies of the objects that it consumes for all waiting executions; otherwise it branches.
 """
 
 from collections import Counter
@@ -22,7 +22,7 @@ def bulk_order(
 ) -> list[Run] | None:
     """Return runs that execute each action as often as counted, from ``start``; ``None`` if there are none.
 
-    Raises :class:`Stopped` where neither is shown, or time is up.
+    Raises :class:`Stopped` where the search finds no runs and does not prove that there are none.
     """
     if not _is_founded(flows, counts, start):
         return None
@@ -38,7 +38,7 @@ def bulk_order(
 
 
 def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
-    """Return for each initial object a number of copies that no order of counts can do without."""
+    """Return for each initial object a lower bound on the copies that every order of counts needs."""
     change = Counter({o: -n for o, n in flows.targets.items()})
     required = Counter[int]()
     for action, times in counts.items():
@@ -53,7 +53,7 @@ def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
 
 
 def _is_founded(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
-    """Whether each action is reached, and the targets are left, if nothing were consumed before."""
+    """Whether each action is reached if nothing is consumed, and enough copies remain in the end."""
     copies, waiting = Counter(start), set(counts)
     grown = True
     while grown:
@@ -72,7 +72,7 @@ def _is_founded(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
 
 
 class _Search:
-    """A depth-first search for an order; with ``single``, of one execution at a time where it branches."""
+    """A depth-first search for an order; with ``single``, it branches over single executions."""
 
     def __init__(
         self,
@@ -123,7 +123,7 @@ class _Search:
         return tuple(sorted(self._waiting.items()))
 
     def _choices(self, dead: set[tuple[tuple[int, int], ...]]) -> Iterator[Run]:
-        """Yield the runs that can be next; only one where it takes nothing from the others."""
+        """Yield the runs that can be next: only one if a free action is ready, which hinders no other."""
         if self._state in dead:
             return
         ready = [(action, self._max_times(action)) for action in sorted(self._waiting)]
@@ -150,11 +150,11 @@ class _Search:
         return max_times
 
     def _is_free(self, action: int) -> bool:
-        """Whether all that wait find enough of what an action consumes, also if it is executed first."""
+        """Whether there are enough copies of what an action consumes for all waiting executions."""
         return all(self._copies[o] - self._consumed[o] >= self._kept(o) for o in self._flows.uses[action])
 
     def _kept(self, o: int) -> int:
-        """Return how many copies have to be there beyond those that are consumed."""
+        """Return how many copies of an object have to remain after all waiting executions."""
         readers = (self._flows.asks[a].get(o, 0) - self._flows.uses[a].get(o, 0) for a in self._waiting)
         return max(self._flows.targets.get(o, 0), *readers)
 

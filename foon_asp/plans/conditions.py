@@ -11,10 +11,10 @@ Counts = dict[int, int]
 class Measure(NamedTuple):
     """The cost of executions by one objective, to be minimized.
 
-    ``costs`` are those of each action, whole numbers from 0, and ``item`` is the cost of each distinct item
-    and of each initial copy that is consumed. Where ``exact`` is not ``None``, ``costs`` are rounded down and
-    ``exact`` returns the exact cost of counts, which depends on the number of executions in each of the
-    ``classes`` of actions; actions of class -1 do not change it.
+    ``costs`` has the cost of each action, a whole number from 0, and ``item`` is the cost of each distinct
+    item and of each initial copy that is consumed. Where ``exact`` is not ``None``, ``costs`` are rounded
+    down and ``exact`` returns the exact cost of counts, which depends on the number of executions in each of
+    the ``classes`` of actions; actions of class -1 do not change it.
     """
 
     costs: Sequence[int]
@@ -26,7 +26,8 @@ class Measure(NamedTuple):
 class Landmark(NamedTuple):
     """The condition that one of the ``members`` is executed, or an initial copy of ``stock`` is consumed.
 
-    With an ``action``, it holds only if the action is executed. ``objects`` are the cut of the landmark.
+    With an ``action``, the condition applies only if the action is executed. ``objects`` are the cut of the
+    landmark.
     """
 
     members: tuple[int, ...]
@@ -44,7 +45,8 @@ class Balance(NamedTuple):
 class Supply(NamedTuple):
     """The condition that an action that is executed has the copies of an object that it asks for.
 
-    They are initial, or added by other actions, as none are added before its first execution by itself.
+    The copies are initial or added by other actions, as the action itself adds none before its first
+    execution.
     """
 
     object: int
@@ -55,8 +57,7 @@ class Supply(NamedTuple):
 class Remainder(NamedTuple):
     """The condition that copies of an object remain where an action that asks for it is executed.
 
-    Of all actions that ask for the object, the one that is executed last leaves ``copies`` at least, and
-    nothing consumes any after it.
+    The last execution that asks for the object leaves at least ``copies``, and no later one consumes any.
     """
 
     object: int

@@ -38,8 +38,8 @@ class CountBound:
     ``expired`` returns whether to give up: methods then raise :class:`Stopped`. ``required`` are disjunctive
     action landmarks. ``limits`` bound weighted sums, with weights from 0, over executions or over the actions
     used. ``derivation`` are actions that reach the targets in the delete relaxation: landmarks are grown
-    around it. Only plans count that are as good as the incumbent by each of ``levels`` and that do not
-    execute everything in one of ``excluded_counts`` as often.
+    around it. Only plans count that are as good as the incumbent by each of ``levels``. Plans that execute
+    all actions at least as often as one of ``excluded_counts`` do not count.
     """
 
     def __init__(
@@ -66,9 +66,9 @@ class CountBound:
     def plain_counts(self, measures: Sequence[Measure]) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important.
 
-        They belong to a plan of the delete relaxation, as those of :meth:`counts`, and are found much faster,
-        as few actions have an indicator. ``None`` if none are found: where items have costs, or counts are
-        excluded, none are looked for.
+        Like counts of :meth:`counts`, they belong to a plan of the delete relaxation. They are found much
+        faster, as few actions have an indicator. ``None`` if no counts are found. Where items have costs, or
+        counts are excluded, it does not search.
         """
         if self._excluded_counts or any(measure.item for measure in measures):
             return None
@@ -91,14 +91,14 @@ class CountBound:
             self._check()
 
     def _assumed_caps(self, measure: Measure, assumed_cost: int | None) -> Sequence[int | None]:
-        """Return bounds on counts, if plans cost as much as assumed, by which indicators are tied to them."""
+        """Return upper bounds on counts in plans of up to an assumed cost, to tie indicators to counts."""
         if assumed_cost is None:
             return ()
         free = PLANS.first_executions * max(self._flows.targets.values(), default=1)
         return [assumed_cost // cost if cost else free for cost in measure.costs]
 
     def _state_equation(self, levels: Sequence[Level] = (), caps: Sequence[int | None] = ()) -> StateEquation:
-        """Return the state equation with all that is known of it, and the rows of levels."""
+        """Return the state equation with all known conditions, and the rows of levels."""
         equation = StateEquation(self._flows, self._limits, caps, self._expired)
         for condition, row, least in self._rounded_rows:
             equation.add((condition,), row, least)
@@ -195,7 +195,7 @@ class CountBound:
         return None if abs(bound) == math.inf else math.floor(-bound)
 
     def caps(self, level: Level) -> list[int | None]:
-        """Return for each action a bound on its count in plans that are as good; ``None`` if unbounded."""
+        """Return for each action a bound on its count in plans as good by a level; ``None`` if unbounded."""
         model = self._model((level.measure,))
         model.limit(level)
         caps: list[int | None] = []
@@ -280,7 +280,7 @@ class CountBound:
                 raise Stopped
 
     def _equation_exceeds(self, measure: Measure, max_cost: int, before: Sequence[Level]) -> bool:
-        """Whether the state equation proves that plans that are as good by earlier levels cost more.
+        """Whether the state equation proves that plans as good by earlier levels cost above ``max_cost``.
 
         It branches over counts, and adds landmarks while some are violated.
         """
@@ -314,7 +314,7 @@ class CountBound:
                 return solved
 
     def _solved(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
-        """Return the relaxed solution of a node, all violated landmarks added; no ``x`` without a plan."""
+        """Return the relaxed solution of a node with violated landmarks added; pruned nodes have no ``x``."""
         while True:
             self._check()
             model.tighten()
@@ -430,8 +430,9 @@ class CountBound:
         """Return a landmark that executed actions violate; ``None`` where all of them are reached.
 
         The initial objects are closed under the executed actions in the delete relaxation. For a target or an
-        executed action that is not reached, the landmark are the achievers on the border. Where initial
-        copies have a price, they are columns of the ``stock``, of which some are taken, the ``initial`` ones.
+        executed action that is not reached, the landmark consists of the achievers on the border. Where
+        initial copies have a price, ``stock`` has their columns, and ``initial`` are the objects of which
+        copies are taken.
         """
         flows = self._flows
         asks, targets = flows.lacking(bool(stock))
@@ -451,6 +452,7 @@ class CountBound:
 
     @cached_property
     def _cutter(self) -> Cutter:
+        """The cutter of the targets in the delete relaxation, in which initial copies cost nothing."""
         flows = self._flows
         asks, targets = flows.lacking(priced=False)
         objects = {o for numbers in (*asks, *flows.adds, targets) for o in numbers}

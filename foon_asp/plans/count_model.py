@@ -108,6 +108,7 @@ class CountModel:
         return row, least - self._flows.start.get(o, 0)
 
     def _add_classes(self, measure: Measure) -> None:
+        """Add a column for each class of actions, equal to the sum of their counts."""
         columns = []
         for number in sorted(set(measure.classes) - {-1}):
             members = [a for a, class_number in enumerate(measure.classes) if class_number == number]

@@ -43,10 +43,10 @@ CountProof = Weighted | Split
 class Claim(NamedTuple):
     """The claim that all plans cost at least ``least``.
 
-    ``costs`` are those of each action, ``item`` is that of each item and of each initial copy consumed.
-    ``least`` is ``None`` for the claim that there is no plan at all, with all costs 0. Costs of plans are
-    multiples of ``1 / parts``, if it is not ``None``. ``caps`` bound the counts of each action in plans that
-    cost less.
+    ``costs`` has the cost of each action, ``item`` is the cost of each item and of each initial copy
+    consumed. ``least`` is ``None`` for the claim that there is no plan at all, with all costs 0. Costs of
+    plans are multiples of ``1 / parts``, if it is not ``None``. ``caps`` bound the counts of each action in
+    plans that cost less.
     """
 
     order: Lexicographic
@@ -65,8 +65,8 @@ class PlanProver(CountBound):
     ) -> tuple[CountProof, Vector | None, Mapping[int, int]] | None:
         """Return a proof of a claim or of a weaker one, the bound proved, and the items by column.
 
-        The bound is ``claim.least`` where the whole claim is proved. ``None`` where nothing is. ``measure``
-        is the objective of the claim, which counts items or not.
+        The bound is ``claim.least`` where the whole claim is proved. Returns ``None`` where nothing is
+        proved. ``measure`` is the objective of the claim, which counts items or not.
         """
         self._claim, self._least, self._leaves = claim, claim.least, 0
         floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
@@ -122,6 +122,7 @@ class PlanProver(CountBound):
         return self._split(model, *column, depth)
 
     def _split(self, model: CountModel, column: int, max_count: int, depth: int) -> Split:
+        """Return a proof by branching: for values of a column above ``max_count``, and up to it."""
         program, size = model.program, self._size
         lower, upper = list(program.lower), list(program.upper)
         action = column < size
@@ -138,7 +139,7 @@ class PlanProver(CountBound):
         return Split(column, max_count, up_to, above)
 
     def _choice(self, model: CountModel, x: Sequence[float]) -> tuple[int, int] | None:
-        """Return a column to branch on, and the greatest value below; ``None`` if all are whole."""
+        """Return a column to branch on, and its maximum in the lower branch; ``None`` if all are whole."""
         program, size = model.program, self._size
         for a in range(size):
             upper = program.upper[a]
@@ -154,7 +155,7 @@ class PlanProver(CountBound):
         return None if half is None else (half[1], math.floor(x[half[1]]))
 
     def _give_up(self, best: tuple[Vector, object] | None) -> None:
-        """Lower the claim to the bound proved of a node."""
+        """Lower the claim to the bound that is proved at a node."""
         if self._least is None or best is None:
             self._failed = True
             return

@@ -242,7 +242,7 @@ class Counting:
     def any_order(self, counts: Counts) -> Plan | None:
         """Return a good plan with few executions beyond counts, found by clingo; ``None`` without one.
 
-        Copies are not counted there one by one, so with amounts there is none.
+        clingo does not count copies one by one, so where amounts count, ``None`` is returned.
         """
         if self._problem.counts_amounts:
             return None
@@ -304,6 +304,7 @@ class Counting:
         return ended.units is not None
 
     def _plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
+        """Return a plan with counts between bounds (the best one, if so), found by clingo, or ``None``."""
         ended = self._ended(times, best)
         if ended.units is None:
             if not ended.exhausted:
@@ -315,6 +316,7 @@ class Counting:
         return sequence(self._problem, ended.rows["times"], ended.rows["_after"])
 
     def _ended(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
+        """Return the run of clingo for a plan with the least and greatest ``times`` of each action."""
         from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
@@ -354,7 +356,7 @@ class Counting:
 
 
 def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
-    """Return the rank of each figure among the distinct figures; -1 for the neutral figure."""
+    """Return the rank of each figure among the distinct figures; -1 for the figure ``idle``."""
     numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
     return [-1 if figure == idle else numbers[figure] for figure in figures]
 

@@ -13,10 +13,10 @@ from foon_asp.problem import Problem
 class Flows:
     """Actions with preconditions and effects on copies of objects, all by number.
 
-    Each action maps objects to numbers of copies. It can be executed while there are those that it ``asks``
-    for. It consumes those that it ``uses``, and adds those that it ``adds``. ``start`` maps initial objects
-    to their numbers of copies, and ``targets`` those that have to remain. Objects that are not consumable are
-    in none of these; ``items`` are the preconditions of each action among them.
+    The lists map, for each action, objects to numbers of copies. An action can be executed while the copies
+    that it ``asks`` for are there; it consumes the copies in ``uses``, and produces the copies in ``adds``.
+    ``start`` has the initial numbers of copies, and ``targets`` the numbers that have to remain. Objects that
+    are not consumable are in none of these; ``items`` are the preconditions of each action among them.
     """
 
     asks: Sequence[Mapping[int, int]]
@@ -61,7 +61,7 @@ class Flows:
 
     @property
     def remainders(self) -> Iterator[Remainder]:
-        """The remainders of objects that every action that asks for them leaves some of."""
+        """The remainders of objects of which every action that asks for them leaves copies."""
         kept_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):
             for o, n in preconditions.items():
@@ -73,7 +73,7 @@ class Flows:
                 yield from (Remainder(o, action, copies) for action in by_action)
 
     def change(self, condition: Supply | Remainder) -> dict[int, int]:
-        """Return by how much each action changes the copies that a condition is about."""
+        """Return by how much each action changes the number of copies of a condition's object."""
         o, adds = condition.object, self.adds
         if isinstance(condition, Supply):
             return {a: adds[a][o] for a in self.achievers.get(o, ()) if a != condition.action}
@@ -85,7 +85,7 @@ class Flows:
         """A number for the role of each object (colour refinement, Weisfeiler & Leman 1968).
 
         Objects have one role if actions of one kind consume and add them in the same amounts, and actions are
-        of one kind if they do so with objects of the same roles, looked at ``role_depth`` times.
+        of one kind if they do so with objects of the same roles, refined ``role_depth`` times.
         """
         touched: dict[int, list[tuple[int, int]]] = {o: [] for o in self.targets}
         sides = [

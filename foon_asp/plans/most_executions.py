@@ -17,8 +17,8 @@ def most_executions(
 ) -> dict[int, tuple[int, int]]:
     """Return the least and greatest number of executions in any best plan, by unit that can matter.
 
-    Where no plan exists, every unit has at most one execution. Raises
-    :class:`UserError` where neither is proved.
+    Where no plan exists, every unit has at most one execution. Raises :class:`UserError` where neither a best
+    plan nor the absence of plans is proved.
     """
     question = PlanQuestion(problem, objectives, settings, Reporter())
     outcome = solve_question(question)
@@ -35,7 +35,7 @@ def most_executions(
 def executions_as_good(outcome: Outcome, settings: Settings) -> dict[int, int] | None:
     """Return the most executions of each unit in plans as good as an outcome by its first objective.
 
-    ``None`` where some unit has no bound.
+    ``None`` where some unit has no bound, and where there is no plan.
     """
     question = PlanQuestion(outcome.problem, outcome.objectives, settings, Reporter())
     if outcome.costs is None or not question.apply_rules():

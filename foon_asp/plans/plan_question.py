@@ -1,4 +1,4 @@
-"""A question about plans: what its rules do, which units can matter, and the best plan so far."""
+"""A question about plans: its rules applied, the units that can matter, and the incumbent."""
 
 import time
 from collections import Counter
@@ -94,8 +94,8 @@ class PlanQuestion:
     def cut(self) -> list[int] | None:
         """Return the units that can matter, ascending; ``None`` if a goal is unreachable even if items last.
 
-        These are the achievers of goals and of preconditions of each other; with rules that may require
-        redundant units, all units that can execute.
+        These are the achievers of goals and, recursively, of their preconditions. With rules that may require
+        redundant units, they are all units that can execute.
         """
         problem = self.problem
         stocked = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)

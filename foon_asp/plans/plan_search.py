@@ -48,6 +48,7 @@ def solve_question(question: PlanQuestion) -> Outcome:
 
 
 def _solve(question: PlanQuestion) -> Outcome:
+    """Apply the rules, cut the network down to the units that can matter, and search."""
     began = time.perf_counter()
     if not question.apply_rules():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
@@ -58,6 +59,7 @@ def _solve(question: PlanQuestion) -> Outcome:
 
 
 def _search(question: PlanQuestion, units: list[int]) -> Outcome:
+    """Search for the best plan of some units, and prove it."""
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
         needs_check = not question.program.own or question.problem.counts_amounts

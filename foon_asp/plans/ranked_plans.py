@@ -72,6 +72,7 @@ def best_plans(
     plans_by_counts = {frozenset(Counter(outcome.units).items()): outcome.units}
 
     def ask(counts: Counts) -> None:
+        """Keep an order of counts, if it is a plan as good as the best one."""
         plan = counting.order(counts)
         if plan is not None and problem.costs(plan).key(question.levels) == best.key(question.levels):
             plans_by_counts.setdefault(frozenset(Counter(plan).items()), plan)

@@ -1,10 +1,10 @@
 """The state equation alone, strengthened by mixed-integer rounding: bounds, and counts of least cost.
 
-The rows are about counts only, without indicators. Rows of the inverse basis of its relaxation are weights of
-rows which add up to one that a fractional solution violates once it is rounded (Gomory 1958; Nemhauser &
+The rows are about counts only, without indicators. Each row of the inverse basis of the relaxation weights
+rows; their weighted sum, rounded, is a row that a fractional solution violates (Gomory 1958; Nemhauser &
 Wolsey 1990): where ``sum a[j] x[j] >= b`` holds of counts from 0, and ``f`` is the fractional part of ``b``,
-so does ``sum (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)``. Weights may be any numbers
-from 0, so floats only suggest them.
+so does ``sum (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)``. Weights may be any numbers from 0,
+so floats only suggest them.
 """
 
 import math
@@ -38,7 +38,7 @@ class RoundedProgram:
         self._conditions: list[Sequence[Condition]] = []  # of each row, if it is about counts alone
 
     def add(self, conditions: Sequence[Condition], row: dict[int, int], least: int) -> None:
-        """Add the row that is the sum of conditions; without any, one that is not rounded."""
+        """Add a row, the sum of conditions; without conditions, it does not take part in rounding."""
         self.program.row(row, least)
         self._conditions.append(conditions)
 
@@ -53,7 +53,7 @@ class RoundedProgram:
     def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
         """Add rounded rows while they raise the bound; return the last solution of the relaxation.
 
-        A bound above ``cutoff`` is enough; without one, none is proved.
+        A bound above ``cutoff`` is enough; without a cutoff, no bound is proved.
         """
         program, value, stalled = self.program, -math.inf, 0
         while True:
@@ -87,7 +87,7 @@ class RoundedProgram:
         return bool(violated)
 
     def _rounded(self, weights: Mapping[int, Fraction]) -> tuple[Rounded, _Row] | None:
-        """Return the rounded sum of weighted rows, in whole numbers; ``None`` where it says nothing."""
+        """Return the rounded sum of weighted rows, in whole numbers; ``None`` if rounding is of no use."""
         parts = math.lcm(*(weight.denominator for weight in weights.values()))
         coefficients: dict[int, int] = {}
         least = 0
@@ -120,7 +120,7 @@ class RoundedProgram:
 
 
 def _share(weight: float) -> Fraction:
-    """Return the fractional part of a weight: whole multiples of a row only add what is whole already."""
+    """Return the fractional part of a weight, since whole multiples of a row are not rounded."""
     share = Fraction(weight).limit_denominator(PLANS.rounding_denominator)
     return share - math.floor(share)
 
@@ -159,7 +159,7 @@ class StateEquation(RoundedProgram):
         self.add((level,), {a: -cost for a, cost in enumerate(costs) if cost}, -level.max_cost)
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row that a member of a landmark is executed (where it has an action, if that is).
+        """Add the row of a landmark: some member is executed, or its action, if it has one, is not.
 
         Nothing is added if initial copies satisfy the landmark too, or if its action has no indicator.
         """
@@ -178,7 +178,7 @@ class StateEquation(RoundedProgram):
             self.add((), row, -self._flows.start.get(condition.object, 0))
 
     def _indicator(self, action: int) -> int | None:
-        """Return the column that is 1 if an action is executed; ``None`` if it has no bound on its count."""
+        """Return the column that is 1 if an action is executed; ``None`` if its count is unbounded."""
         max_count = self._caps[action]
         if action not in self._indicators and max_count is not None:
             self._indicators[action] = self.program.column(0, 1)
@@ -199,9 +199,9 @@ class StateEquation(RoundedProgram):
     def _round_alternatives(self, costs: Mapping[int, int]) -> bool:
         """Add rounded rows of a smaller program, in which objects of one role are one; return whether any.
 
-        Its rows are the sums of the balances of such objects, as of planks of any wood, and actions are one
-        column that are alike in all rows and in their cost. A row that is about one of many alternatives
-        says little: the solution changes over to another one.
+        Its rows are the sums of the balances of such objects, for example of planks of any wood. Actions that
+        are alike in all rows and in cost share a column. A row about one of many alternatives says little:
+        the solution uses another alternative then.
         """
         roles = self._flows.roles
         sums: dict[object, tuple[list[Condition], dict[int, int], int]] = {}

@@ -11,17 +11,17 @@ class PlanTuning(NamedTuple):
 
     ``rounded_rows``: rows that are added for one solution of the state equation, at most.
     ``stalled_rounds``: rounds of such rows that may leave the bound as it is.
-    ``role_depth``: how far objects are told apart, of which rounded rows count some as alternatives.
+    ``role_depth``: rounds of refinement by which the roles of objects are told apart.
     ``rounding_denominator``: greatest denominator of the weights that rounded rows are made of.
     ``equation_nodes``: nodes of branch and bound over the state equation, before actions get indicators.
-    ``probes``: actions of which it is asked at the root whether they can be executed twice.
+    ``probes``: actions that are probed at the root: can they be executed twice?
     ``nodes``: nodes of branch and bound over counts, after which a proof is given up.
-    ``uncapped_nodes``: the same where nothing bounds the number of executions.
+    ``uncapped_nodes``: such nodes where nothing bounds the number of executions.
     ``landmark_orders``: orders in which landmarks are grown before a search for violated ones ends.
     ``first_executions``: executions of an action for each copy wanted, at most, where counts are looked for.
-    ``last_executions``: the same after counts as great as that.
+    ``last_executions``: the same maximum in a second attempt.
     ``leaves``: leaves of a proof by branching, in a certificate.
-    ``depth``: of the branching in such a proof, which is checked with as many calls.
+    ``depth``: depth of the branching in such a proof; its check is a recursion of the same depth.
     ``order_steps``: runs that a search for an order tries; most orders take as many as there are actions.
     ``single_executions``: executions up to which every order is tried, one execution at a time.
     ``stocks``: numbers of copies of the stock that an order is looked for with.

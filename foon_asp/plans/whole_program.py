@@ -25,8 +25,8 @@ class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
 class Solved(NamedTuple):
     """A relaxed solution ``x``, ``None`` without one, and a proved lower ``bound``.
 
-    A solution with a bound of -infinity may fail rows by a little. The bound is infinite where it is proved
-    that there is no solution, and -infinite where nothing is.
+    The bound is infinite where it is proved that there is no solution, and -infinite where nothing is proved.
+    A solution with a bound of -infinity may violate rows a little.
     """
 
     x: list[float] | None
@@ -145,9 +145,10 @@ class WholeProgram:
         return Solved(self._nearly(), -math.inf)
 
     def inverse_rows(self, x: Sequence[float]) -> Iterator[dict[int, float]]:
-        """Yield the rows of the inverse basis of basic columns that are fractional, the most so first.
+        """Yield the rows of the inverse basis for fractional basic columns, the most fractional first.
 
-        Each has weights of rows, in floats. ``x`` is the solution that was returned last.
+        A row of the inverse basis has weights of rows of the program, in floats. ``x`` is the solution that
+        was returned last.
         """
         halves = {column: abs(value - math.floor(value) - 0.5) for column, value in enumerate(x)}
         fractional = {column: half for column, half in halves.items() if half < 0.5 - INTEGRALITY}
@@ -206,7 +207,7 @@ class WholeProgram:
     ) -> list[float] | None:
         """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or when time is up.
 
-        One that costs up to ``sufficient_cost`` is taken at once.
+        A solution that costs up to ``sufficient_cost`` is taken at once.
         """
         highs = self._send(objective)
         count = self.columns

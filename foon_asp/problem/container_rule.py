@@ -56,8 +56,8 @@ def needed_inputs(
 ) -> tuple[ObjectNode, ...]:
     """Return the inputs that a unit needs under the rule (its preconditions), in the unit's order.
 
-    Below level 3 a node does not include its contents. A unit of a ``network`` of such a level needs the
-    inputs that all of the level-3 units need for which it stands.
+    Below level 3 a node does not include its contents. There, a unit of a ``network`` stands for several
+    level-3 units, and needs the inputs that all of them need.
     """
     return _sides(unit, rule, utensils, network)[0]
 
@@ -67,8 +67,8 @@ def given_outputs(
 ) -> tuple[ObjectNode, ...]:
     """Return the outputs that a unit makes under the rule (its add effects), in the unit's order.
 
-    They are all outputs except inputs that it skips. A unit of a ``network`` below level 3 makes the outputs
-    that any of the level-3 units makes for which it stands.
+    These are all outputs except skipped inputs. Below level 3, a unit of a ``network`` stands for several
+    level-3 units, and makes the outputs that any of them makes.
     """
     return _sides(unit, rule, utensils, network)[1]
 

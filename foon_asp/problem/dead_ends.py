@@ -1,4 +1,4 @@
-"""Dead ends: the nodes that cannot be made for some goals, and the missing or cyclic nodes that are why."""
+"""Dead ends: nodes that cannot be made for some goals, and the missing or cyclic nodes that cause it."""
 
 import heapq
 from collections.abc import Collection, Mapping, Sequence
@@ -48,9 +48,9 @@ class Blocked(NamedTuple):
 class DeadEnds(NamedTuple):
     """The unreachable part of a network, for some goals.
 
-    ``goals`` are the unreachable goals. ``makers`` maps every unreachable object node that is needed for one
-    of them, on any path, to its achievers, the ones that lack the fewest nodes first. ``roots`` are the
-    causes, the ones on the cheapest path first. ``available`` has a 1 for every reachable node, by id.
+    ``goals`` are the unreachable goals. ``makers`` maps every unreachable object node on any path to these
+    goals to its achievers; achievers that lack the fewest nodes come first. ``roots`` are the causes; causes
+    on the cheapest path come first. ``available`` has a 1 for every reachable node, by id.
     """
 
     goals: tuple[int, ...]

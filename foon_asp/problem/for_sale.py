@@ -31,12 +31,13 @@ class Offer(StrEnum):
 class Shop:
     """A model of which object nodes of a problem can be bought.
 
-    For sale is a node that no unit makes (a unit that needs it, or may skip it by the container rule, only
-    passes it on), a node of the starting kitchen, and a node without any state that contains at most one
-    ingredient and is not on anything, if its label or ingredient is not a product. A *product* is a name that
-    some unit makes out of nodes without this name: whipped cream, dough, lemon juice. States are how a FOON
-    says that something was done, so that a node without states is assumed to be unprocessed. A node that is
-    only empty or clean is a vessel or a tool as shops have it, and for sale although washing up makes it too.
+    A node is for sale if no unit makes it (a unit that needs it, or may skip it by the container rule, only
+    passes it on), or if it is in the starting kitchen. Also for sale is a node without any state that
+    contains at most one ingredient and is not on anything, if its label or ingredient is not a product. A
+    *product* is a name that some unit makes out of nodes without this name: whipped cream, dough, lemon
+    juice. States are how a FOON says that something was done, so that a node without states is assumed to be
+    unprocessed. A node that is only empty or clean is a vessel or a tool as shops have it, and for sale
+    although washing up makes it too.
 
     A goal is not for sale, nor is any node that has or contains the name of the *dish*: the label of a goal
     (or, where that is a utensil, its one ingredient), if it is a product.
@@ -83,9 +84,9 @@ class Shop:
     def short_list(self, ends: DeadEnds) -> list[int]:
         """Return a few object nodes that make all goals reachable once they are in the kitchen, by id.
 
-        The list has the nodes of the first sufficient offer in the relaxed plan of ``h_add``, without those
-        that units of the plan make. Second choices are avoided. A shorter list may exist. The list is empty
-        where all goals are reachable.
+        The list has the nodes that the relaxed plan of ``h_add`` takes from the first sufficient offer,
+        without nodes that units of the plan make. Second choices are avoided. A shorter list may exist. The
+        list is empty where all goals are reachable.
         """
         for _, offer in self.offers(ends.roots):
             # an item costs more than all second choices of a list

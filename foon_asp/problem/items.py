@@ -53,8 +53,8 @@ def fate(
     """Return whether an input of a unit stays or is used up, and why.
 
     ``inputs`` and ``outputs`` are all of the unit, also the ones that a container rule skips. ``declared``
-    maps labels and nodes to whether they stay; it precedes all other reasons, and a node in it precedes its
-    label.
+    maps labels and nodes to whether they stay. It overrides all other reasons, and an entry for a node
+    overrides one for its label.
     """
     stays = declared.get(node, declared.get(node.label))
     if stays is not None:
@@ -77,7 +77,7 @@ class Flow(NamedTuple):
     """The preconditions and effects of a unit on copies of items, as ids of object nodes.
 
     Each maps object nodes to numbers of copies. A unit is applicable when there are as many copies of each
-    node as it ``asks`` for. It consumes those that it ``uses``, and makes those that it ``adds``.
+    node as it ``asks`` for. It consumes the copies in ``uses``, and makes the copies in ``adds``.
     """
 
     asks: Mapping[int, int]

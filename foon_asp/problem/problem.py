@@ -53,10 +53,10 @@ class Unpriced(NamedTuple):
 
 
 class StandIns(NamedTuple):
-    """What the stand-ins of a network are made by.
+    """The source of the stand-ins of a network.
 
-    ``table`` has their prices. ``nearest`` says that the network has only those that a best tree by
-    dissimilarity can have, and not every pair of nodes that the table has a price for.
+    ``table`` has their prices. ``nearest`` says that the network has only stand-ins that a best tree by
+    dissimilarity can have, not one for every pair of nodes in the table.
     """
 
     table: StandInTable
@@ -129,14 +129,13 @@ class Problem:
     :meth:`rate` returns the rate of any unit. ``utensils`` are the labels of utensils, for the rule
     ``implied`` of ``containers``. ``unit_prices`` are the prices of units, or ``None``; :meth:`price` returns
     the price of any unit. ``measures`` are the user measures by name; :meth:`measure` returns the cost of a
-    unit by one.
-    ``origin`` is the data from which the problem was made, or ``None`` for a problem made by hand.
-    ``as_seen`` is the problem whose rates and kitchen the user's rules see, where this one has other rates or
-    a larger kitchen. ``restriction`` is the effect of rules on the network, for this question only: each
-    variation needs its own. ``items`` is the model in which items are used up; ``None`` if they last.
+    unit by one. ``origin`` is the data from which the problem was made, or ``None`` for a problem made by
+    hand. ``as_seen`` is the problem whose rates and kitchen the user's rules see, where this one has other
+    rates or a larger kitchen. ``restriction`` is the effect of rules on the network, for this question only:
+    each variation needs its own. ``items`` is the model in which items are used up; ``None`` if they last.
     ``starting`` says that no kitchen is named, so that all nodes are available that no unit makes out of
     others. Rates that lack a motion of the network are ignored, and ``unrated`` is the error that lists the
-    missing ones. ``stand_ins`` is what the stand-ins of the network are made by, ``None`` where it has none.
+    missing ones. ``stand_ins`` is the source of the stand-ins of the network, ``None`` where it has none.
     ``amounts`` are how many of a node units take and make; they count where items are used up.
 
     Example:

@@ -35,9 +35,9 @@ class _FixedCosts:
 class Purchases:
     """A question about what to buy, as one about a tree.
 
-    ``problem`` has a unit more for each ware, which makes a copy of it out of nothing. Under ``objectives``
-    its best tree or plan has the cheapest purchases; ties are broken by fewer purchases, by fewer second
-    choices, and by the objectives of the question.
+    ``problem`` has one more unit for each ware, which makes a copy of the ware out of nothing. Under
+    ``objectives`` its best tree or plan has the cheapest purchases; ties are broken by fewer purchases, by
+    fewer second choices, and by the objectives of the question.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class Purchases:
         return fewer
 
     def split(self, units: Sequence[int]) -> tuple[dict[int, int], tuple[int, ...]]:
-        """Return what a tree or plan buys, and its other units, in their order.
+        """Return the purchases of a tree or plan, and its other units, in their order.
 
         The purchases are numbers of copies by ascending ids of object nodes.
         """

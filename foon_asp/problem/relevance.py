@@ -125,7 +125,7 @@ def relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
 
 
 def kitchen_needed(problem: Problem) -> list[int]:
-    """Return the kitchen items that a tree for the goals can need, also goals among them, in order of id."""
+    """Return the kitchen items that a tree for the goals can need, including goals, in order of id."""
     units, _ = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen)
     needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
     return sorted(needed & problem.kitchen)

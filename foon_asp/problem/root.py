@@ -1,4 +1,4 @@
-"""Exact roots of rational numbers, at which two products are equal whose common rate varies."""
+"""Exact roots of rational numbers: values of a rate at which two products with this rate are equal."""
 
 import functools
 import math
@@ -9,7 +9,7 @@ from fractions import Fraction
 @functools.total_ordering
 @dataclass(frozen=True)
 class Root:
-    """A positive root of a positive rational number: the ``degree``-th root of ``of``, of the least degree.
+    """The positive ``degree``-th root of a rational number ``of``, with the least possible degree.
 
     :meth:`taken` makes one. Roots are compared exactly, by their powers, which are rational numbers.
     """
@@ -21,9 +21,9 @@ class Root:
     def taken(cls, degree: int, of: Fraction) -> "Root":
         """Return the root of a degree; raises ``ValueError`` for numbers that are not positive.
 
-        If a number is a root of rational numbers for two degrees, it is one for their greatest common divisor
-        as well. So the degree is divided by each divisor as long as the radicand stays rational, which ends
-        with the least degree.
+        If a number is a root of rational numbers for two degrees, it is also one for their greatest common
+        divisor. So dividing the degree by each divisor, while the radicand stays rational, ends with the
+        least degree.
         """
         if degree < 1 or of <= 0:
             raise ValueError("expected a positive degree, and a positive number under the root")
