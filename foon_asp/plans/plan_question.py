@@ -25,12 +25,18 @@ from foon_asp.problem import (
     multiplies,
     reach,
     relevant_to_plans,
+    unrestricted_reach,
 )
 from foon_asp.proof.counted_run import counted_run
 from foon_asp.rules.dependence import TIMES
 
 Plan = tuple[int, ...]
 """Units by id in the order of execution, with repeats."""
+
+
+def _none_removed(_: int) -> bool:
+    """Return that rules do not remove a unit: there are none that remove any."""
+    return False
 
 
 class PlanQuestion:
@@ -56,7 +62,7 @@ class PlanQuestion:
         self.program = assemble(settings, reporter.warning, used_up=True, problem=problem)
         self.program.require_facts(problem, by_levels)
         require_rules_of_plans(self.program)
-        self.removed: Callable[[int], bool] = lambda _: False
+        self.removed: Callable[[int], bool] = _none_removed
         self.required: tuple[frozenset[int], ...] = ()
         self.limits: Sequence[LinearRow] = ()
         bounded = settings.bounded or Bounded()
@@ -101,7 +107,10 @@ class PlanQuestion:
         stocked = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
         restriction = Restriction(self.removed, self.required)
         lasting = replace(problem, kitchen=stocked, restriction=restriction)
-        reached = reach(lasting)
+        if self.removed is _none_removed and not self.required:
+            reached = unrestricted_reach(problem.network, problem.containers, problem.utensils, stocked)
+        else:
+            reached = reach(lasting)
         if not all(reached.available[goal] for goal in problem.goals):
             return None
         if not all(required_set & set(reached.units) for required_set in self.required):

@@ -47,6 +47,7 @@ from foon_asp.problem.relevance import kitchen_needed as kitchen_needed
 from foon_asp.problem.relevance import reach as reach
 from foon_asp.problem.relevance import relevant as relevant
 from foon_asp.problem.relevance import relevant_to_plans as relevant_to_plans
+from foon_asp.problem.relevance import unrestricted_reach as unrestricted_reach
 from foon_asp.problem.restriction import Contradiction as Contradiction
 from foon_asp.problem.restriction import Left as Left
 from foon_asp.problem.restriction import Restriction as Restriction

@@ -2,9 +2,13 @@
 
 from collections import deque
 from collections.abc import Container, Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
+from foon_asp.network import Network
+from foon_asp.problem.container_rule import ContainerRule, Ids, network_sides
 from foon_asp.problem.problem import Problem
+from foon_asp.problem.restriction import Restriction
 
 
 class Reached(NamedTuple):
@@ -23,8 +27,21 @@ class Reached(NamedTuple):
 
 def reach(problem: Problem) -> Reached:
     """Return the objects and units reachable from the kitchen (Dowling & Gallier 1984), in linear time."""
-    network, needs, gives = problem.network, problem.needs, problem.gives
-    restriction = problem.restriction
+    return _closure(problem.network, problem.needs, problem.gives, problem.kitchen, problem.restriction)
+
+
+@lru_cache(maxsize=2)  # successive questions are mostly about the same network and kitchen
+def unrestricted_reach(
+    network: Network, rule: ContainerRule, utensils: frozenset[str], kitchen: frozenset[int]
+) -> Reached:
+    """Return what :func:`reach` returns for a problem without a restriction; the result is shared."""
+    return _closure(network, *network_sides(network, rule, utensils), kitchen, None)
+
+
+def _closure(
+    network: Network, needs: Ids, gives: Ids, kitchen: frozenset[int], restriction: Restriction | None
+) -> Reached:
+    """Return the forward closure of a kitchen under preconditions and add effects of units."""
     removed = restriction.removed if restriction else None
     available = bytearray(len(network.objects))
     missing = [len(needed) for needed in needs]
@@ -37,7 +54,7 @@ def reach(problem: Problem) -> Reached:
         consumers = unskipped
     order: list[int] = []
     makers: dict[int, int] = {}
-    queue = deque(sorted(problem.kitchen))
+    queue = deque(sorted(kitchen))
     for o in queue:
         available[o] = 1
 
