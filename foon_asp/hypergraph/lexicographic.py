@@ -73,7 +73,7 @@ class Lexicographic:
         ]
 
     def _parts(self, vector: Sequence[Fraction | int]) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
-        """Yield the coordinates of each level."""
+        """Yield each level, by index, and its coordinates."""
         begin = 0
         for level, measures in enumerate(self._measures):
             end = begin + len(measures)
@@ -86,7 +86,7 @@ class Lexicographic:
     def _sign_of_product(
         self, level: int, rates: Sequence[Fraction], exponents: Sequence[Fraction | int]
     ) -> int:
-        """Compare a product of powers of a level's rates with 1: -1 where it is above 1."""
+        """Return the sign of ``-log`` of a product of powers of a level's rates: -1 for a product above 1."""
         if not any(exponents):
             return 0
         large = 10**15  # with larger exponents, lost digits could matter
@@ -111,7 +111,7 @@ class Lexicographic:
 
     @cached_property
     def _factors(self) -> list[dict[int, dict[int, int]]]:
-        """For each level, the factors of a coprime base, each with its exponent in rates by their index."""
+        """For each level, a coprime base of its rates; each factor has its exponents by index of the rate."""
         factors_by_level: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:
             base = coprime_base(n for rate in rates or () for n in rate.as_integer_ratio())

@@ -40,7 +40,7 @@ Stages = Callable[[Task, Gap, HValues], Stage]
 
 
 class Course(NamedTuple):
-    """The stages after a first tree: ``near_goals`` of a large network, or over the ``whole`` network."""
+    """The stages after a first tree: ``near_goals`` in a large network, otherwise ``whole``."""
 
     near_goals: Stages
     whole: Stages
@@ -49,15 +49,18 @@ class Course(NamedTuple):
 class Reduced(NamedTuple):
     """A presolved question.
 
-    ``tree`` are the units of the incumbent, or ``None`` where there is no tree. ``units`` are those of the
-    incumbent and those that a better tree can have, ascending. ``settled`` is true where the incumbent is
-    proved optimal. ``costs`` compares trees exactly, and ``bound`` is a lower bound on the cost of every
-    tree; where rates are too fine, they are ``None`` and 0. ``cuts`` is the greedy cost partition of the
-    greatest sum, over the units remaining at the time. ``interrupted`` is true where ctrl-C ended the
-    reduction, or time was up before any reduction: ``units`` means nothing then. ``subproblem`` is the
-    gap-bounded subproblem, which holds whatever rules trees have to keep to. ``shared`` is the optimal cost
-    partition, if one was computed. ``cases`` are the actions branched on. ``tight`` are the tight cuts of the
-    LP solutions by which units were left out, over the units remaining at the time.
+    ``tree``: the units of the incumbent, ``None`` if there is no tree.
+    ``units``: the units of the incumbent and those that a better tree can have, ascending.
+    ``settled``: whether the incumbent is proved optimal.
+    ``costs``: compares trees exactly; ``None`` if rates are too fine.
+    ``bound``: a lower bound on the cost of every tree; 0 if rates are too fine.
+    ``cuts``: the greedy cost partition of the greatest bound, over the units remaining at the time.
+    ``interrupted``: whether ctrl-C ended the reduction, or time was up before any reduction. Then ``units``
+    must not be used.
+    ``subproblem``: the gap-bounded subproblem, which is valid under any rules on trees.
+    ``shared``: the optimal cost partition, if one was computed.
+    ``cases``: the actions branched on.
+    ``tight``: the tight cuts of the LP solutions by which units were excluded, over the units remaining then.
     """
 
     tree: frozenset[int] | None
@@ -105,10 +108,12 @@ def reduce(
 ) -> Reduced:
     """Reduce a problem to the units that a search for the best tree still has to look at.
 
-    ``objectives`` is the list as it is optimized, with ``units`` in it, so that every unit costs something.
-    Without reductions, the relevant units that can be executed remain. ``expired`` returns whether time is
-    up; longer computations are interrupted, as by ctrl-C, by the ``guard``. ``solved`` are other goals of the
-    same question, which help with this one; the answer to this one is added to them.
+    ``objectives``: the list as it is optimized, with ``units`` in it, so that every unit costs something.
+    ``reductions``: if empty, the relevant units that can be executed remain.
+    ``expired``: returns whether time is up.
+    ``listener``: receives trees and bounds.
+    ``guard``: returns a context in which time being up interrupts computations, as ctrl-C does.
+    ``solved``: solved goals of the same question, which speed up this one; its answer is added to them.
     """
     with uncollected():
         with guard():
@@ -132,9 +137,9 @@ def reduce_under_rules(
 ) -> Reduced:
     """Reduce a problem whose trees have to keep to user rules, without knowing the rules.
 
-    In the result, ``subproblem`` and ``bound`` hold for the trees under any rules. With ``redundant``, trees
-    may have units that lead to no goal. ``course`` is :data:`BOUND` where any tree will do, else
-    :data:`ROUNDS`. Other arguments are those of :func:`reduce`.
+    ``subproblem`` and ``bound`` of the result are valid under any rules. With ``redundant``, trees may have
+    units that lead to no goal. ``course`` is :data:`BOUND` if the caller needs no particular tree, else
+    :data:`ROUNDS` (the default). Other arguments are those of :func:`reduce`.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     with uncollected():
@@ -168,9 +173,9 @@ def at_costs(
 ) -> Reduced:
     """Reduce a gap-bounded subproblem under other costs, with ``known_tree`` as a first incumbent, if any.
 
-    With ``below``, a unit is left out only if all its trees cost at least ``below`` and at least as much as
-    the incumbent. The reduction ends early if more than ``max_actions`` remain and the first cuts exclude
-    hardly any.
+    With ``below``, all units of trees that cost less than ``below`` remain, and those of trees better than
+    the incumbent. Then the reduction also ends early if the first cuts exclude hardly any action and more
+    than ``max_actions`` remain.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
@@ -204,6 +209,7 @@ def _task(
     expired: Expired,
     presolve_tuning: PresolveTuning | None = None,
 ) -> Task:
+    """Return the task of reducing a problem: with its graph and rough costs, before exact costs."""
     presolve_tuning = presolve_tuning or tuning.PRESOLVE
     graph, coarse = graph_of(problem, objectives), CoarseCosts(problem, objectives[0])
     return Task(
@@ -265,7 +271,7 @@ def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _differs(gap: Gap, before: Gap) -> bool:
-    """Return whether there are fewer candidates, or another incumbent."""
+    """Return whether a gap has fewer candidates or another incumbent than before."""
     return (len(gap.candidates), gap.incumbent) != (len(before.candidates), before.incumbent)
 
 
@@ -353,10 +359,10 @@ def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
 
 
 class _Presolve:
-    """A run of the stages of a task: its last gap, ``None`` before there is a tree.
+    """A run of the stages of a task; ``gap`` is its last gap, ``None`` before there is a tree.
 
-    ``ended`` is true where nothing interrupted the run. If trees may be ``redundant``, they may have any
-    action, so that the costs of all actions are needed.
+    ``ended`` is true if nothing interrupted the run. If trees may be ``redundant``, they may have any action,
+    so the costs of all actions are needed.
     """
 
     def __init__(self, task: Task, listener: Listener | None, guard: Guard, redundant: bool = False) -> None:
@@ -370,7 +376,7 @@ class _Presolve:
         return Bounds(self._listener)
 
     def guarded(self, step: Callable[[], None]) -> None:
-        """Take a step; an interrupt raises ``KeyboardInterrupt`` only where there is no tree yet."""
+        """Run a step under the guard; ``KeyboardInterrupt`` is raised only if there is no tree yet."""
         self.ended = False
         try:
             with self.guard():
@@ -381,7 +387,7 @@ class _Presolve:
                 raise
 
     def run(self, course: Course, known_tree: Collection[int] = ()) -> None:
-        """Find a first tree, and take a course from there."""
+        """Find a first tree, and run the stages of a course from it."""
         self.guarded(lambda: self._run(course, known_tree))
 
     def _run(self, course: Course, known_tree: Collection[int]) -> None:
@@ -427,7 +433,7 @@ class _Presolve:
             self.run(ROUNDS)
 
     def take(self, stages: Stages, h_values: HValues) -> None:
-        """Take stages from the gap; report trees and bounds on the way."""
+        """Run stages from the current gap; report trees and bounds on the way."""
         assert self.gap is not None
         actions = range(len(self.task.graph.needs)) if self._redundant else self.gap.candidates
         self.task = task = _with_costs(self.task, actions)
@@ -435,7 +441,7 @@ class _Presolve:
             self.report(gap)
 
     def report(self, gap: Gap) -> None:
-        """Go on to another gap; report its tree and its bound where these are new."""
+        """Make another gap the current one; report its tree and its bound if they are new."""
         before, self.gap = self.gap, gap
         if before is None or gap.incumbent is not before.incumbent:
             self._listener.tree(self._units(gap.incumbent))
@@ -463,10 +469,11 @@ class _Presolve:
 
 
 def _extend(presolve: _Presolve) -> None:
-    """Keep the units of cheap trees for the goals alone, and of cheap extensions to the required sets.
+    """Presolve a question with required sets by its relaxation: the same question without these sets.
 
-    Every tree contains one for the goals alone, which costs no more; the other units cost at most the
-    difference. A tree as cheap as the best one for the goals alone is optimal. Leaves no gap where this
+    Every tree contains a tree for the goals alone, and its other units, the extension, cost the difference.
+    So the candidates are the units of cheap trees for the goals and of cheap extensions. If a tree costs no
+    more than the best tree for the goals alone, it is optimal. ``presolve.gap`` stays ``None`` if the
     relaxation does not help.
     """
     task = presolve.task

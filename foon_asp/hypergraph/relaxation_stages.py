@@ -20,9 +20,9 @@ from foon_asp.hypergraph.task import Task
 
 
 def partition_costs(task: Task, gap: Gap) -> Stage:
-    """Raise the bound by optimal cost partitioning, follow its solutions to trees, and fix by it.
+    """Raise the bound by optimal cost partitions, derive trees from LP solutions, and fix candidates.
 
-    The relaxation begins anew over the candidates that remain, as long as that is worthwhile.
+    The relaxation begins anew over the remaining candidates, as long as many are excluded.
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
@@ -64,7 +64,10 @@ def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
 
 
 def follow_solution(task: Task, gap: Gap, shared: SharedCosts, looks: int) -> Stage:
-    """Look for better trees by an LP solution, and fix by it; ``looks`` is the budget of each candidate."""
+    """Look for better trees that follow an LP solution, then apply its cost partition.
+
+    ``looks`` is the budget: how often each candidate may be looked at.
+    """
     costs, graph = task.costs, task.graph
     assert costs is not None
     used = {action for action, share in shared.shares.items() if share > ROUGH_TOLERANCE} | gap.incumbent
@@ -89,7 +92,10 @@ def follow_solution(task: Task, gap: Gap, shared: SharedCosts, looks: int) -> St
 
 
 def apply(task: Task, gap: Gap, shared: SharedCosts) -> Gap:
-    """Raise the bound by a cost partition, and fix and prune by it; costs are whole, so it is rounded up."""
+    """Raise the bound by a cost partition, fix candidates by reduced costs, and prune dominated ones.
+
+    The bound is rounded up, since costs are whole numbers.
+    """
     costs, total, evidence = task.costs, task.total(gap), gap.evidence
     assert costs is not None
     bound = min(-(-shared.bound // PARTS), total)
@@ -126,7 +132,7 @@ def search_among(
 
 
 def may_branch(task: Task, gap: Gap) -> bool:
-    """Return whether branching may prove a tree optimal: not where rounding may decide."""
+    """Return whether branching may prove a tree optimal; ``False`` if rounding could decide."""
     assert task.costs is not None
     return task.only_better(gap) and not (task.costs.doubt or task.costs.limited) and gap.budget > 0
 

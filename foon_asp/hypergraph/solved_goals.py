@@ -38,7 +38,10 @@ class SolvedGoals:
         return 0 if self._derivations is None else self._derivations.cost.get(goal, 0)
 
     def gap(self, task: Task) -> Gap | None:
-        """Return the gap of a question with shared costs; ``None`` without these, or without a tree."""
+        """Return the gap of a question from shared landmarks; ``None`` before they are shared.
+
+        Also ``None`` if there is no tree.
+        """
         if self._landmarks is None or self._derivations is None:
             return None
         if not self._derivations.cost.keys() >= set(task.graph.goals):
@@ -58,7 +61,10 @@ class SolvedGoals:
         return None if self._landmarks is None else self._landmarks.costs
 
     def _tree(self, task: Task) -> frozenset[int]:
-        """Return the best tree of an achiever and trees of its preconditions, solved or by h_add."""
+        """Return the best union of an achiever of the goal and trees of its preconditions.
+
+        These trees are known from solved questions, or follow h_add.
+        """
         graph, costs, derivations, trees = task.graph, task.costs, self._derivations, list[set[int]]()
         assert costs is not None
         assert derivations is not None
@@ -110,7 +116,10 @@ class SolvedGoals:
 
 
 def is_open_to(task: Task) -> bool:
-    """Return whether a question has goals to make, no sets to require, and a network looked at as a whole."""
+    """Return whether solved goals can help with a question: it has goals, and no required sets.
+
+    Its network must not be so large that only a part of it is looked at.
+    """
     restriction = task.problem.restriction
     return (
         len(task.graph.goals) > 0

@@ -10,9 +10,10 @@ from foon_asp.hypergraph.h_values import derive
 class Support:
     """A tree with the h_add values and best achievers of its objects, updated incrementally.
 
-    ``actions`` are those of the tree that follow best achievers from the goals; others are removed at once.
-    ``figure[o]`` is the h_add value of an object in use. When an action is removed, only objects derived by
-    it are derived anew, from the others, so that actions of a cycle do not support each other.
+    ``actions`` are the actions of the tree that are found by following best achievers from the goals; others
+    are removed at once. ``figure[o]`` is the h_add value of an object in use. When an action is removed, only
+    objects derived by it are derived anew, from the others, so that actions of a cycle do not support each
+    other.
     """
 
     def __init__(self, graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> None:
@@ -40,8 +41,8 @@ class Support:
     def replaceable(self, action: int) -> bool:
         """Return whether every add effect in use of an action has another achiever.
 
-        A redundant tree always has a redundant action of which this is true: the last, in an executable
-        order, of the actions that would be removed together.
+        In a tree with redundant actions, this is true of at least one of them: of actions that can be removed
+        together, the last in an executable order.
         """
         return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._in_use(o))
 

@@ -46,7 +46,7 @@ class Task:
         return sum(map(self.costs, tree)) < self.total(gap)
 
     def only_better(self, gap: Gap) -> bool:
-        """Return whether trees as good as the incumbent are not needed."""
+        """Return whether only trees better than the incumbent are wanted, and not equally good ones."""
         return Reduction.BOUNDS in self.reductions and self.total(gap) >= self.below
 
     def cutoff(self, gap: Gap) -> int:
