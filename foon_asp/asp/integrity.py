@@ -118,7 +118,10 @@ def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
 
 
 def _look_over(rules: Loaded, deadline: Deadline) -> None:
-    """Raise the errors of a constraint while their places are known: later it is only rewritten text."""
+    """Parse and ground one constraint without facts, so that its errors are raised with their places.
+
+    Later it is only rewritten text.
+    """
     read_encoding(rules)
     try:  # without facts, for unsafe variables alone
         ground((rules,), "", (), deadline, endless=True).close()
@@ -134,10 +137,12 @@ def _is_constraint(statement: AST) -> bool:
 
 
 def _unless_dropped(rule: AST, number: int) -> str:
+    """Return the rule with ``not _dropped(number)`` added to its body."""
     return str(rule.update(body=[*rule.body, *_parsed(f":- not _dropped({number}).").body]))
 
 
 def _broken(rule: AST, number: int) -> str:
+    """Return the rule with a head: ``_broken(number,Way)``, where ``Way`` has its global variables."""
     way = ",".join(sorted(set(_global_variables(rule.body))))
     head = _parsed(f"_broken({number},_way({way})).") if way else _parsed(f"_broken({number},_way).")
     return str(rule.update(head=head.head))

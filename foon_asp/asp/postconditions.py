@@ -37,8 +37,8 @@ class Postconditions:
     def tree(self, units: Collection[int]) -> tuple[int, ...]:
         """Require that units execute and make the goals; return them in an executable order.
 
-        Where possible, each item can be used up in that order. Raises :class:`UserError` where user rules
-        made a tree that does not execute.
+        If there is an order in which each item can even be used up, that order is returned. Raises
+        :class:`UserError` where user rules made a tree that does not execute.
         """
         problem = self.problem
         order = executable_order(problem, units)

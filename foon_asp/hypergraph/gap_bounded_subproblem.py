@@ -74,7 +74,7 @@ class Subproblem:
         return sum(map(self.costs, self.actions(units)))
 
     def actions(self, units: Iterable[int]) -> set[int]:
-        """Return the actions of a tree: its units, and the kitchen items it takes if an objective counts them."""
+        """Return the actions of a tree: its units and, if an objective counts items, those that it takes."""
         tree = set(units)
         if self.graph.start:
             return tree

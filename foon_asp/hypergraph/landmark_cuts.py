@@ -100,7 +100,7 @@ class _Target:
         return None
 
     def add(self, needed: Sequence[int]) -> None:
-        """Add a level of ``needed``, the common preconditions of the latest landmark; the last comes first."""
+        """Add a level of ``needed``, the common preconditions of the latest landmark; the last is first."""
         if needed:
             self.outer_zones |= self.levels[-1].zone
             self.levels.append(_Level(needed, self.levels[-1].cut))
