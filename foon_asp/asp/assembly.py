@@ -291,7 +291,7 @@ def hold_for_parts(settings: Settings) -> bool:
 
 
 def leave_unsettled(settings: Settings) -> bool:
-    """Whether added rules do more than remove and require units, so that clingo has to enforce them.
+    """Whether clingo has to enforce added rules, since they do more than remove and require units.
 
     Raises as :func:`assemble` does.
     """
@@ -311,7 +311,8 @@ def varying_available(settings: Settings) -> "Rules | None":
 def need_whole_network(problem: Problem, settings: Settings) -> bool:
     """Whether added rules may be about units beyond those that the goals can need.
 
-    A part of a store is enough where every rule is local and none requires units that no goal needs.
+    Then a part of a store is not enough for the question. It is enough if every rule is local and none
+    requires units that no goal needs.
     """
     if not settings.constraints and settings.replaced is None:
         return False

@@ -53,13 +53,13 @@ def relax(
     deadline: Deadline | None = None,
     before: Iterable[Constraint] = (),
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
-    """Number the integrity constraints of constraint files from 1, and relax them.
+    """Number integrity constraints from 1, and rewrite them so that trees may break them.
 
     Without ``soft``, integrity constraint number C holds unless ``_dropped(C)`` does
-    (``questions/clash.lp``). With ``soft``, the constraint becomes a rule for ``_broken(C,Way)``, where
-    ``Way`` has the values of its variables (``questions/soft.lp``). Other rules stay as they are. ``before``
-    are constraints whose texts are numbered first in messages. Raises as
-    :func:`foon_asp.encoding.encoding.read_encoding` does.
+    (``questions/clash.lp``). With ``soft``, it becomes a rule for ``_broken(C,Way)``, where ``Way`` has the
+    values of its variables (``questions/soft.lp``). Other rules of the ``constraints`` stay as they are.
+    ``before`` are other constraints of the question; in messages, their texts are numbered before these.
+    Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}

@@ -58,7 +58,7 @@ class Postconditions:
         return listed if run.order is None else tuple(listed[position] for position in run.order)
 
     def no_tree(self) -> None:
-        """Require that no tree makes all goals, by forward reachability over their relevant units.
+        """Require that no tree makes all goals, by forward reachability over the units relevant for them.
 
         The required sets of a restriction are goals as well.
         """
@@ -136,7 +136,11 @@ class Postconditions:
         )
 
     def no_better(self, harder: Outcome, easier: Outcome, by: str) -> None:
-        """Require that a tree is no better than the proved optimum of a question that allows more trees."""
+        """Require that a tree is not better than the proved optimum of an easier question.
+
+        The easier question allows more trees; ``by`` names it in the message. Checks nothing if its optimum
+        is not proved.
+        """
         if harder.costs is None or easier.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
             return
         theirs = easier.costs

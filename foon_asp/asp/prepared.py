@@ -78,7 +78,7 @@ class Prepared:
 
     @cached_property
     def facts(self) -> str:
-        """The facts of the problem, as text, without the facts of the objectives.
+        """The facts of the problem, as text, except the facts about objectives.
 
         Raises ``KeyboardInterrupt`` at a limit.
         """
@@ -133,7 +133,7 @@ class Prepared:
     ) -> "Run":
         """Run clingo with additional facts and encodings, as :func:`foon_asp.encoding.clingo_run.run` does.
 
-        Returns an empty run where a limit comes first.
+        Returns an empty run if a limit is reached before that.
         """
         from foon_asp.encoding.clingo_run import run  # noqa: PLC0415 (both take clingo along)
         from foon_asp.encoding.run import Run  # noqa: PLC0415

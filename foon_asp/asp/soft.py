@@ -29,8 +29,8 @@ class SoftOutcome(NamedTuple):
     """An answer under soft constraints.
 
     ``penalty`` is the sum of ``weight`` times ``ways`` over all soft ``constraints``, for the tree of
-    ``outcome``. Without a tree, they are ``None`` and empty. An ``optimal`` outcome has the least penalty of
-    all trees, and is the best by the objectives among those with that penalty.
+    ``outcome``. Without a tree, ``penalty`` is ``None`` and ``constraints`` is empty. An ``optimal`` outcome
+    has the least penalty of all trees, and is the best by the objectives among the trees with that penalty.
     """
 
     outcome: Outcome

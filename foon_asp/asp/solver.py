@@ -181,7 +181,7 @@ class _Solver:
     def _solve_unsettled(self, reduced: Reduced, subproblem: Subproblem, tree: Units) -> Outcome:
         """Find the best tree under rules that the reductions ignored.
 
-        If the best tree without these rules keeps to them, it is optimal.
+        ``tree`` is the best one without these rules, if that is proved; if it keeps to them, it is optimal.
         """
         if self._mattered:  # the tree breaks rules, as in the similar question
             return self._solve_violated(subproblem, tree)

@@ -143,9 +143,9 @@ class _Union:
         return best * (1 + self._worse) + _JUST_ABOVE
 
     def _next(self, question: str) -> bool | None:
-        """Find another tree that changes the result, and add its units.
+        """Find another tree that changes the result, and add its units; return ``True``.
 
-        Returns ``False`` if no tree does, ``None`` at a limit.
+        Returns ``False`` if there is no such tree, ``None`` at a limit.
         """
         problem, by = self._prepared.problem, self._prepared.levels
         while True:

@@ -128,8 +128,8 @@ class Branching:
     def proof(self, max_length: float = math.inf, expired: Callable[[], bool] = lambda: False) -> Proof:
         """Return the proof of a search that closed all nodes.
 
-        Raises :class:`TooLongError` where time is up, and where the proof would list more than ``max_length``
-        objects and landmark actions.
+        Raises :class:`TooLongError` if ``expired`` says that time is up, or if the proof would list more than
+        ``max_length`` objects and landmark actions.
         """
         self._length_budget, self._expired = max_length, expired
         return self._proof(self._root)[0]

@@ -178,10 +178,10 @@ class _Growth:
         return not self._unreached or bool(self.refuse(actions, max_refused=1))
 
     def refuse(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
-        """Admit actions one by one; refuse and return actions with which the targets would be reached.
+        """Admit actions one by one; refuse and return those with which all targets would be reached.
 
-        Ends after ``max_refused`` refusals. The consequences of an object are followed once: if they include
-        all targets, further actions that achieve the object are refused at once.
+        Ends after ``max_refused`` refusals. If an object alone suffices to reach all targets, that is found
+        out once; afterwards, actions that achieve the object are refused at once.
         """
         waiting, missing, gives = self._waiting, self._missing, self._gives
         reached, decisive, spread = self.reached, self._decisive, self._spread

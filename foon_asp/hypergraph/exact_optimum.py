@@ -138,9 +138,9 @@ class _Basis:
 def solve_exactly(matrix: Matrix, right: Mapping[int, Vector]) -> dict[int, Vector]:
     """Solve a sparse square system for several right-hand sides at once, by Gaussian elimination.
 
-    ``matrix[i]`` maps unknowns to coefficients, ``right[i]`` are the right-hand sides of row i. The shortest
-    row is eliminated first, which keeps systems of cuts sparse. Returns the values by unknown. Raises
-    :class:`NowhereError` where the system is singular.
+    ``matrix[i]`` maps the unknowns of row i to coefficients; ``right[i]`` has its right-hand sides. The
+    shortest row is eliminated first, which keeps systems of cuts sparse. Returns for each unknown its values,
+    one per right-hand side. Raises :class:`NowhereError` where the system is singular.
     """
     rows = {number: dict(row) for number, row in matrix.items()}
     right_sides = dict(right)

@@ -25,9 +25,9 @@ class GoalGraph(Hypergraph):
     required: range
 
     def cone(self, allowed: Container[int] | None = None) -> tuple[set[int], set[int]]:
-        """Return the relevant actions and objects, by going backwards from the goals through allowed actions.
+        """Return the relevant actions and objects, found backwards from the goals through allowed actions.
 
-        Stops at initial objects; ``None`` allows all actions.
+        Stops at initial objects. If ``allowed`` is ``None``, all actions are allowed.
         """
         return backwards(self.goals, self.makers, self.needs, self.start, allowed)
 

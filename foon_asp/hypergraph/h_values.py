@@ -11,8 +11,8 @@ from foon_asp.problem import follow
 class Derivations(NamedTuple):
     """The h-values and best achievers of the objects that some actions reach, cheapest first.
 
-    ``cost[o]`` is the h-value of object ``o`` and ``maker[o]`` its best achiever; following best achievers is
-    acyclic. ``h_actions[a]`` is the h-value of action ``a``: of its preconditions, plus its own cost. Actions
+    ``cost[o]`` is the h-value of object ``o``, and ``maker[o]`` its best achiever; following best achievers
+    is acyclic. ``h_actions[a]`` is the cost of action ``a`` plus the h-value of its preconditions. Actions
     that cannot run, objects that are not reached, and initial objects are missing.
     """
 

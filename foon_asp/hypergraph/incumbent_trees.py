@@ -15,7 +15,8 @@ if TYPE_CHECKING:  # few questions need it
 def irredundant(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
-    All of the actions can run. Actions that the cheapest derivations (h_add) do not use are removed first.
+    All actions of the tree have to be able to run. Actions that the cheapest derivations by h_add do not use
+    are removed before any others.
     """
     support = Support(graph, tree, cost)
     waiting = [(-cost(action), action) for action in support.actions]

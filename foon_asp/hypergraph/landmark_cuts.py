@@ -72,7 +72,7 @@ class _Level:
 
 
 class _Target:
-    """A target with a stack of levels; the objects of each level are made before those of the level below.
+    """A target with a stack of levels; objects of a level are made before objects of the level below.
 
     ``outer_zones`` are the objects in the zones of all levels except the topmost.
     """

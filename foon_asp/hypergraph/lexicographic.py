@@ -20,7 +20,7 @@ _DIGITS = 60  # of a logarithm, at first
 
 
 class Lexicographic:
-    """An order on vectors; ``levels`` names for each level its rates, or ``None`` where it counts.
+    """An order on cost vectors; ``levels`` has for each level its rates, or ``None`` if the level counts.
 
     Rates lie strictly between 0 and 1. ``width`` is the number of coordinates of a vector.
     """
@@ -46,7 +46,7 @@ class Lexicographic:
     def sign(self, vector: Sequence[Fraction | int]) -> int:
         """Return -1, 0 or 1 for a cost below, equal to or above the cost of nothing, exactly.
 
-        A vector that is not zero can cost nothing, because 7/10 * 7/10 divided by 49/100 is 1.
+        A vector with coordinates other than 0 can cost nothing: 7/10 * 7/10 divided by 49/100 is 1.
         """
         for level, coordinates in self._parts(vector):
             rates = self.levels[level]

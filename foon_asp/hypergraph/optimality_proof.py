@@ -120,8 +120,8 @@ class Prover:
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
         """Return a proof that no derivation costs less than this one; ``None`` where that takes too long.
 
-        The proof branches on ``cases`` first, where the known cuts do not suffice. Raises
-        :class:`CheaperError` when a cheaper derivation is found.
+        Known cuts are tried first; if they do not suffice, the proof branches on ``cases``. Raises
+        :class:`CheaperError` if a cheaper derivation is found.
         """
         try:
             goal, nothing = self._total(derivation), frozenset[int]()
@@ -418,7 +418,7 @@ class Prover:
         """Partition costs greedily: each cut in turn gets the least reduced cost of its landmark actions.
 
         Each cut comes with the maximum of its weight, ``None`` for no maximum. Returns the cost partition,
-        and the reduced costs of the landmark actions.
+        and the reduced costs of all landmark actions.
         """
         reduced_costs: dict[int, Vector] = {}
         weights: list[tuple[Cut, Vector]] = []
@@ -496,7 +496,7 @@ class _Node:
         return order.compare(self._prover.rounded(value)[0], enough) >= 0
 
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
-        """Add cuts until the LP solution violates none that is found, or the bound is enough.
+        """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
 
         Returns the exact optimum of the rows; ``None`` where exact arithmetic fails.
         """

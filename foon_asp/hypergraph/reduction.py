@@ -1,7 +1,7 @@
 """Presolve of a question: an incumbent, a lower bound, and the units that a better tree can have.
 
-Stages (:mod:`greedy_stages`, :mod:`relaxation_stages`) pass on a :class:`Gap`, which each stage makes
-smaller.
+A :class:`Gap` is passed from stage to stage (:mod:`greedy_stages`, :mod:`relaxation_stages`); each stage
+makes it smaller.
 """
 
 import math
@@ -151,10 +151,10 @@ def reduce_under_rules(
 
 
 def h_add_tree(problem: Problem, objectives: Sequence[Objective]) -> frozenset[int] | None:
-    """Return the units of a tree that follows h_add: near to the optimum, and found without any proof.
+    """Return the units of a tree that follows h_add, without proof; its cost is near the optimum.
 
-    ``objectives`` are those of :func:`reduce`. ``None`` where there is no tree. Raises
-    ``KeyboardInterrupt`` where it is interrupted.
+    ``objectives`` are those of :func:`reduce`. ``None`` if there is no tree. Raises ``KeyboardInterrupt`` if
+    it is interrupted.
     """
     reduced = reduce_under_rules(problem, objectives, course=Course(_follow_h_add, _follow_h_add))
     if reduced.interrupted:
@@ -342,7 +342,7 @@ def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
     """Find a first tree among the actions nearest to the goals, so that large networks are read lazily.
 
     Most of a large network is too far from the goals for a good tree, and is never looked at. Returns the gap
-    over all actions and h-values of objects, ``None`` where the network is small or no tree is found.
+    over all actions, and the h-value of each object; ``None`` if the network is small or no tree is found.
     """
     size, limits = len(task.graph.needs), task.tuning
     if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= limits.lazy_actions:

@@ -23,8 +23,9 @@ from foon_asp.hypergraph.task import Task
 class _LpTolerance(NamedTuple):
     """Tolerances of LP values, which are floats; bounds do not rely on them.
 
-    ``used``: an action of a greater LP value counts as used. ``violated``: a landmark with a smaller sum of
-    LP values is violated. ``tight``: a landmark with a greater sum is not tight.
+    ``used``: an action of a greater LP value counts as used.
+    ``violated``: a landmark with a smaller sum of LP values is violated.
+    ``tight``: a landmark with a smaller sum is tight.
     """
 
     used: float = 1e-6

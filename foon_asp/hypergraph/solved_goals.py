@@ -16,10 +16,10 @@ if TYPE_CHECKING:  # few questions need it
 
 
 class SolvedGoals:
-    """Trees of questions that differ in goals and removed units alone, and landmarks that they share.
+    """Trees of solved questions that differ only in goals and removed units, and landmarks that they share.
 
-    Landmarks are shared once greedy cuts did not suffice for a question: easier questions are answered faster
-    one by one.
+    Questions share landmarks from the first one on that greedy cuts do not solve: easier questions are solved
+    faster one by one.
     """
 
     def __init__(self) -> None:
