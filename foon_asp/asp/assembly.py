@@ -140,7 +140,7 @@ def assemble(
 
 
 def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program:
-    """Assemble the encodings of a question as :func:`assemble` does, without clingo where possible."""
+    """Return the program of a question as :func:`assemble` does, without clingo where possible."""
     return ready_made(problem, settings, warn) or assemble(settings, warn, problem=problem)
 
 
@@ -239,7 +239,7 @@ def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
 
 
 def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:
-    """Return the overflow checks of user encodings."""
+    """Return the rules that detect overflow of numbers in user encodings."""
     if not encodings:
         return []
     from foon_asp.encoding.number_checks import CHECKS_FILE  # noqa: PLC0415
@@ -335,7 +335,10 @@ def rules_digest(
 
 
 def _find_encodings(path: Path | None, ours: Path) -> Path:
-    """Return a folder of encodings: the path itself, or a built-in one by name (``by_need``)."""
+    """Return the folder of encodings: ``path``, a built-in folder of that name, or ``ours`` without a path.
+
+    Raises :class:`UserError` if it has no encodings.
+    """
     if path is None:
         return ours
     folder = ours / path.name if not path.is_dir() and path.name == str(path) else path

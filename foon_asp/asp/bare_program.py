@@ -110,7 +110,7 @@ def bare_plans(
 
 
 def _require_no_amounts(problem: Problem) -> None:
-    """Raise :class:`UserError` where amounts are counted: in the encodings each execution has one copy."""
+    """Raise :class:`UserError` if amounts are counted: the encodings have one copy of each output."""
     if problem.counts_amounts:
         raise UserError("amounts are not built for bare clingo, whose encodings have one copy of each output")
 

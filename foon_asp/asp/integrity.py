@@ -92,7 +92,7 @@ def relax(
 
 
 def _statements(rules: Loaded) -> list[AST]:
-    """Return the statements without comments and ``#program``."""
+    """Return the parsed statements of a constraint, without comments and ``#program``."""
     statements: list[AST] = []
     parse(rules, statements.append, lambda *_: None)
     return [statement for statement in statements if statement.ast_type not in _PASSED_OVER]
@@ -100,7 +100,7 @@ def _statements(rules: Loaded) -> list[AST]:
 
 @contextmanager
 def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
-    """Return a context in which errors in the rewritten text are reported at their places in the files."""
+    """Return a context in which errors in the rewritten ``text`` are raised with places in the files."""
     try:
         yield
     except InputError as error:

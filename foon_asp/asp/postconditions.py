@@ -177,7 +177,7 @@ class Postconditions:
             )
 
     def _reduced(self, outcome: Outcome, costs: Costs, reduced: Reduced, exact: ExactCosts) -> None:
-        """Require that the reductions measure the tree as its costs do, and that their bound allows it."""
+        """Require that reductions and outcome agree on the costs, and that the bound allows the tree."""
         assert outcome.units is not None
         units = frozenset(outcome.units)
         size = len(self.problem.network)
@@ -251,7 +251,7 @@ def _shown(costs: Costs | None) -> str:
 
 
 def _text(figure: int | Fraction | None) -> str:
-    """Write a figure: a product of rates may have more digits than Python turns into text at once."""
+    """Return a figure as text, also if it has more digits than Python converts at once."""
     if figure is None:
         return "unknown"
     above, below = Decimal(figure.numerator), Decimal(figure.denominator)

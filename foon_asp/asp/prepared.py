@@ -115,7 +115,7 @@ class Prepared:
         return True if ended.units is not None else (False if ended.exhausted else None)
 
     def require_kept(self, units: Collection[int]) -> None:
-        """Require that a tree keeps to the rules applied before the search, where they are local."""
+        """Require that a tree keeps to the rules applied before the search, if these are local."""
         rules = self.full_program.added if self.full_program else None
         if rules is not None and rules.local and not self.unsettled:
             kept = self.keeps(units)

@@ -124,7 +124,7 @@ class Ranked:
         )
 
     def _next_in_order(self, waiting: list[_Tree]) -> tuple[tuple[int, ...], Costs]:
-        """Pop the best waiting tree, and require that it is no better than those yielded before."""
+        """Remove and return the best waiting tree; require that it is not better than trees before it."""
         units, costs, _ = waiting.pop(0)
         key = costs.key(self.levels)
         self._holds.require(

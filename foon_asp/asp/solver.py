@@ -106,7 +106,7 @@ class _IncumbentListener(Listener):
 
 
 class _Solver:
-    """Branch-and-bound search of one prepared question with clingo."""
+    """The search for the best tree of one prepared question, with clingo where reductions do not suffice."""
 
     def __init__(
         self,
@@ -220,7 +220,7 @@ class _Solver:
         return self._gap_bounded(subproblem, self._best_reported(run.units), run)
 
     def _with_priced_limit(self, subproblem: Subproblem, tree: Units) -> Outcome | None:
-        """Find the best tree by a Lagrangian price on a limited sum; ``None`` where no price decides."""
+        """Find the best tree by a Lagrangian price on a limited sum; ``None`` if no price decides."""
         from foon_asp.hypergraph.priced_limit import limited  # noqa: PLC0415 (of use with few rules)
 
         program = self.prepared.full_program
@@ -471,7 +471,7 @@ class _Solver:
         wanted: int | None,
         fewer: Mapping[int, int],
     ) -> "Grounded":
-        """Return the ground program of a question, cached for the last question."""
+        """Return the ground program of a question; ground it unless the last question was the same."""
         question = objectives, len(products), wanted, fewer
         if self._ground:
             before, program = self._ground

@@ -78,7 +78,7 @@ class _Union:
         self._avoided = 0
 
     def run(self) -> TreeUnion:
-        """Search until nothing is undecided, or until a limit."""
+        """Search until no unit is undecided or a limit is reached."""
         candidates = self._candidates()
         self._prepared = replace(self._prepared, units=candidates)
         undecided = set[int]()
@@ -96,7 +96,7 @@ class _Union:
         return TreeUnion(self._best, in_some, in_every, frozenset(undecided))
 
     def _candidates(self) -> tuple[int, ...]:
-        """Return the units that a tree up to the limit can have; with added rules a superset."""
+        """Return the units that trees up to the cost limit can have; with added rules a superset."""
         prepared, deadline = self._prepared, self._prepared.deadline
         if not prepared.program.own or prepared.unsettled or not prepared.settings.reductions:
             return prepared.units
@@ -173,7 +173,7 @@ class _Union:
             return True
 
     def _is_beyond(self, tree: Sequence[int]) -> bool:
-        """Whether all remaining trees cost too much to count, by the weights of this tree."""
+        """Whether this tree and all trees not found yet cost too much to count, by rounded weights."""
         prepared, costs = self._prepared, self._prepared.problem.costs(tree)
         scales = prepared.scales
         for objective in prepared.levels[:1] if self._worse else prepared.levels:

@@ -135,7 +135,7 @@ class Branching:
         return self._proof(self._root)[0]
 
     def cases(self) -> Cases:
-        """Return the tree of actions branched on, without the actions fixed by reduced cost."""
+        """Return the case split: the tree of actions branched on, without actions fixed by reduced cost."""
         return self._cases(self._root)
 
     def _cases(self, node: _Node) -> Cases:
@@ -290,7 +290,7 @@ class Branching:
                 yield row, weight
 
     def _proof(self, node: _Node) -> tuple[Proof, set[int]]:
-        """Return the proof of a closed node, and the forbidden actions that the proof relies on."""
+        """Return the proof of a closed node, and the columns of forbidden actions that it relies on."""
         if node.hopeless is not None:
             cut = frozenset(node.hopeless.objects)
             return Hopeless(self._stated(cut, node)), {*self._relaxation.members(cut)} & node.forbidden
@@ -308,7 +308,7 @@ class Branching:
         return proof, (barred - node.above_cutoff) | overloaded
 
     def _packing(self, node: _Node) -> tuple[Packing, set[int]]:
-        """Return the cost partition of a node, and the forbidden actions that its proof relies on."""
+        """Return the cost partition of a node, and the columns of forbidden actions that it overloads."""
         weights: list[tuple[Cut, tuple[Fraction]]] = []
         self._length_budget -= 5000  # which limits the depth of the branching, too
         for row, weight in self._carrying(node):

@@ -86,11 +86,11 @@ class Covering:
         self._highs.addRow(-float(max_amount), self._library.kHighsInf, len(amounts), columns, takes)
 
     def bound(self, column: int, lower: float, upper: float) -> None:
-        """Set the bounds of a column."""
+        """Set the lower and the upper bound of the value of a column."""
         self._highs.changeColBounds(column, lower, upper)
 
     def demand(self, row: int, lower: float) -> None:
-        """Set the least sum of a row; 0 makes the row redundant."""
+        """Set the least sum of the values in a row; 0 makes the row redundant."""
         self._highs.changeRowBounds(row, lower, self._library.kHighsInf)
 
     def _set(self, options: dict[str, bool | str | float]) -> None:

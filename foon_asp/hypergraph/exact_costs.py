@@ -153,7 +153,7 @@ class ExactCosts:
         return not _large(proved) and order.sign(proved) >= 0
 
     def of(self, costs: Costs) -> int:
-        """Return the cost of a tree, which may be too great by the rounding error."""
+        """Return the cost of a tree from its costs by objective; rounding may make it too great."""
         total = 0
         for objective, factor in self._factors.items():
             measure = Fraction(costs.measure(objective))
@@ -197,7 +197,7 @@ def _large(vector: Sequence[int]) -> bool:
 
 
 class _Vectors:
-    """Costs as vectors: one coordinate for an additive objective, one for each rate where rates multiply."""
+    """Costs as vectors: a coordinate for each additive objective, and for each rate where rates multiply."""
 
     def __init__(self, costs: ExactCosts, coordinates: dict[Fraction, int]) -> None:
         self._costs, self._coordinates = costs, coordinates

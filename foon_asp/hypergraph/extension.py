@@ -64,6 +64,7 @@ def extensions(
 
 
 def _towards_required(graph: GoalGraph) -> GoalGraph:
+    """Return the graph with the required sets as its only goals."""
     return replace(graph, goals=tuple(graph.required), known_makers=graph.makers)
 
 

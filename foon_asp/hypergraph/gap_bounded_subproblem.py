@@ -45,7 +45,7 @@ class Subproblem:
         return {achiever for o in needed.union(graph.goals) for achiever in graph.makers[o]}
 
     def rival_achievers(self, units: Iterable[int]) -> set[int]:
-        """Return the achievers of everything that some units achieve, these units among them."""
+        """Return all achievers of the objects that some units achieve, including these units."""
         graph, kitchen = self.graph, self.problem.kitchen
         made = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
         return {achiever for o in made for achiever in graph.makers[o]}
@@ -57,7 +57,7 @@ class Subproblem:
         return {unit for unit in units if restriction is None or not restriction.removed(unit)}
 
     def with_only_achievers(self, units: Iterable[int], max_units: int) -> set[int]:
-        """Add the sole achievers of preconditions to units, transitively, up to about ``max_units`` units."""
+        """Add the only achievers of preconditions to units, transitively; stop at about ``max_units``."""
         graph, kitchen = self.graph, self.problem.kitchen
         closed, waiting = set(units), list(units)
         while waiting and len(closed) < max_units:
@@ -164,7 +164,7 @@ class Subproblem:
 
 
 def reduced_costs_of(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
-    """Return the function from actions to their reduced costs by a cost partition."""
+    """Return a function from an action to its reduced cost by a cost partition."""
     reduced_costs = cuts.reduced_costs
     return lambda action: reduced_costs[action] if action in reduced_costs else costs(action)
 

@@ -46,7 +46,7 @@ def bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None
 
 
 def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None, thorough: bool) -> Stage:
-    """Raise the lower bound by cuts, look for better trees by them, and fix candidates by reduced costs."""
+    """Raise the lower bound by cuts, look for better trees, and fix candidates by reduced costs."""
     gap, cuts = bound(task, gap, h_values, guide)
     yield gap
     if cuts.interrupted:
@@ -90,7 +90,7 @@ def improve(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
 
 
 def improve_repeatedly(task: Task, gap: Gap) -> Stage:
-    """Look thoroughly for better trees, again from each new incumbent, within the budget of branching."""
+    """Look thoroughly for better trees from each new incumbent, within the budget of branching."""
     budget, previous = task.tuning.branching_budget, frozenset[int]()
     while gap.incumbent != previous and not task.expired():
         previous = gap.incumbent

@@ -249,7 +249,7 @@ class _Search:
 
 
 class _Free:
-    """The objects reachable by actions of reduced cost 0, updated incrementally."""
+    """The free objects: those reachable by actions of reduced cost 0, updated incrementally."""
 
     def __init__(self, graph: Hypergraph) -> None:
         self._graph = graph
@@ -263,7 +263,7 @@ class _Free:
         return [o for o in self._graph.needs[action] if o not in free and o not in start]
 
     def release(self, action: int) -> None:
-        """Add an action of reduced cost 0, which makes its add effects free once its preconditions are."""
+        """Add an action of reduced cost 0: once its preconditions are free, its add effects become free."""
         lacking = self.lacking(action)
         self._missing[action] = len(lacking)
         for o in lacking:

@@ -55,13 +55,13 @@ class LandmarkRelaxation:
         self._whole_cuts: dict[frozenset[int], frozenset[int]] = {}
 
     def add(self, cut: frozenset[int]) -> None:
-        """Add a row for a cut: all actions that cross it."""
+        """Add a row for a cut, given by objects: its columns are the landmark actions."""
         self.rows.append(self._np.array(self.members(cut), dtype=self._np.int32))
         self.cuts.append(cut)
         self.covering.add(self.rows[-1])
 
     def add_known(self, cuts: Iterable[Iterable[int]]) -> None:
-        """Add rows for cuts of the whole graph."""
+        """Add rows for cuts of the whole graph, each given by its objects."""
         position = {o: i for i, o in enumerate(self._objects)}
         for objects in cuts:
             self.add(frozenset(position[o] for o in objects if o in position))

@@ -54,7 +54,7 @@ class Rules(Protocol):
         """
 
     def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
-        """Return actions of a derivation that together break a rule; empty where it keeps to all rules."""
+        """Return actions of a derivation that together break a rule; empty if it breaks none."""
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
         """Return a limit that a derivation exceeds and that was not returned before; ``None`` without one."""
@@ -130,7 +130,7 @@ class Prover:
             return None
 
     def prove_none(self) -> Proof | None:
-        """Return a proof that there is no derivation; ``None`` where that takes too long or one exists."""
+        """Return a proof that no derivation exists; ``None`` if one exists or the proof takes too long."""
         try:
             return self._prove(None, frozenset(), self._forbidden)
         except _TimeUpError:
@@ -371,7 +371,7 @@ class Prover:
         return CostFixing(tuple(sorted(needed)), packing._replace(rounded=0), proof) if needed else proof
 
     def _crossing(self, proof: Proof) -> Iterator[int]:
-        """Return the actions that cross cuts of a proof, including the fixed ones."""
+        """Yield the actions that cross cuts of a proof, including fixed actions."""
         for objects in {cut.objects for cut in cuts_of(proof)}:
             yield from self._members(frozenset(objects))
 
@@ -384,7 +384,7 @@ class Prover:
     def _searched(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
-        """Return the proof by :func:`branched`, with cuts widened to all actions; ``None`` without one."""
+        """Return a proof by :func:`branched`, its cuts valid for all actions; ``None`` without a proof."""
         if not step:
             return None
         result = branched(
@@ -435,7 +435,7 @@ class Prover:
         return Packing(tuple(weights), rounded=rounded), reduced_costs
 
     def _reaches(self, packing: Packing, goal: Vector) -> bool:
-        """Return whether the weights of a cost partition add up to a goal, rounded up."""
+        """Return whether the sum of the weights of a cost partition, rounded up, is at least ``goal``."""
         value, _ = self.rounded(self._order.total(weight for _, weight in packing.weights))
         return self._order.compare(value, goal) >= 0
 
@@ -524,7 +524,7 @@ class _Node:
             raise _TimeUpError
 
     def _share(self, x: Sequence[float]) -> None:
-        """Record an LP solution, with unconstrained actions of cost 0 at 1."""
+        """Record an LP solution; actions that cost 0 get the value 1 if there are no limits and rules."""
         self.shares = [*x]
         for column in self._free:
             self.shares[column] = 1.0
@@ -540,7 +540,7 @@ class _Node:
         )
 
     def undecided(self) -> int | None:
-        """Return the most fractional action, the most expensive of several; ``None`` where all are whole."""
+        """Return the most fractional action, of equal ones the most expensive; ``None`` without one."""
         halves = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])
             for column, x in enumerate(self.shares[: len(self._actions)])
@@ -554,7 +554,7 @@ class _Node:
         return sorted({action for action, x in shares if round(x)} | self._used)
 
     def _separate(self) -> bool:
-        """Add violated cuts with disjoint landmarks; return whether there are any."""
+        """Add violated cuts with disjoint landmarks; return whether any was added."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         count = len(self._actions)

@@ -27,7 +27,7 @@ class Hopeless(NamedTuple):
 
 
 class Broken(NamedTuple):
-    """The end of a branch: every derivation with the used actions breaks a rule."""
+    """The end of a branch: every derivation with the used actions breaks the rule of this number."""
 
     rule: int
 

@@ -87,7 +87,7 @@ class Listener:
 
 
 class Bounds(Listener):
-    """Observer that passes on bounds only: trees found on the way may not keep to all rules."""
+    """Observer that passes on bounds but no trees, since these may break rules."""
 
     def __init__(self, listener: Listener) -> None:
         self._listener = listener
@@ -186,7 +186,7 @@ def at_costs(
         task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
 
         def fixed_first(task: Task, gap: Gap, h_values: HValues) -> Stage:
-            """Fix by the cutoff first, and run all rounds only if few enough actions remain."""
+            """Fix candidates by the cutoff first, and run all rounds only if few enough remain."""
             if below and len(gap.candidates) > max_actions:
                 before = len(gap.candidates)
                 gap, cuts = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap))
@@ -226,7 +226,7 @@ def _task(
 
 
 def _with_costs(task: Task, actions: Collection[int]) -> Task:
-    """Return the task with exact costs of actions, unless it has them or rates are too fine for them."""
+    """Return the task with exact costs of these actions; unchanged if it has costs or rates are too fine."""
     if task.costs is None:
         with suppress(TooFineError):
             return replace(task, costs=ExactCosts(task.problem, task.objectives, actions))
@@ -234,7 +234,7 @@ def _with_costs(task: Task, actions: Collection[int]) -> Task:
 
 
 def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Repeat bounds, better trees and reductions, until nothing changes or the incumbent is optimal."""
+    """Repeat landmark cuts, search for trees and pruning, until nothing changes or a tree is optimal."""
     costs, limits = task.costs, task.tuning
     if costs is not None and len(gap.candidates) > limits.easy_actions:
         gap = greedy.follow_h_add(task, gap)
@@ -320,7 +320,7 @@ def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Bound trees by landmark cuts."""
+    """Raise the lower bound once by landmark cuts."""
     if task.costs is not None:
         gap = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap)).gap
         yield gap
@@ -328,7 +328,7 @@ def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Bound trees by landmark cuts without a guide, since a guide looks at all actions."""
+    """Raise the lower bound by landmark cuts without a guide, since a guide looks at all actions."""
     if task.costs is not None:
         gap = greedy.bound(task, gap, h_values, None).gap
         yield gap
@@ -372,7 +372,7 @@ class _Presolve:
 
     @property
     def bounds_listener(self) -> Listener:
-        """The listener for trees of another task, whose bounds hold here too."""
+        """A listener for another task whose bounds hold here, too, but whose trees do not."""
         return Bounds(self._listener)
 
     def guarded(self, step: Callable[[], None]) -> None:
@@ -405,7 +405,7 @@ class _Presolve:
             self.take(stages, h_values)
 
     def run_beside(self, solved: SolvedGoals) -> None:
-        """Run all rounds, from the gap that ``solved`` gives if any, and add the answer to ``solved``."""
+        """Run all rounds, if possible from the gap that ``solved`` has, and add the answer to ``solved``."""
 
         def begin() -> None:
             costs = solved.costs
@@ -425,7 +425,7 @@ class _Presolve:
         self.guarded(begin)
 
     def extend_or_run(self) -> None:
-        """Run all rounds. Where sets of units are required, first try to extend trees of the goals alone."""
+        """Run all rounds; if sets of units are required, first try to extend trees for the goals alone."""
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:
             _extend(self)
@@ -490,7 +490,7 @@ def _extend(presolve: _Presolve) -> None:
     subproblem, h_values = reduced.subproblem, dict[int, int]()
 
     def extend() -> None:
-        """Extend the best tree of the goals alone, and keep the candidates of cheap extensions."""
+        """Extend the best tree for the goals alone; the candidates are the actions of cheap extensions."""
         tree = extended(task.thin, gap.incumbent, costs, len(graph.needs) // 4)
         if tree is None:
             return

@@ -115,7 +115,10 @@ def apply(task: Task, gap: Gap, shared: SharedCosts) -> Gap:
 def search_among(
     task: Task, gap: Gap, actions: Collection[int], cuts: Sequence[frozenset[int]], effort: int
 ) -> Stage:
-    """Look for a better tree among a few actions, by branching up to an effort (sub-MIP heuristic)."""
+    """Look for a better tree among a few actions by branch and bound (sub-MIP heuristic).
+
+    ``effort`` is the budget, in actions looked at.
+    """
     graph, costs = task.graph, task.costs
     assert costs is not None
     runnable = derive(graph, actions, costs, h_add=False).h_actions
@@ -138,7 +141,7 @@ def may_branch(task: Task, gap: Gap) -> bool:
 
 
 def branch(task: Task, gap: Gap) -> Stage:
-    """Branch and bound over the candidates, within the budget, where the bound is close enough for it."""
+    """Branch and bound over the candidates, within the budget, if the lower bound is close enough."""
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
     close = gap.lower_bound >= task.total(gap) * limits.branching_bound

@@ -177,7 +177,7 @@ class SharedLandmarks:
             self._reached_without.append(self._relaxation.graph.reach(landmark))
 
     def _following(self, task: Task, tree: frozenset[int], x: Any) -> frozenset[int]:
-        """Return the best of a tree and of trees that combine its actions with those of an LP solution."""
+        """Return the best of ``tree`` and trees that combine its actions with those of an LP solution."""
         actions, costs = self._relaxation.actions, self.costs
         used = self._np.flatnonzero(x > _LP.used).tolist()
         shares = dict.fromkeys(tree, 0.0) | {actions[i]: float(x[i]) for i in used}

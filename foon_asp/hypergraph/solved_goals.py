@@ -34,7 +34,7 @@ class SolvedGoals:
         return self._landmarks is not None
 
     def h_add(self, goal: int) -> int:
-        """Return the h_add value of a goal, 0 where landmarks are not shared and where there is no tree."""
+        """Return the h_add value of a goal; 0 if landmarks are not shared yet or there is no tree."""
         return 0 if self._derivations is None else self._derivations.cost.get(goal, 0)
 
     def gap(self, task: Task) -> Gap | None:
@@ -57,7 +57,7 @@ class SolvedGoals:
 
     @property
     def costs(self) -> ExactCosts | None:
-        """The costs of all actions that can run, by which shared gaps are measured."""
+        """The costs of shared gaps, for all actions that can run; ``None`` before landmarks are shared."""
         return None if self._landmarks is None else self._landmarks.costs
 
     def _tree(self, task: Task) -> frozenset[int]:
@@ -81,7 +81,10 @@ class SolvedGoals:
         return frozenset(min(smallest, key=lambda tree: sum(map(costs, tree))))
 
     def _tree_without(self, task: Task, removed: frozenset[int]) -> frozenset[int] | None:
-        """Return a tree without some actions, by h_add and the tree of the same goals, if any."""
+        """Return a tree without the removed actions, from h_add and from the solved tree of the same goals.
+
+        ``None`` if there is no tree.
+        """
         graph, costs, derivations = task.graph, task.costs, self._derivations
         assert costs is not None
         assert derivations is not None
@@ -94,7 +97,7 @@ class SolvedGoals:
         return frozenset(min(trees, key=lambda tree: sum(map(costs, tree))))
 
     def learn(self, task: Task, gap: Gap | None) -> None:
-        """Keep the tree of a proved gap; share landmarks from now on if greedy cuts did not prove it."""
+        """Store the tree of a proved gap; share landmarks from then on if greedy cuts did not prove it."""
         if gap is None or not gap.proved:
             return
         self._trees[task.graph.goals] = gap.incumbent
